@@ -12,11 +12,11 @@ import numpy as np
 
 from comparisons.documents import Plain, plain
 from cprbm_scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Loss, Shape, StationAnswer
-from cprbm_scene.answer import Area, Array, BeamState, ContactState, Inside, PointForces, Statics, frozen_array
+from cprbm_scene.answer import Array, BeamState, ContactState, PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict
 
 Record = (
-    Statics | Inside | Area | BeamState | PointForces | ContactState | Critical | Event | Shape | Certificate
+    BeamState | PointForces | ContactState | Critical | Event | Shape | Certificate
 )  # a record whose fields are plain data
 
 
@@ -52,7 +52,6 @@ def packed(answer: Answer) -> Plain:
                     "forces": _fields(station.forces),
                     "contacts": {name: _fields(contact) for name, contact in station.contacts.items()},
                     "bodies": station.bodies,
-                    "statics": None if station.statics is None else _packed_statics(station.statics),
                 }
                 for station in answer.stations
             ],
@@ -63,10 +62,6 @@ def packed(answer: Answer) -> Plain:
 
 def _packed_critical(critical: Critical) -> Plain:
     return {**_fields(critical), "loss": critical.loss.name}
-
-
-def _packed_statics(statics: Statics) -> Plain:
-    return {**_fields(statics), "inside": {name: _fields(inside) for name, inside in statics.inside.items()}}
 
 
 def _fields(record: Record) -> Plain:
@@ -134,7 +129,6 @@ def _unpacked_station(data: Plain) -> StationAnswer:
             }
         ),
         bodies=frozendict({name: _array(values) for name, values in data["bodies"].items()}),
-        statics=None if data["statics"] is None else _unpacked_statics(data["statics"]),
     )
 
 
@@ -147,27 +141,6 @@ def _unpacked_forces(data: Plain) -> PointForces:
         _pairs(data["force"]),
         _array(data["moment"]),
     )
-
-
-def _unpacked_statics(data: Plain) -> Statics:
-    return Statics(
-        by=tuple(data["by"]),
-        on=tuple(data["on"]),
-        s=_array(data["s"]),
-        places=_pairs(data["places"]),
-        forces=_pairs(data["forces"]),
-        moments=_array(data["moments"]),
-        bodies=frozendict({name: _array(values) for name, values in data["bodies"].items()}),
-        inside=frozendict({name: _unpacked_inside(inside) for name, inside in data["inside"].items()}),
-    )
-
-
-def _unpacked_inside(data: Plain) -> Inside | Area:
-    if "made_of" in data:
-        start, end = map(float, data["upright"])
-        borders, angles, pulls = (_array(data[name]) for name in ("borders", "angles", "pulls"))
-        return Inside(data["made_of"], borders, angles, pulls, (start, end))
-    return Area(_array(data["along"]), _array(data["across"]), frozen_array(data["x"]), frozen_array(data["y"]))
 
 
 def _pairs(values: list[Any]) -> Array:

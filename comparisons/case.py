@@ -111,7 +111,7 @@ def _verdict(
             rest = f" (and {len(found.complaints) - 1} more)" if len(found.complaints) > 1 else ""
             sentence = f"The audit of {name}'s answer fails: {found.complaints[0]}{rest}."
             findings.append((Word.UNDECIDED, Reason.AUDIT, sentence))
-    crossing = next((found.remarks for found in audits.values() if found.remarks), ())
+    crossing = next((found.crossings for found in audits.values() if found.crossings), ())
     findings += [(Word.UNDECIDED, Reason.UNDECLARED_CONTACT, sentence) for sentence in crossing]
     if rows or completed:
         findings.append((*of_rows, said.headline(table, rows, judged, of_rows)))

@@ -11,10 +11,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from comparisons.quantities import norm
+from comparisons.quantities import VANISHING, norm
 from comparisons.verdict.events import CriticalRow
 from comparisons.verdict.rows import Row
-from comparisons.verdict.scales import VANISHING
 from cprbm_scene import Claim, Scene
 from cprbm_scene.statement import CRITICAL
 

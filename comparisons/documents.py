@@ -84,7 +84,7 @@ def name_of(value: Word | Reason | None) -> str | None:
 
 def _solid(compared: Comparison, finest: Answer) -> Plain:
     """How the solid fared on its finest mesh."""
-    return {**solver(finest, compared.audits.get("solid")), **_tolerance(compared.tolerances, "solid")}
+    return {**solver(finest), **_tolerance(compared.tolerances, "solid")}
 
 
 def solution(
@@ -137,11 +137,11 @@ def _audit(found: Audit) -> Plain | None:
     return {
         "holds": not found.complaints,
         "complaints": list(found.complaints),
-        "remarks": list(found.remarks),
+        "remarks": list(found.crossings),
         "stations": found.stations,
         "unbalance": plain(found.unbalance),
         "scaled_unbalance": plain(found.scaled),
-        "smallest_curvature": None if found.curvature is None else plain(found.curvature),
+        "smallest_curvature": None,
     }
 
 

@@ -35,7 +35,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from pydantic import ValidationError
 
@@ -43,11 +43,13 @@ from comparisons.choices import KINEMATICS, Choices, Kinematics, check
 from comparisons.listening import heard_from, listen
 from comparisons.processes import AloneError, deaf, pool
 from comparisons.reactions import perturbed_scene
-from comparisons.verdict.uncertainty import Error
 from cprbm_scene import Answer, Ending, Mistake, RigidContact, Scene, SceneError, Spacing
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import BodyLoad, Curve, Spline
+
+if TYPE_CHECKING:
+    from comparisons.verdict.uncertainty import Error
 
 _SAYS = logging.getLogger(__name__)
 
@@ -56,7 +58,7 @@ Prepared = Callable[[], Answer]
 Job = tuple[Solver, Scene, Choices]
 Planned = str | tuple[Kinematics, bool]
 
-Uncertainties = Mapping[tuple[str, float, str], Error]
+Uncertainties: TypeAlias = "Mapping[tuple[str, float, str], Error]"
 """Stated uncertainties by stage, station and probe."""
 
 COLLECTED = (50_000, 20, 100)

@@ -11,6 +11,9 @@ from cprbm_scene import Probe, Scene, Stage
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES, Quantity
 
+VANISHING = 1e-2
+"""A reference below this share of its scale may vanish, and is no divisor of shown fractions."""
+
 OPEN_AT_ZERO: frozenset[Quantity] = frozenset({"force", "moment"})
 """Quantities that are exactly zero while a contact is open, or while no limit of a stop is reached."""
 

@@ -45,9 +45,9 @@ from itertools import chain
 
 import numpy as np
 
+from comparisons.quantities import VANISHING
 from comparisons.stations import station_of
 from comparisons.thinning import kept
-from comparisons.verdict.scales import VANISHING
 from cprbm_scene import Answer, Drive, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.freedoms import unit
 from cprbm_scene.statement import DisplacementDrive
@@ -183,12 +183,12 @@ def perturbed_scene(scene: Scene) -> Scene | None:
 
     Stages of loads and of other drives keep their stations, and long stages the stations that tables show.
     """
-    if not any(_has_reaction(scene, stage) and not _is_long(stage) for stage in scene.stages):
+    if not any(_has_reaction(scene, stage) and not is_long(stage) for stage in scene.stages):
         return None
     stages = []
     for stage in scene.stages:
         stations = stage.stations
-        if _is_long(stage):
+        if is_long(stage):
             stations = kept(stage)
         elif _has_reaction(scene, stage):
             pairs = ((d - h, d + h) for d, h in _steps(stage).items())
@@ -241,13 +241,13 @@ def reactions(scene: Scene, cprbm: Answer, fea: Answer, perturbed: Answer | None
 
 def smooth_intervals(scene: Scene, stage: Stage, cprbm: Answer, perturbed: Answer | None) -> tuple[Interval, ...]:
     """The interval around every station of a stage; an interval with an event states the reason against R."""
-    beside = cprbm if _is_long(stage) else perturbed
+    beside = cprbm if is_long(stage) else perturbed
     answers = [answer for answer in (cprbm, beside) if answer is not None]
     passed = [point.end.value for answer in answers for point in answer.gone_over if point.end.stage == stage.name]
     steps = _steps(stage)
     found = []
     for d in stage.stations:
-        if d not in steps or beside is None or (_is_long(stage) and ENERGY.name not in cprbm.stations[0].values):
+        if d not in steps or beside is None or (is_long(stage) and ENERGY.name not in cprbm.stations[0].values):
             found.append(Interval((), absence=Absence.NOT_PERTURBED))
             continue
         h = steps[d]
@@ -298,7 +298,7 @@ def _has_reaction(scene: Scene, stage: Stage) -> bool:
 
 def _steps(stage: Stage) -> dict[float, float]:
     """h by d; of a long stage at the stations between two equal steps."""
-    if _is_long(stage):
+    if is_long(stage):
         between = zip(stage.stations, stage.stations[1:], stage.stations[2:], strict=False)
         return {
             d: abs(after - d) for before, d, after in between if abs(after - 2.0 * d + before) <= EVEN * abs(after - d)
@@ -307,7 +307,8 @@ def _steps(stage: Stage) -> dict[float, float]:
     return {d: PERTURBATION * (abs(d) or largest) for d in stage.stations}
 
 
-def _is_long(stage: Stage) -> bool:
+def is_long(stage: Stage) -> bool:
+    """Whether a stage's own neighbouring stations serve as perturbed stations."""
     return len(stage.stations) > MOST_PERTURBED
 
 

@@ -390,7 +390,7 @@ def _certificates(compared: Comparison) -> Sheet:
     body.append(("audit", *(_audited(one) for one in audits)))
     body.append(
         (
-            "moments by the shape less those by statics",
+            "stated moments less those of all that acts beyond",
             *("–" if one is None or not one.stations else number(one.scaled) for one in audits),
         )
     )

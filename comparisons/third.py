@@ -106,9 +106,6 @@ def sentence(compared: Comparison) -> str:
     for answer in runs.solid:
         if not answer.completed:
             return f"The solid says nothing: {answer.ending.value}. {answer.sentence}"
-    found = compared.audits.get("solid")
-    if found is not None and found.complaints:
-        return f"The solid is not to be believed: its audit fails {found.complaints[0]}."
     moved = [one for one in thirds_of(compared) if one.row.probe.quantity in ("displacement", "rotation")]
     if not moved:
         return "The solid has no displacement or rotation to hold the beam theories against."

@@ -41,14 +41,14 @@ def beam_states(mechanism: Mechanism, point: Point) -> dict[str, BeamState]:
     model, states = mechanism.problem.model, {}
     for chain in () if mechanism.boundaries else model.chains:
         s = chain.s + chain.s[-1] * BESIDE * (chain.s < chain.s[-1])
-        psi = smooth.smooth_line(chain, model.unit_length, point.state, point.at).at(chain.s).psi
-        force = force_beyond(mechanism, point, chain, s) @ np.array([1.0, 1j]) * np.exp(-1j * psi) * model.unit_force
+        line = smooth.smooth_line(chain, model.unit_length, point.state, point.at).at(chain.s)
+        force = force_beyond(mechanism, point, chain, s) @ (1.0, 1j) * np.exp(-1j * line.psi) * model.unit_force
         columns = (
             chain.s * model.unit_length,
-            point.at.x[chain.joints] * model.unit_length,
-            point.at.y[chain.joints] * model.unit_length,
-            psi,
-            psi,
+            line.x * model.unit_length,
+            line.y * model.unit_length,
+            line.psi,
+            line.psi,
             force.real,
             force.imag,
             bending_moment(mechanism, point, chain, s) * model.unit_moment,

@@ -35,7 +35,6 @@ from cprbm.rate import rate, strayed
 from cprbm.refining import all_zones, carried_over, carried_state, fits, fitted, long_ones
 from cprbm.remarks import Remarks
 from cprbm.settings import Settings
-from cprbm.statics import statics
 from cprbm.steadied import Turn, steadied
 from cprbm.zones import Zone
 from cprbm_scene import Certificate, Critical, Ending, Event, GoneOver, Loss, Scene, Stage, StationAnswer
@@ -338,7 +337,6 @@ class March:
             forces=forces,
             contacts=answer_sheet.contacts(self.scene, mechanism, forces, places),
             bodies=answer_sheet.body_motions(self.scene, mechanism, point),
-            statics=statics(self.scene, mechanism, point),
         )
 
     def _gone_on(self, stage: Stage, value: float) -> tuple[Mechanism, Point, Certificate] | None:

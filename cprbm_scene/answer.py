@@ -36,7 +36,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -215,81 +215,6 @@ class ContactState:
 
 
 @dataclass(frozen=True, slots=True)
-class Inside:
-    """A beam as its solver sees it: what its bending moments and its smooth line follow from, and no more.
-
-    Of ``links`` they begin at the beam's first place and end in the middle of each element, where they are joined by
-    springs, and at its last place; ``angles`` are theirs, one more than elements, and ``pulls`` empty.  Of ``elements``
-    the shape's places are their nodes, ``angles`` those of the sections there, and ``pulls`` the axial force in each;
-    beside an end sections may lean by less than the shear force over the shear stiffness, by tanh²(s/(√2 a)) of that.
-
-    Attributes:
-        made_of: ``links`` or ``elements``.
-        borders: arc lengths at which elements begin and end, (n+1,), m.
-        angles: rad, counter-clockwise, (n+1,).
-        pulls: N, positive in tension, (n,) or (0,).
-        upright: a of the start and of the end, m; zero where there is no such length.
-    """
-
-    made_of: Literal["links", "elements"]
-    borders: Array
-    angles: Array
-    pulls: Array
-    upright: tuple[float, float] = (0.0, 0.0)
-
-
-@dataclass(frozen=True, slots=True)
-class Area:
-    """A beam as a solid sees it: where the nodes of its elements lie, all of second order and in rows and columns.
-
-    Attributes:
-        along: arc lengths of the nodes' sections, (2n+1,), m; every other one is where elements meet.
-        across: places across, 1 on the left edge and −1 on the right one, ascending (2m+1,).
-        x, y: where the nodes are, m (2n+1, 2m+1).
-    """
-
-    along: Array
-    across: Array
-    x: Array
-    y: Array
-
-    @property
-    def borders(self) -> Array:
-        """Arc lengths at which elements begin and end, (n+1,), m."""
-        return self.along[::2]
-
-
-@dataclass(frozen=True, slots=True)
-class Statics:
-    """What acts at a station besides the scene's loads, so that others can sum it up anew; SI.
-
-    Every force of a joint, a contact, a stop, a slide, a pivot, a drive or a pin between bodies stands there once for
-    each beam and body that it acts on; the ground's share is left out.  k is how many there are.
-
-    Attributes:
-        by: what exerts each: name of the point that a beam's end is joined to, of the contact, stop, drive, pin or
-            sliding body, or of the point that is a pivot.
-        on: name of the beam or body that it acts on.
-        s: arc lengths of the places on beams, m; of those on bodies nan, (k,).
-        places: where, m (k, 2): of contacts on the beam's neutral line, through which the force's line goes; of those
-            on an area half its thickness along the force from the edge that is pressed.
-        forces: N (k, 2).
-        moments: about the places, counter-clockwise, N·m (k,).
-        bodies: of every body that moves the displacement of its first point, m, and its rotation, rad, (3,).
-        inside: of every beam.
-    """
-
-    by: tuple[str, ...]
-    on: tuple[str, ...]
-    s: Array
-    places: Array
-    forces: Array
-    moments: Array
-    bodies: Mapping[str, Array]
-    inside: Mapping[str, Inside | Area]
-
-
-@dataclass(frozen=True, slots=True)
 class StationAnswer:
     """Probe values, shapes, statics and certificate at one station.
 
@@ -318,7 +243,6 @@ class StationAnswer:
     forces: PointForces = field(default_factory=PointForces)
     contacts: Mapping[str, ContactState] = field(default_factory=dict)
     bodies: Mapping[str, Array] = field(default_factory=dict)
-    statics: Statics | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,6 @@ from fea_reference.march import March, StoppedError, begin
 from fea_reference.model import build
 from fea_reference.probes import probed, shapes, touching
 from fea_reference.settings import Settings
-from fea_reference.statics import statics
 from fea_reference.travel import Course, reach
 
 _SAYS = logging.getLogger(__name__)
@@ -165,7 +164,6 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float) -> Stat
         forces=forces,
         contacts=answer_sheet.contacts(scene, march, forces, places),
         bodies=answer_sheet.body_motions(march),
-        statics=statics(scene, march),
     )
 
 

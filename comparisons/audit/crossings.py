@@ -153,7 +153,7 @@ def _drawn(scene: Scene, station: StationAnswer, edges: Drawn, rigid: Mapping[st
     """Neutral lines of the beams and outlines of the edges at a station, by name, the beams first."""
     shapes = {name: station.shapes[name] for name in scene.beams}
     drawn: Drawn = {name: shapely.LineString(np.stack((at.x, at.y), axis=1)) for name, at in shapes.items()}
-    motions = {} if station.statics is None else station.statics.bodies
+    motions = station.bodies
     for name, edge in edges.items():
         body = scene.bodies[rigid[name].body]
         if isinstance(body, FixedBody):

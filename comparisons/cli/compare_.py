@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from comparisons.case import compare
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
 from comparisons.cli.options import exactness, folder, numerical, one_of_both, opinions, output
@@ -107,6 +106,7 @@ def _compared(
     steps: Steps[Question], choices: Choices, tol: float | None, solvers: Solvers, crew: Crew, *, shown: bool
 ) -> Iterator[Comparison | OffsetComparison]:
     """The comparisons of all questions; the next one is solved while the caller draws and prints one."""
+    from comparisons.case import compare
     from comparisons.cli import showing
     from comparisons.offset_verdict import compared_offset
     from comparisons.pairing import begin

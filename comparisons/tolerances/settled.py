@@ -60,7 +60,7 @@ def settled(scene: Scene, answers: Mapping[int, Answer], probes: Collection[str]
             if stated is not None:
                 uncertainties[station.stage, station.value, probe.name] = stated
         # a limit belongs to no state: no forces in it balance
-        stations.append(replace(station, values=frozendict(values), beams={}, statics=None))
+        stations.append(replace(station, values=frozendict(values), beams={}))
     answer = replace(fine, stations=tuple(stations), seconds=sum(each.seconds for each in answers.values()))
     if probes:
         sizes = (finest // 2, finest)

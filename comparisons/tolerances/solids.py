@@ -175,7 +175,6 @@ def settled(scene: Scene, answers: Sequence[Answer]) -> Answer:
             values=frozendict(values[station.stage, station.value]),
             beams={},
             forces=PointForces(),
-            statics=None,
         )
         for station in answers[-1].stations
     ]

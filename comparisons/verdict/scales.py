@@ -45,7 +45,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from comparisons.geometry import length, points
-from comparisons.quantities import norm
+from comparisons.quantities import VANISHING, norm
 from cprbm_scene import Answer, Beam, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Shape
 from cprbm_scene.statement import DistributedLoad, Quantity
@@ -58,9 +58,6 @@ STAGE_SHARE = 0.25
 
 NATURAL_SHARE = 1e-4
 """Least scale of a probe, a share of its natural value."""
-
-VANISHING = 1e-2
-"""A reference below this share of its probe's scale counts as a reference that may vanish."""
 
 _PLACES = 9
 _OWN_NORM = frozenset({"displacement", "rotation", "potential_energy", "closing_load"})

@@ -21,7 +21,6 @@ from fea_reference.solid.pairs import pairs_of
 from fea_reference.solid.probes import probed, shapes, touching
 from fea_reference.solid.refusals import refuse
 from fea_reference.solid.settings import Settings
-from fea_reference.solid.statics import statics
 
 _SAYS = logging.getLogger(__name__)
 
@@ -141,5 +140,4 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float) -> Stat
         forces=forces,
         contacts=answer_sheet.contacts(scene, march, forces, places),
         bodies=answer_sheet.body_motions(scene, march),
-        statics=statics(scene, march),
     )

@@ -10,7 +10,6 @@ from comparisons.audit.crossings import crossing_sentence, crossings
 from comparisons.choices import Choices
 from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Ending, Shape, StationAnswer, read, scene_from
-from cprbm_scene.answer import Statics
 from tests.verdict.made_up import CERTIFICATE
 
 SCENE = Path(__file__).parents[1] / "scenes" / "undeclared-contact.toml"
@@ -59,8 +58,6 @@ def scene_of(beams, contacts=(), thickness=T, **keys):
 
 def answer_of(scene, *drawn, slide=(0.0, 0.0, 0.0)):
     """An answer with these neutral lines ``{name: places}`` at the stations; a beam without places stays at rest."""
-    none = np.zeros(0)
-    statics = Statics((), (), none, none, none, none, {"slide": np.array(slide)}, {})
     stations = []
     for value, lines in zip(scene.stages[0].stations, drawn, strict=False):
         lines = {name: line(beam.curve.start, beam.curve.end) for name, beam in scene.beams.items()} | lines
@@ -68,7 +65,7 @@ def answer_of(scene, *drawn, slide=(0.0, 0.0, 0.0)):
         for name, places in lines.items():
             s = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(places, axis=0).T))))
             shapes[name] = Shape(s, *places.T)
-        stations.append(StationAnswer("push", value, {}, shapes, {}, CERTIFICATE, statics=statics))
+        stations.append(StationAnswer("push", value, {}, shapes, {}, CERTIFICATE, bodies={"slide": np.array(slide)}))
     return Answer("planted", scene.name, {}, Ending.COMPLETED, "", tuple(stations))
 
 

@@ -16,7 +16,6 @@ DOCUMENTED = {
     # docs/api/cprbm_scene.md: the records of the answer sheet, filled by every solver
     "cprbm_scene.answer": (
         "Answer",
-        "Area",
         "BeamState",
         "Certificate",
         "ContactState",
@@ -24,13 +23,11 @@ DOCUMENTED = {
         "Ending",
         "Event",
         "GoneOver",
-        "Inside",
         "Loss",
         "PointForce",
         "PointForces",
         "Shape",
         "StationAnswer",
-        "Statics",
         "frozen_array",
     ),
     # docs/api/cprbm_scene.md: the records of a scene

@@ -80,7 +80,7 @@ def test_totals_sum_to_the_scenes_and_the_json_says_so(whole):
         ("nan", "not finite"),
         ("early", "STEP_TOO_SMALL, Too small."),
         ("refused", "none of these"),
-        ("vague", "cannot be told"),
+        ("vague", "are undecided"),
     ],
 )
 def test_the_sentence_says_what_happened(whole, fate, said):
