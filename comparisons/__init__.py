@@ -2,7 +2,13 @@
 
 Only :mod:`comparisons.pairing` knows the solvers, and only :mod:`comparisons.figures` knows matplotlib.
 
-From Python it is :func:`compare` for a verdict, and :func:`records` and :func:`write_csv` for an answer's numbers::
+From Python it is :func:`open` for a mechanism with all that the program does::
+
+    >>> import comparisons
+    >>> comparisons.open("hinge").scene.name
+    'hinge'
+
+:func:`compare` returns a verdict on a scene, :func:`records` and :func:`write_csv` the numbers of an answer::
 
     >>> import comparisons, cprbm, cprbm_scene
     >>> hinge = cprbm_scene.read("comparisons/cases/hinge.toml")
@@ -21,12 +27,27 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from comparisons.case import Comparison
     from comparisons.choices import Choices
+    from comparisons.mechanism import Comparison, Mechanism
     from comparisons.tidy import Number
     from cprbm_scene import Answer, Scene
 
-__all__ = ["compare", "records", "write_csv"]
+__all__ = ["compare", "open", "records", "write_csv"]
+
+
+def open(case: str | Path) -> Mechanism:  # noqa: A001 - as in gzip.open or Image.open
+    """The mechanism of a scene file, or of a built-in case.
+
+    Args:
+        case: path of a TOML file, or name of a built-in case.
+
+    Raises:
+        SceneError: no case has this name, or the file is no valid scene.
+    """
+    from comparisons.cases import opened
+    from comparisons.mechanism import Mechanism
+
+    return Mechanism(opened(str(case)))
 
 
 def compare(scene: Scene, choices: Choices | None = None) -> Comparison:
@@ -42,11 +63,9 @@ def compare(scene: Scene, choices: Choices | None = None) -> Comparison:
     Raises:
         SceneError: a solver refuses the question.
     """
-    from comparisons.case import compare
-    from comparisons.choices import Choices
-    from comparisons.pairing import paired, solvers_of
+    from comparisons.mechanism import Mechanism
 
-    return compare(scene, paired(scene, choices or Choices(), solvers_of(None)))
+    return Mechanism(scene).compare(choices)
 
 
 def records(scene: Scene, answer: Answer) -> list[Number]:

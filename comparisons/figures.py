@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import cycle, islice
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,7 +26,8 @@ from comparisons.quantities import load_unit, norm
 from comparisons.sheets import last_rows, shown_rows
 from comparisons.stations import station_of
 from comparisons.verdict.rows import Row
-from cprbm_scene import CircleContact, Scene
+from comparisons.writing import write
+from cprbm_scene import Answer, CircleContact, Scene
 from cprbm_scene.statement import FreeEnd
 
 if TYPE_CHECKING:
@@ -53,8 +55,24 @@ class Picture:
 
     name: str
     caption: str
-    svg: bytes
-    png: bytes
+    svg: bytes = field(repr=False)
+    png: bytes = field(repr=False)
+
+    def _repr_svg_(self) -> str:
+        """The figure in a notebook."""
+        return self.svg.decode()
+
+    def save(self, path: Path) -> None:
+        """Write the figure to a file that ends in ``.svg`` or ``.png``.
+
+        Raises:
+            ValueError: the path ends otherwise.
+            OSError: the file cannot be written.
+        """
+        content = {".svg": self.svg, ".png": self.png}.get(path.suffix.lower())
+        if content is None:
+            raise ValueError(f"found the file name {path.name!r}; allowed: a name that ends in .svg or .png")
+        write(path, content)
 
 
 def of_comparison(compared: Comparison) -> tuple[Picture, ...]:
@@ -62,9 +80,9 @@ def of_comparison(compared: Comparison) -> tuple[Picture, ...]:
     if not compared.rows:
         return ()
     stations = [(rows[0].stage, rows[0].station) for rows in shown_rows(compared)]
-    pictures = [_shapes(compared.scene, compared.runs, *stations[-1])]
+    pictures = [shapes(compared.scene, _pair(compared.runs), *stations[-1])]
     if len(stations) > 1:
-        pictures.append(_stations(compared.scene, compared.runs, stations))
+        pictures.append(_stations(compared.scene, _pair(compared.runs), stations))
     stresses = [row for row in last_rows(compared) if row.probe.quantity == "bending_stress"]
     if stresses:
         pictures.append(_stresses(stresses))
@@ -75,12 +93,42 @@ def of_comparison(compared: Comparison) -> tuple[Picture, ...]:
     return tuple(pictures)
 
 
-def _shapes(scene: Scene, runs: Runs, stage: str, value: float) -> Picture:
-    """The mechanism before and after, in the manner of the paper's Fig. 8."""
+def of_answer(scene: Scene, answer: Answer) -> Picture:
+    """Drawing of an answer at its last station.
+
+    Raises:
+        ValueError: the answer has no station.
+    """
+    if not answer.stations:
+        raise ValueError(f"{scene.name}: no drawing, since {answer.solver} reached no station. {answer.sentence}")
+    label = {"cprbm": "CPRBM", "fea": "FEA"}.get(answer.solver, answer.solver)
+    return shapes(scene, {label: answer}, answer.stations[-1].stage, answer.stations[-1].value)
+
+
+def of_designs(designs: Sequence[Comparison]) -> Picture:
+    """Drawing of one comparison, or of the finite elements of several, at the last stations; all have rows."""
+    if len(designs) == 1:
+        return of_comparison(designs[0])[0]
+    return _overlay([(each.scene, each.runs.reference) for each in designs])
+
+
+def _pair(runs: Runs) -> dict[str, Answer]:
+    """The two compared answers by their labels, the finite elements first."""
+    return {f"FEA ({runs.kinematics})": runs.reference, "CPRBM": runs.cprbm[0]}
+
+
+def shapes(scene: Scene, answers: Mapping[str, Answer], stage: str, value: float) -> Picture:
+    """The mechanism before and after, in the manner of the paper's Fig. 8.
+
+    Args:
+        scene: the question.
+        answers: by label, at most one of the CPRBM; bodies and edges are drawn as the first has them.
+        stage, value: the station, which all answers have.
+    """
     with canvas(6.4, 6.0) as figure:
         axes = figure.add_subplot()
         _as_drawn(axes, scene)
-        _mechanism(axes, scene, runs, stage, value)
+        _mechanism(axes, scene, answers, stage, value)
         draw_names(axes, scene)
         axes.set_xlabel("x, mm")
         axes.set_ylabel("y, mm")
@@ -93,7 +141,7 @@ def _shapes(scene: Scene, runs: Runs, stage: str, value: float) -> Picture:
         )
 
 
-def _stations(scene: Scene, runs: Runs, stations: list[tuple[str, float]]) -> Picture:
+def _stations(scene: Scene, answers: Mapping[str, Answer], stations: list[tuple[str, float]]) -> Picture:
     """The mechanism at several stations, in the manner of the paper's Fig. 17."""
     columns = min(2, len(stations))
     lines = -(-len(stations) // columns)
@@ -101,7 +149,7 @@ def _stations(scene: Scene, runs: Runs, stations: list[tuple[str, float]]) -> Pi
     with canvas(3.6 * columns, 0.6 + 3.4 * lines) as figure:
         for place, (name, value) in enumerate(stations):
             axes = figure.add_subplot(lines, columns, place + 1)
-            _mechanism(axes, scene, runs, name, value)
+            _mechanism(axes, scene, answers, name, value)
             factor, unit = along_axis(load_unit(scene, stages[name]), value)
             shown = f"{number(value / factor, 4)}{'' if unit == '°' else ' '}{unit}"
             axes.set_title(f"{name}, {stages[name].steps} = {shown}", loc="left", fontsize=9)
@@ -129,8 +177,25 @@ def _as_drawn(axes: Axes, scene: Scene) -> None:
     draw_bodies(axes, scene, drawn, "--", GREY)
 
 
-def _mechanism(axes: Axes, scene: Scene, runs: Runs, stage: str, value: float) -> None:
-    """Both answers at a station."""
+def _overlay(designs: Sequence[tuple[Scene, Answer]]) -> Picture:
+    """Several designs at the last station of each, in one figure."""
+    with canvas(6.4, 6.0) as figure:
+        axes = figure.add_subplot()
+        for (scene, answer), colour in zip(designs, cycle((RED, BLUE, "#3a8a3a", "#8a4fb0", "#b07a1a")), strict=False):
+            last = answer.stations[-1]
+            draw_bodies(axes, scene, places_at(scene, last), "-", colour)
+            for place, shape in enumerate(last.shapes.values()):
+                label = f"{scene.name}: {last.stage} {last.value:g}" if place == 0 else None
+                axes.plot(1e3 * shape.x, 1e3 * shape.y, "-", color=colour, linewidth=2.0, label=label)
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_xlabel("x, mm")
+        axes.set_ylabel("y, mm")
+        figure.legend(loc="outside lower center", ncols=2)
+        return picture(figure, "designs", "Neutral lines of several designs, each at its last station.")
+
+
+def _mechanism(axes: Axes, scene: Scene, answers: Mapping[str, Answer], stage: str, value: float) -> None:
+    """Answers at a station: dots of the CPRBM, lines of all others."""
     from matplotlib.patches import Circle
 
     for contact in scene.contacts.values():
@@ -141,26 +206,28 @@ def _mechanism(axes: Axes, scene: Scene, runs: Runs, stage: str, value: float) -
             axes.add_artist(
                 Circle((1e3 * x, 1e3 * y), 1e3 * contact.radius, fill=False, edgecolor=GREY, linestyle=style)
             )
-    cprbm, fea = (station_of(answer, stage, value) for answer in (runs.cprbm[0], runs.reference))
-    places = places_at(scene, fea)
+    stations = {label: station_of(answer, stage, value) for label, answer in answers.items()}
+    first = next(iter(stations.values()))
+    places = places_at(scene, first)
     draw_edges(axes, scene, places, GREY)
     draw_bodies(axes, scene, places, "-", "black")
     draw_stops(axes, scene, places)
-    for place, beam_name in enumerate(scene.beams):
-        shape = fea.shapes[beam_name]
-        label = f"FEA ({runs.kinematics})" if place == 0 else None
-        axes.plot(1e3 * shape.x, 1e3 * shape.y, "-", color=RED, linewidth=2.2, label=label)
-        shape = cprbm.shapes[beam_name]
-        label = "CPRBM" if place == 0 else None
-        axes.plot(1e3 * shape.x, 1e3 * shape.y, ".", color=BLUE, markersize=3.5, label=label)
-    for name, station, marker, colour in (("FEA", fea, "x", RED), ("CPRBM", cprbm, "o", BLUE)):
+    for number_of_beam, beam_name in enumerate(scene.beams):
+        for label, station in stations.items():
+            shape = station.shapes[beam_name]
+            marker, colour = (".", BLUE) if label == "CPRBM" else ("-", RED)
+            shown = label if number_of_beam == 0 else None
+            axes.plot(1e3 * shape.x, 1e3 * shape.y, marker, color=colour, markersize=3.5, linewidth=2.2, label=shown)
+    for label, station in stations.items():
+        name = label.partition(" (")[0]
+        marker, colour = ("o", BLUE) if label == "CPRBM" else ("x", RED)
         for place, spots in enumerate(station.touching.values()):
-            label = f"contact, {name}" if place == 0 else None
+            shown = f"contact, {name}" if place == 0 else None
             x, y = 1e3 * spots.T
             # the many places of a zone would hide the beam behind them
             size = 9.0 if len(spots) <= FEW_PLACES else 2.5
-            axes.plot(x, y, marker, color=colour, markersize=size, markerfacecolor="none", linestyle="", label=label)
-    frame(axes, fea)
+            axes.plot(x, y, marker, color=colour, markersize=size, markerfacecolor="none", linestyle="", label=shown)
+    frame(axes, first)
 
 
 def _stresses(rows: list[Row]) -> Picture:

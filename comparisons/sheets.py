@@ -30,9 +30,6 @@ from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Answer, Scene, Stage
 from cprbm_scene.answer import Array
 
-MANY = 40
-"""Most stations of a drive that a table has a line for."""
-
 
 class Subject(Enum):
     """What a table is about; the value is its heading."""

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TypedDict
 
-from comparisons.quantities import COMPONENTS, arc_lengths, unit_of
+from comparisons.case import Comparison
+from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
 from cprbm_scene import Answer, Probe, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES
@@ -24,6 +25,7 @@ class Number(TypedDict):
     solver: str
     stage: str
     station: float
+    station_unit: str
     branch: int
     probe: str
     component: str
@@ -44,6 +46,7 @@ def numbers(scene: Scene, answer: Answer) -> Iterator[Number]:
                     solver=answer.solver,
                     stage=station.stage,
                     station=station.value,
+                    station_unit=load_unit(scene, stages[station.stage]),
                     branch=station.branch,
                     probe=probe.name,
                     component=component,
@@ -64,11 +67,47 @@ def _parts(scene: Scene, probe: Probe, values: Array) -> Iterator[tuple[str, flo
         yield name, None, float(value)
 
 
+def comparison_records(compared: Comparison) -> Iterator[dict[str, object]]:
+    """Every number of a comparison with the values of both solvers beside each other.
+
+    ``difference`` and ``stated`` are norms of the probe, in ``unit``; ``word`` is empty where the row takes no part.
+    """
+    scene = compared.scene
+    units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
+    for row, word in zip(compared.rows, compared.verdict.words, strict=True):
+        cprbm, fea = (
+            {(component, place): value for component, place, value in _parts(scene, row.probe, values)}
+            for values in (row.cprbm, row.fea)
+        )
+        for component, place in cprbm | fea:
+            yield {
+                "scene": scene.name,
+                "stage": row.stage,
+                "station": row.station,
+                "station_unit": units[row.stage],
+                "branch": row.branch,
+                "probe": row.probe.name,
+                "component": component,
+                "arc_length": place,
+                "unit": row.unit,
+                "cprbm": cprbm.get((component, place)),
+                "fea": fea.get((component, place)),
+                "difference": row.difference,
+                "stated": None if row.bounds is None else row.bounds.total,
+                "word": "" if word is None else word.value,
+            }
+
+
 def csv_of(scene: Scene, *answers: Answer) -> str:
     """Answers to one scene as comma-separated values, with a line of headers."""
+    return csv_text(number for answer in answers for number in numbers(scene, answer))
+
+
+def csv_text(rows: Iterable[Mapping[str, object]]) -> str:
+    """Rows as comma-separated values, with a line of headers; the arc length has its unit in the header."""
     text = io.StringIO()
-    table = csv.DictWriter(text, fieldnames=list(Number.__annotations__), lineterminator="\n")
-    table.writeheader()
-    for answer in answers:
-        table.writerows(numbers(scene, answer))
+    lines = list(rows)
+    table = csv.DictWriter(text, fieldnames=list(lines[0]) if lines else [], lineterminator="\n")
+    table.writerow({key: "arc_length (m)" if key == "arc_length" else key for key in table.fieldnames})
+    table.writerows(lines)
     return text.getvalue()

@@ -345,6 +345,10 @@ class Answer:
         """Whether every station was reached and certified."""
         return self.ending is Ending.COMPLETED
 
+    def __repr__(self) -> str:
+        """Scene, solver, ending and number of stations."""
+        return f"<Answer {self.scene} by {self.solver}: {self.ending.name}, {len(self.stations)} stations>"
+
 
 def frozen_array(values: object) -> Array:
     """A read-only float copy of ``values``, at least one-dimensional."""

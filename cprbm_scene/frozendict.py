@@ -22,6 +22,10 @@ class frozendict(dict[K, V]):  # noqa: N801 - as the built-in mappings are calle
 
     __setitem__ = __delitem__ = __ior__ = clear = pop = popitem = setdefault = update = _refuse
 
+    def __missing__(self, key: K) -> NoReturn:
+        """Raise KeyError with the unknown key and all known keys."""
+        raise KeyError(f"found {key!r}; allowed: {', '.join(map(repr, self)) or 'none'}")
+
     def __hash__(self) -> int:  # type: ignore[override]
         """Of the items, in whatever order they stand: equal mappings have equal hashes."""
         return hash(frozenset(self.items()))

@@ -652,6 +652,13 @@ class Scene(Record):
     verdict_limit: Fraction = 0.015
     file: str = ""
 
+    def __repr__(self) -> str:
+        """Name, and numbers of beams, contacts, probes and stations."""
+        stations = sum(len(stage.stations) for stage in self.stages)
+        parts = {"beams": self.beams, "contacts": self.contacts, "probes": self.probes}
+        counts = ", ".join(f"{len(found)} {name}" for name, found in parts.items())
+        return f"<Scene {self.name}: {counts}, {stations} stations>"
+
     def limit(self, probe: Probe) -> float:
         """The largest total uncertainty, a fraction of the probe's scale, with which AGREE may be said of it."""
         return self.verdict_limit if probe.verdict_limit is None else probe.verdict_limit

@@ -12,7 +12,7 @@ import click
 
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
-from comparisons.cli.options import exactness, folder, numerical, one_of_both, opinions, output
+from comparisons.cli.options import exactness, exports, folder, numerical, one_of_both, opinions, output
 from comparisons.listening import heard_from
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
               help="Who answers: 'cprbm,fea', or 'cprbm,fea,solid' for a third opinion.")  # fmt: skip
 @numerical
 @exactness
+@exports
 @output
 @folder("Folder of the report; 'report' for 'compare all', else none unless given.")
 @click.pass_obj
@@ -47,6 +48,8 @@ def command(
     across: int,
     tol: float | None,
     exact: bool | None,  # noqa: FBT001 - click hands it over by name
+    csv_file: Path | None,
+    plot_file: Path | None,
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click hands it over by name
     out: Path | None,
@@ -70,9 +73,9 @@ def command(
             check(choices, scene)
     if out is None and "all" in asked:
         out = Path("report")
-    showing.room_for(json_file, out)
+    for file in (json_file, csv_file, plot_file):
+        showing.room_for(file, out)
     printing = str(json_file) != "-"
-    show = _shown(quiet=quiet) if printing else None
     finished: list[Comparison | OffsetComparison] = []
     chapters: tuple[report.Chapter, ...] = ()
     names = tuple(scene.name for scene in scenes)
@@ -90,10 +93,11 @@ def command(
                 if json_file is not None and printing:
                     showing.json(json_file, {"cases": [_document(one) for one in finished]})
             steps.clear()
-            if show is not None:
-                show(comparison, scenes[len(finished) - 1])
+            if printing:
+                _show(comparison, scenes[len(finished) - 1], quiet=quiet, full=heard_from() != NOTSET)
     if json_file is not None and not printing:
         showing.json(json_file, {"cases": [_document(one) for one in finished]})
+    _export(finished, csv_file, plot_file)
     if printing and not quiet:
         if len(finished) > 1:
             showing.tables([summary(finished)], WIDTH)
@@ -131,31 +135,42 @@ def _compared(
             yield replace(compare(scene, runs), tolerances=found)
 
 
-def _shown(*, quiet: bool) -> Callable[[Comparison | OffsetComparison, Question], None]:
-    """Function that prints a case: briefly, with ``-v`` by all tables, with ``-q`` by the verdict alone."""
+def _export(finished: Sequence[Comparison | OffsetComparison], csv_file: Path | None, plot_file: Path | None) -> None:
+    """Write the table and the drawing of all comparisons; standard error says that there is nothing to draw."""
+    from comparisons.figures import of_designs
+    from comparisons.offset_verdict import OffsetComparison
+    from comparisons.tidy import comparison_records, csv_text
+    from comparisons.writing import write
+
+    compared = [each for each in finished if not isinstance(each, OffsetComparison)]
+    if csv_file is not None:
+        write(csv_file, csv_text(record for each in compared for record in comparison_records(each)))
+    if plot_file is not None and compared and all(each.rows for each in compared):
+        of_designs(compared).save(plot_file)
+    elif plot_file is not None:
+        click.echo(f"cprbm: {plot_file} is not drawn: a case has no station that both solvers reach.", err=True)
+
+
+def _show(comparison: Comparison | OffsetComparison, question: Question, *, quiet: bool, full: bool) -> None:
+    """Print a case: briefly, in full by all tables, or quietly by the verdict alone."""
     from comparisons import cases, offset_pages, sheets
     from comparisons.brief import brief, headline
     from comparisons.cli import showing
     from comparisons.offset_verdict import OffsetComparison
 
-    full = heard_from() != NOTSET
-
-    def show(comparison: Comparison | OffsetComparison, question: Question) -> None:
-        if not quiet and not full:
-            click.echo(brief(comparison, cases.argument(question)) + "\n")
-            return
-        if not quiet and isinstance(comparison, OffsetComparison):
-            showing.tables(offset_pages.sheets_of(comparison))
-        elif not quiet and not isinstance(comparison, OffsetComparison):
-            showing.tables(sheets.of_comparison(comparison))
-            for sentence in sheets.explanation(comparison):
-                click.echo(sentence + "\n")
-        verdict = comparison.verdict
-        click.echo(headline(question.name, verdict, verdict.sentence))
-        for tolerance in _beyond(comparison):
-            click.echo(f"{question.name}: {tolerance.sentence}")
-
-    return show
+    if not quiet and not full:
+        click.echo(brief(comparison, cases.argument(question)) + "\n")
+        return
+    if not quiet and isinstance(comparison, OffsetComparison):
+        showing.tables(offset_pages.sheets_of(comparison))
+    elif not quiet and not isinstance(comparison, OffsetComparison):
+        showing.tables(sheets.of_comparison(comparison))
+        for sentence in sheets.explanation(comparison):
+            click.echo(sentence + "\n")
+    verdict = comparison.verdict
+    click.echo(headline(question.name, verdict, verdict.sentence))
+    for tolerance in _beyond(comparison):
+        click.echo(f"{question.name}: {tolerance.sentence}")
 
 
 def exit_code(finished: Sequence[Comparison | OffsetComparison]) -> int:

@@ -207,6 +207,21 @@ def output(command: Decorated) -> Decorated:
     )(command)  # fmt: skip
 
 
+def _drawing(ctx: click.Context, param: click.Parameter, value: Path | None) -> Path | None:
+    if value is not None and value.suffix.lower() not in (".svg", ".png"):
+        raise click.BadParameter(f"found {value.name!r}; allowed: a name that ends in .svg or .png")
+    return value
+
+
+def exports(command: Decorated) -> Decorated:
+    """``--csv`` and ``--plot``."""
+    file = click.Path(dir_okay=False, path_type=Path)
+    command = click.option("--plot", "plot_file", type=file, metavar="FILE", callback=_drawing,
+                           help="Draw the mechanism at the last station, as .svg or .png.")(command)  # fmt: skip
+    return click.option("--csv", "csv_file", type=file, metavar="FILE",
+                        help="Write a table with a row per station, probe and component.")(command)  # fmt: skip
+
+
 def folder(text: str) -> Callable[[Decorated], Decorated]:
     """``--out``, with the help ``text`` of what is put there."""
     return click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help=text)

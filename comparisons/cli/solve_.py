@@ -11,13 +11,14 @@ import click
 from comparisons.choices import Kinematics
 from comparisons.cli.answering import SOLVERS, SolverName, answered, told
 from comparisons.cli.completing import offered
-from comparisons.cli.options import numerical, one_of_both, output
+from comparisons.cli.options import exports, numerical, one_of_both, output
 
 
 @click.command("solve")
 @click.argument("case", metavar="CASE|FILE.toml", shell_complete=offered)
 @click.option("--solver", type=click.Choice(SOLVERS), default="cprbm", show_default=True)
 @numerical
+@exports
 @output
 @click.pass_obj
 def command(
@@ -31,6 +32,8 @@ def command(
     penetration: float,
     across: int,
     tol: float | None,
+    csv_file: Path | None,
+    plot_file: Path | None,
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click hands it over by name
 ) -> int:
@@ -43,15 +46,25 @@ def command(
     scene = cases.opened(case)
     choices = Choices(links, formulation, elements, kinematics, penetration, across)
     check(choices, scene)
-    showing.room_for(json_file)
+    for file in (json_file, csv_file, plot_file):
+        showing.room_for(file)
     answer, found = answered(planted, scene, solver, choices, tol, shown=not quiet)
     from comparisons.audit import audit
+    from comparisons.writing import write
 
     checked = audit(scene, answer)
     if json_file is not None:
         from comparisons import documents
 
         showing.json(json_file, {"cases": [documents.solution(scene, answer, found, checked)]})
+    if csv_file is not None:
+        from comparisons.tidy import csv_of
+
+        write(csv_file, csv_of(scene, answer))
+    if plot_file is not None and answer.stations:
+        from comparisons.figures import of_answer
+
+        of_answer(scene, answer).save(plot_file)
     if not quiet and str(json_file) != "-":
         from comparisons import sheets
 

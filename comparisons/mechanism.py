@@ -1,0 +1,168 @@
+"""Mechanisms and comparisons from Python: tables, files and drawings in one call."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any, Literal
+
+from comparisons import case, figures
+from comparisons.brief import headline, last_rows_of_stages, nearest_rows
+from comparisons.choices import Choices
+from comparisons.figures import Picture
+from comparisons.pairing import cprbm_answer, exact_answer, fea_answer, paired, solid_answer, solvers_of
+from comparisons.rendering import embedded, rendered
+from comparisons.sheet import Sheet
+from comparisons.sheets import of_answer
+from comparisons.tidy import comparison_records, csv_of, csv_text, numbers
+from comparisons.writing import write
+from cprbm_scene import Answer, Scene
+from cprbm_scene.frozendict import frozendict
+
+SolverName = Literal["cprbm", "fea", "exact", "solid"]
+
+_SOLVERS = {"cprbm": cprbm_answer, "fea": fea_answer, "exact": exact_answer, "solid": solid_answer}
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Comparison(case.Comparison):
+    """Comparison with tables, files and drawings."""
+
+    def __repr__(self) -> str:
+        """Name, verdict and number of rows."""
+        return f"<Comparison {headline(self.scene.name, self.verdict, f'{len(self.rows)} rows')}>"
+
+    def plot(self, path: str | Path | None = None) -> Picture:
+        """Drawing of both answers at the last common station.
+
+        Args:
+            path: file for the drawing, with the ending ``.svg`` or ``.png``; no file if None.
+
+        Raises:
+            ValueError: the path ends otherwise, or the answers have no common station.
+            OSError: the file cannot be written.
+        """
+        if not self.rows:
+            raise ValueError(f"{self.scene.name}: no drawing, since the answers have no common station")
+        return _saved(figures.of_comparison(self)[0], path)
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write a file with a row per station, probe and component, and the values of both solvers.
+
+        Raises:
+            OSError: the file cannot be written.
+        """
+        write(Path(path), csv_text(comparison_records(self)))
+
+    def to_pandas(self) -> Any:  # noqa: ANN401 - pandas is no dependency
+        """The rows of :meth:`to_csv` as a ``pandas.DataFrame``.
+
+        Raises:
+            ImportError: pandas is not installed.
+        """
+        return _data_frame(comparison_records(self))
+
+    def _repr_html_(self) -> str:
+        """Verdict, table of the last station of each stage, and drawing, for a notebook."""
+        rows = last_rows_of_stages(self)
+        sentence = headline(self.scene.name, self.verdict, self.verdict.sentence)
+        return _html(sentence, (nearest_rows(self, rows, len(rows)),), figures.of_comparison(self)[:1])
+
+
+@dataclass(frozen=True, slots=True)
+class Mechanism:
+    """A scene with its solvers.
+
+    Attributes:
+        scene: the question.
+    """
+
+    scene: Scene
+
+    def solve(self, solver: SolverName = "cprbm", choices: Choices | None = None) -> Answer:
+        """Answer of one solver.
+
+        Args:
+            solver: ``cprbm``, ``fea``, ``exact`` or ``solid``.
+            choices: links, elements and variants; the standard ones if None.
+
+        Raises:
+            SceneError: the solver refuses the scene.
+            ValueError: no solver has this name.
+        """
+        if solver not in _SOLVERS:
+            raise ValueError(f"found the solver {solver!r}; allowed: {', '.join(_SOLVERS)}")
+        answer = _SOLVERS[solver](self.scene, choices or Choices())
+        # an unknown key of a frozendict is refused with the known keys
+        named = (replace(station, values=frozendict(station.values)) for station in answer.stations)
+        return replace(answer, stations=tuple(named))
+
+    def compare(self, choices: Choices | None = None) -> Comparison:
+        """Answers of both solvers and the verdict.
+
+        Raises:
+            SceneError: a solver refuses the scene.
+        """
+        found = case.compare(self.scene, paired(self.scene, choices or Choices(), solvers_of(None)))
+        return Comparison(**{each.name: getattr(found, each.name) for each in fields(found)})
+
+    def plot(
+        self, path: str | Path | None = None, solver: SolverName = "cprbm", choices: Choices | None = None
+    ) -> Picture:
+        """Drawing of an answer at its last station.
+
+        Args:
+            path: file for the drawing, with the ending ``.svg`` or ``.png``; no file if None.
+            solver, choices: as :meth:`solve`.
+
+        Raises:
+            SceneError: the solver refuses the scene.
+            ValueError: the path ends otherwise, or the answer has no station.
+            OSError: the file cannot be written.
+        """
+        return _saved(figures.of_answer(self.scene, self.solve(solver, choices)), path)
+
+    def to_csv(self, path: str | Path, solver: SolverName = "cprbm", choices: Choices | None = None) -> None:
+        """Write a file with a row per station, probe and component of an answer.
+
+        Raises:
+            SceneError: the solver refuses the scene.
+            OSError: the file cannot be written.
+        """
+        write(Path(path), csv_of(self.scene, self.solve(solver, choices)))
+
+    def to_pandas(self, solver: SolverName = "cprbm", choices: Choices | None = None) -> Any:  # noqa: ANN401
+        """The rows of :meth:`to_csv` as a ``pandas.DataFrame``.
+
+        Raises:
+            SceneError: the solver refuses the scene.
+            ImportError: pandas is not installed.
+        """
+        return _data_frame(numbers(self.scene, self.solve(solver, choices)))
+
+    def _repr_html_(self) -> str:
+        """Tables and drawing of the CPRBM's answer, for a notebook."""
+        answer = self.solve()
+        drawing = (figures.of_answer(self.scene, answer),) if answer.stations else ()
+        return _html(f"{answer.ending.name}. {answer.sentence}", of_answer(self.scene, answer), drawing)
+
+
+def _saved(drawing: Picture, path: str | Path | None) -> Picture:
+    if path is not None:
+        drawing.save(Path(path))
+    return drawing
+
+
+def _data_frame(rows: Iterable[Mapping[str, object]]) -> Any:  # noqa: ANN401
+    try:
+        pandas = importlib.import_module("pandas")
+    except ImportError:
+        raise ImportError("to_pandas needs pandas; `python -m pip install pandas` installs it", name="pandas") from None
+    return pandas.DataFrame(list(rows))
+
+
+def _html(sentence: str, sheets: Iterable[Sheet], pictures: Iterable[Picture]) -> str:
+    drawings = [embedded(each) for each in pictures]
+    return rendered("notebook.html", {"sentence": sentence, "sheets": sheets, "pictures": drawings})
