@@ -1,6 +1,6 @@
 """Are the stated uncertainties true?  Beside elasticas whose truth is known from outside.
 
-The project's own rule is :mod:`comparisons.calibration`'s: the true error lies within the stated one in at least 95 %
+The project's own rule is :mod:`comparisons.verdict.calibration`'s: the true error lies within the stated one in at least 95 %
 of the rows, and the stated one is not more than ten times the true one in the median. The truth is that of
 tests.references, which import no solver and nothing of the exact answers in the house. Only the bending theory has it,
 so the finite elements are run in that theory.
