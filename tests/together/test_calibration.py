@@ -1,9 +1,9 @@
 """Are the stated uncertainties true?  Beside elasticas whose truth is known from outside.
 
-The project's own rule is :mod:`comparisons.calibration`'s: the true error lies within the stated one in at least 95 %
-of the rows, and the stated one is not more than ten times the true one in the median. The truth is that of
-tests.references, which import no solver and nothing of the exact answers in the house. Only the bending theory has it,
-so the finite elements are run in that theory.
+The project's own rule stands in :mod:`comparisons.verdict.calibration`: the true error lies within the stated error in
+at least 95 % of the rows, and the stated error is at most ten times the true error in the median.  A statement counts
+once, with the largest error of its rows.  The truth is from tests.references, which import no solver and nothing of the
+exact answers in the house.  Only the bending theory has it, so the finite elements are run in that theory.
 """
 
 from __future__ import annotations
