@@ -23,6 +23,7 @@ From Python it is :func:`open` for a mechanism with all that the program does::
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,11 +36,17 @@ if TYPE_CHECKING:
 __all__ = ["compare", "open", "records", "write_csv"]
 
 
-def open(case: str | Path) -> Mechanism:  # noqa: A001 - as in gzip.open or Image.open
+def open(  # noqa: A001 - as in gzip.open or Image.open
+    case: str | Path, parameters: Mapping[str, float | str] | None = None
+) -> Mechanism:
     """The mechanism of a scene file, or of a built-in case.
 
     Args:
         case: path of a TOML file, or name of a built-in case.
+        parameters: values of the scene's parameters by name, numbers in SI units or texts such as ``1.9mm``.
+
+    Returns:
+        The mechanism.
 
     Raises:
         SceneError: no case has this name, or the file is no valid scene.
@@ -47,7 +54,7 @@ def open(case: str | Path) -> Mechanism:  # noqa: A001 - as in gzip.open or Imag
     from comparisons.cases import opened
     from comparisons.mechanism import Mechanism
 
-    return Mechanism(opened(str(case)))
+    return Mechanism(opened(str(case), parameters))
 
 
 def compare(scene: Scene, choices: Choices | None = None) -> Comparison:

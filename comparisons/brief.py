@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import shlex
 import textwrap
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -44,7 +43,7 @@ def brief(compared: Comparison | OffsetComparison, argument: str) -> str:
 
     Args:
         compared: the case.
-        argument: name or path of the case on the command line.
+        argument: name or path of the case with its parameters, as the shell takes them.
     """
     name, verdict = name_of(compared), compared.verdict
     first = _wrapped(headline(name, verdict, verdict.because))
@@ -182,9 +181,8 @@ def _found_sizes(compared: Comparison) -> Iterator[str]:
 
 def _next_step(argument: str, verdict: Verdict) -> tuple[str, ...]:
     """The next command in a line, where the first sentence has a command or the case agrees."""
-    case = shlex.quote(argument)
     hint = _COMMAND.search(verdict.because)
     if hint is not None:
         command, options = ("compare", hint[1]) if hint[1].startswith("-") else hint[1].split(" ", 1)
-        return (f"next: cprbm {command} {case} {options}",)
-    return (f"next: cprbm compare {case} --out DIR",) if verdict.word is Word.AGREE else ()
+        return (f"next: cprbm {command} {argument} {options}",)
+    return (f"next: cprbm compare {argument} --out DIR",) if verdict.word is Word.AGREE else ()

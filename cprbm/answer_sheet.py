@@ -62,19 +62,20 @@ def point_forces(scene: Scene, mechanism: Mechanism, point: Point) -> PointForce
     """All forces but the loads; none in the formulation ``paper``."""
     if mechanism.boundaries:
         return PointForces()
-    rows = [*_at_ends(scene, mechanism, point), *_on_bodies(scene, mechanism, point), *_at_contacts(mechanism, point)]
-    return PointForces.collected(rows, mechanism.problem.model.unit_length, mechanism.problem.model.unit_force)
+    return PointForces.collected(
+        [*_at_ends(scene, mechanism, point), *_on_bodies(scene, mechanism, point), *_at_contacts(mechanism, point)],
+        mechanism.problem.model.unit_length,
+        mechanism.problem.model.unit_force,
+    )
 
 
 def contacts(
     scene: Scene, mechanism: Mechanism, forces: PointForces, touching: Mapping[str, Array]
 ) -> Mapping[str, ContactState]:
     """States of all contacts; in the formulation ``paper`` a contact is active where a joint touches its boundary."""
-    if mechanism.boundaries:
-        nowhere = frozen_array(np.zeros((0, 2)))
-        return {name: ContactState(name in touching, touching.get(name, nowhere)) for name in scene.contacts}
-    model = mechanism.problem.model
-    return contact_states(scene.contacts, forces, touching, (model.unit_length, model.unit_force))
+    return contact_states(
+        scene.contacts, forces, touching, (mechanism.problem.model.unit_length, mechanism.problem.model.unit_force)
+    )
 
 
 def body_motions(scene: Scene, mechanism: Mechanism, point: Point) -> dict[str, Array]:
@@ -89,9 +90,8 @@ def body_motions(scene: Scene, mechanism: Mechanism, point: Point) -> dict[str, 
 
 def _at_ends(scene: Scene, mechanism: Mechanism, point: Point) -> Iterator[PointForce]:
     """Forces of joints on the beams' ends and on the joined bodies."""
-    problem = mechanism.problem
-    model, closure = problem.model, problem.closure
-    contact = contact_forces(problem, point)
+    model, closure = mechanism.problem.model, mechanism.problem.closure
+    contact = contact_forces(mechanism.problem, point)
     fx, fy = closure_forces(model, closure, point.mu)
     forces = np.array((fx - contact.fx - point.work.fx, fy - contact.fy - point.work.fy))
     starts = np.add.reduceat(forces, model.layout.roots, axis=1).T
@@ -99,11 +99,10 @@ def _at_ends(scene: Scene, mechanism: Mechanism, point: Point) -> Iterator[Point
     for chain, start in zip(model.chains, starts, strict=False):
         beam, last = scene.beams[chain.name], chain.joints.stop - 1
         if not isinstance(beam.start, FreeEnd):
-            link = chain.first_link
-            moment = welds.get((link, chain.start.body), 0.0)
+            moment = welds.get((chain.first_link, chain.start.body), 0.0)
             if chain.start.welded and chain.start.body < 0:
                 # a fixed link is no unknown: the residual of the whole at its angle is the ground's moment
-                moment = float(point.unbalanced[link])
+                moment = float(point.unbalanced[chain.first_link])
             yield from _at_end(mechanism, point, chain, (beam.start.point, chain.start, 0.0), start, moment)
         if chain.end is not None and not isinstance(beam.end, FreeEnd):
             moment = welds.get((chain.first_link + chain.n, chain.end.body), 0.0) if chain.end.welded else 0.0
@@ -125,8 +124,7 @@ def _at_end(
 
 def _on_bodies(scene: Scene, mechanism: Mechanism, point: Point) -> Iterator[PointForce]:
     """Forces of slides, pivots, drives and pins on bodies."""
-    problem = mechanism.problem
-    model, closure = problem.model, problem.closure
+    model, closure = mechanism.problem.model, mechanism.problem.closure
     holds = held(model, closure.holds, point.state, point.mu[closure.first_hold :])
     for hold, support in zip(closure.holds, holds, strict=True):
         body = model.free_bodies[hold.at.body]
@@ -170,10 +168,9 @@ def _moments(group: Group, chain: Chain, point: Point, rows: Ints, at: Array) ->
     """
     if group.itself:
         return np.zeros(len(rows))
-    joints, p = group.joints[rows], group.joints.shape[1]
-    slopes = group.slopes[rows]
+    joints, angles, slopes, p = group.joints[rows], group.angles[rows], group.slopes[rows], group.joints.shape[1]
     on_chain = (joints >= chain.joints.start) & (joints < chain.joints.stop)
-    links = (group.angles[rows] >= chain.links.start) & (group.angles[rows] < chain.links.stop)
+    links = (angles >= chain.links.start) & (angles < chain.links.stop)
     x, y = point.at.x[joints] - at[:, :1], point.at.y[joints] - at[:, 1:]
     moments = on_chain * (x * slopes[:, p : 2 * p] - y * slopes[:, :p])
     return np.asarray(moments.sum(axis=1) + (links * slopes[:, 2 * p :]).sum(axis=1))

@@ -25,12 +25,17 @@ def contact_states(
 ) -> Mapping[str, ContactState]:
     """States of the contacts ``names`` by their forces; ``natural`` are the scene's length (m) and force (N).
 
-    A moment counts as a force at the natural length.
+    A moment counts as a force at the natural length.  Without any forces a contact that touches is active.
     """
     size = np.hypot(forces.force[:, 0], forces.force[:, 1]) + np.abs(forces.moment) / natural[0]
     floor = max(ACTIVE * float(np.max(size, initial=0.0)), UNLOADED * natural[1])
     source, nowhere = np.array(forces.source, dtype=str), frozen_array(np.zeros((0, 2)))
-    return {name: ContactState(bool(size[source == name].sum() > floor), touching.get(name, nowhere)) for name in names}
+    return {
+        name: ContactState(
+            bool(size[source == name].sum() > floor) if len(size) else name in touching, touching.get(name, nowhere)
+        )
+        for name in names
+    }
 
 
 def openings(scene: Scene, stations: Sequence[StationAnswer]) -> tuple[Event, ...]:

@@ -31,7 +31,7 @@ POLYGON = 0.15
 """Distance of a chain's joints, where moments balance, from the smooth line, over h² M/(E·I): 1/8 on a circle."""
 
 AT_END = 0.01
-"""Error of a moment that is continued to an end of the beam, over the beam's largest moment."""
+"""Error of a moment that is continued to an end of the beam, over the beam's largest moment, besides (2 h/L)²."""
 
 
 def sums(state: StationState) -> Iterator[str]:
@@ -78,7 +78,7 @@ def cut_errors(state: StationState, name: str) -> tuple[tuple[Array, Array], tup
     h, EI, (force, moment), near = beam.size(s), beam.stiffness(s)[0], floors(state, name), nearby(state, name, s)
     rounding = ROUND_OFF * EI / small * (1.0 + (np.abs(beam.places).max() + beam.length) / small)
     allowed = moment + rounding + LEVER * h * near[0] + near[1] + POLYGON * h**2 * np.abs(beam.state.M * F) / EI
-    allowed[[0, -1]] += AT_END * np.abs(beam.state.M).max()
+    allowed[[0, -1]] += (AT_END + (2.0 * h / beam.length)[[0, -1]] ** 2) * np.abs(beam.state.M).max()
     at_cut = nearby(state, name, s, 1e3 * BESIDE * beam.length / h)[0]
     off = np.abs(stated * np.exp(1j * beam.state.angle) - F)
     return (off, force + at_cut + rounding / small), (np.abs(beam.state.M - M), allowed)

@@ -152,7 +152,7 @@ def _to_rigid(state: StationState, contact: RigidContact, x: Complex) -> tuple[A
     edge = _edge(contact, BEHIND * state.longest)
     at, beside = _along(edge, x), 1e-9 * edge.length
     feet = (shapely.line_interpolate_point(edge, at + shift) for shift in (-beside, 0.0, beside))
-    before, foot, after = (shapely.get_coordinates(places) @ (1.0, 1j) for places in feet)
+    before, foot, after = (np.asarray(shapely.get_coordinates(places) @ (1.0, 1j)) for places in feet)
     behind = ((np.conj(after - before) * (x - foot)).imag < 0.0) & (at > 0.0) & (at < edge.length)
     sign = np.where(behind, -1.0, 1.0)
     return sign * np.abs(x - foot), turn * sign * (x - foot) / np.maximum(np.abs(x - foot), TINY)
@@ -162,9 +162,9 @@ def _to_rigid(state: StationState, contact: RigidContact, x: Complex) -> tuple[A
 def _edge(contact: LineContact | FunctionContact, depth: float) -> shapely.LineString:
     """A rigid edge at rest with the free side on the left, and both sides that go straight back from an open edge."""
     if isinstance(contact, LineContact):
-        line, left = np.array(contact.points) @ (1.0, 1j), contact.side == "left"
+        line, left = np.asarray(np.array(contact.points) @ (1.0, 1j)), contact.side == "left"
     else:
-        line = points(contact.curve, np.linspace(0.0, length(contact.curve), GRAPH)) @ (1.0, 1j)
+        line = np.asarray(points(contact.curve, np.linspace(0.0, length(contact.curve), GRAPH)) @ (1.0, 1j))
         left = ((contact.side == "above") == (contact.axis == "x")) == (contact.range[1] > contact.range[0])
     line = line if left else line[::-1]
     ends = line[0] - line[1], line[-1] - line[-2]

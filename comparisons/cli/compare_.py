@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from logging import NOTSET
@@ -12,7 +13,17 @@ import click
 
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
-from comparisons.cli.options import exactness, exports, folder, numerical, one_of_both, opinions, output
+from comparisons.cli.options import (
+    exactness,
+    exports,
+    folder,
+    numerical,
+    one_of_both,
+    opinions,
+    output,
+    parameters,
+    settings,
+)
 from comparisons.listening import heard_from
 
 if TYPE_CHECKING:
@@ -28,6 +39,7 @@ if TYPE_CHECKING:
 
 @click.command("compare")
 @click.argument("asked", nargs=-1, required=True, metavar="CASE|FILE.toml...|all", shell_complete=offered)
+@parameters
 @click.option("--solver", "asking_solid", callback=opinions, default="cprbm,fea", show_default=True, metavar="SOLVERS",
               help="Who answers: 'cprbm,fea', or 'cprbm,fea,solid' for a third opinion.")  # fmt: skip
 @numerical
@@ -159,7 +171,8 @@ def _show(comparison: Comparison | OffsetComparison, question: Question, *, quie
     from comparisons.offset_verdict import OffsetComparison
 
     if not quiet and not full:
-        click.echo(brief(comparison, cases.argument(question)) + "\n")
+        values = [text for name, value in settings().items() for text in ("--set", f"{name}={value}")]
+        click.echo(brief(comparison, shlex.join([cases.argument(question), *values])) + "\n")
         return
     if not quiet and isinstance(comparison, OffsetComparison):
         showing.tables(offset_pages.sheets_of(comparison))

@@ -191,11 +191,11 @@ def test_every_mistake_of_a_scene_is_told_in_a_line_of_its_own(right, capsys, tm
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("thickness = 0.002", "thicknes = 0.002", "beams.beam1.thicknes"),
-        ("thickness = 0.002", "thickness = -0.002", "beams.beam1.thickness"),
+        ('thickness = "= t"', "thicknes = 0.002", "beams.beam1.thicknes"),
+        ('thickness = "= t"', "thickness = -0.002", "beams.beam1.thickness"),
         ("youngs_modulus = 2.3e9", "youngs_modulus = nan", "materials.abs.youngs_modulus"),
         ('end = { joint = "weld", point = "B" }', 'end = { joint = "weld", point = "D" }', "beams.beam1.end"),
-        ("0.02625], direction", "0.02675], direction", "beams.beam1"),
+        ('(t + gap)/2"], direction', '(t + gap)/2 + 0.0005"], direction', "beams.beam1"),
         ("[bodies.AC]", "[bodies.AC", "TOML"),
         ('body = "BD"', 'body = "AC"', "loads.M.body"),
         ('between = ["beam1", "beam2"]', 'between = ["beam1", "beam3"]', "contacts.contact.between"),
@@ -247,7 +247,7 @@ def test_every_kind_of_wrong_scene_has_a_line_for_each_mistake_and_2(right, caps
 def test_beams_that_overlap_at_the_start_are_a_paragraph_and_2(right, capsys, tmp_path):
     """The gap between the edges is 0.5 mm: edges 0.6 mm further out on either side leave no gap but an overlap."""
     file = tmp_path / "wrong.toml"
-    file.write_text(HINGE.read_text("utf-8").replace("thickness = 0.002", "thickness = 0.0032"), "utf-8")
+    file.write_text(HINGE.read_text("utf-8").replace('thickness = "= t"', "thickness = 0.0032"), "utf-8")
     assert run(["compare", str(file)], right) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1
@@ -436,7 +436,7 @@ WRONG_ASSEMBLIES = {
     "too short": (PRESTRESSED.replace("0.06]", "0.05]", 1), "a beam too short to reach 'B'"),
     "no stations": (re.sub(r"stations = \[.*?\]", "stations = []", PRESTRESSED, flags=re.DOTALL), "stages[0].stations"),
     "a stop in the way as drawn": (
-        PRESTRESSED.replace("[-0.0005, 0.06]", "[-0.02, 0.05]")
+        PRESTRESSED.replace('["= -t/2", 0.06]', "[-0.02, 0.05]")
         .replace("beam1 = 4.0, ", "")
         .replace("most = 0.785398163397448", "most = -1.3", 1)
         .replace("least = -0.785398163397448", "least = -1.4", 1),

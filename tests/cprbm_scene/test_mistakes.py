@@ -2,10 +2,11 @@
 
 import pytest
 
-from tests.cprbm_scene.editing import REMOVED, edited, mistakes, two_lines
+from tests.cprbm_scene.editing import HINGE, REMOVED, edited, mistakes, two_lines
 
 INF, NAN = float("inf"), float("nan")
 BEAM = "beams/beam1"
+START = HINGE["beams"]["beam1"]["curve"]["start"]
 HUGE = 1 << 40_000
 
 RECORDS = [
@@ -63,8 +64,8 @@ TIES = [
     ("bodies/BD/points/scene", [0.0, 0.0], "bodies.BD.points.scene", "the scene itself"),
     (f"{BEAM}/thickness", 0.0199, "beams.beam1.thickness", "0.253 of the beam's length"),
     (f"{BEAM}/thickness", 1e-7, "beams.beam1.thickness", "of the beam's length"),
-    (f"{BEAM}/curve/end", [0.001, 0.02625], "beams.beam1.curve", "same place"),
-    (f"{BEAM}/curve/center", [0.001, 0.02625], "beams.beam1.curve", "own center"),
+    (f"{BEAM}/curve/end", START, "beams.beam1.curve", "same place"),
+    (f"{BEAM}/curve/center", START, "beams.beam1.curve", "own center"),
     (f"{BEAM}/curve/center", [0.0261, 0.02625], "beams.beam1.curve", "no common circle"),
     (
         "bodies/BD/points/B",
@@ -133,6 +134,11 @@ TIES = [
 ]
 
 
+RECORDS += [
+    ("title", "a\u0007b", "title", "control characters"),
+    ("source", "a\u0000", "source", "control characters"),
+    ("bodies/a\u001bb", {"motion": "fixed", "points": {"Z": [0, 0]}}, "bodies.a\u001bb", "letters"),
+]
 ALL = RECORDS + TIES
 ONE = [row for row in RECORDS if row[0] != "beams/my beam"]  # an empty beam misses its keys too
 
@@ -146,6 +152,11 @@ def test_a_mistake_is_named_by_its_key(path, value, key, words):
 @pytest.mark.parametrize(("path", "value", "key", "words"), ONE, ids=[row[2] for row in ONE])
 def test_a_mistake_in_one_record_is_the_only_one(path, value, key, words):
     assert list(mistakes((path, value))) == [key]
+
+
+def test_names_have_latin_and_greek_letters():
+    body = {"motion": "fixed", "points": {"Füße": [0.0, 0.2], "φ_1": [0.1, 0.2]}}
+    assert mistakes(("bodies/Träger", body)) == {}
 
 
 def test_several_mistakes_are_reported_at_once():
