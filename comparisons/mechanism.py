@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -157,7 +156,7 @@ def _saved(drawing: Picture, path: str | Path | None) -> Picture:
 
 def _data_frame(rows: Iterable[Mapping[str, object]]) -> Any:  # noqa: ANN401
     try:
-        pandas = importlib.import_module("pandas")
+        import pandas
     except ImportError:
         raise ImportError("to_pandas needs pandas; `python -m pip install pandas` installs it", name="pandas") from None
     return pandas.DataFrame(list(rows))

@@ -25,13 +25,13 @@ class Number(TypedDict):
     solver: str
     stage: str
     station: float
-    station_unit: str
     branch: int
     probe: str
     component: str
     arc_length: float | None
     unit: str
     value: float
+    station_unit: str
 
 
 def numbers(scene: Scene, answer: Answer) -> Iterator[Number]:
@@ -46,13 +46,13 @@ def numbers(scene: Scene, answer: Answer) -> Iterator[Number]:
                     solver=answer.solver,
                     stage=station.stage,
                     station=station.value,
-                    station_unit=load_unit(scene, stages[station.stage]),
                     branch=station.branch,
                     probe=probe.name,
                     component=component,
                     arc_length=arc_length,
                     unit=unit_of(scene, probe, stages[station.stage]),
                     value=value,
+                    station_unit=load_unit(scene, stages[station.stage]),
                 )
 
 
@@ -88,7 +88,7 @@ def comparison_records(compared: Comparison) -> Iterator[dict[str, object]]:
                 "branch": row.branch,
                 "probe": row.probe.name,
                 "component": component,
-                "arc_length": place,
+                "arc_length (m)": place,
                 "unit": row.unit,
                 "cprbm": cprbm.get((component, place)),
                 "fea": fea.get((component, place)),
@@ -104,10 +104,10 @@ def csv_of(scene: Scene, *answers: Answer) -> str:
 
 
 def csv_text(rows: Iterable[Mapping[str, object]]) -> str:
-    """Rows as comma-separated values, with a line of headers; the arc length has its unit in the header."""
+    """Rows as comma-separated values, with a line of headers."""
     text = io.StringIO()
     lines = list(rows)
     table = csv.DictWriter(text, fieldnames=list(lines[0]) if lines else [], lineterminator="\n")
-    table.writerow({key: "arc_length (m)" if key == "arc_length" else key for key in table.fieldnames})
+    table.writeheader()
     table.writerows(lines)
     return text.getvalue()

@@ -79,8 +79,11 @@ def test_pandas_is_asked_when_it_is_needed(compared, monkeypatch):
 
 
 def test_a_notebook_shows_table_and_drawing(tapered, compared, tmp_path):
-    for shown in (compared._repr_html_(), tapered._repr_html_()):
-        assert "beam.<wbr>bending_<wbr>stress" in shown
+    for shown, probe in (
+        (compared._repr_html_(), "beam.<wbr>bending_<wbr>stress"),
+        (tapered._repr_html_(), "beam.bending_stress max, MPa"),
+    ):
+        assert probe in shown
         assert "data:image/svg+xml;base64," in shown
     drawing = compared.plot(tmp_path / "both.svg")
     assert (tmp_path / "both.svg").read_bytes() == drawing.svg

@@ -47,7 +47,7 @@ def test_the_file_reads_back_to_the_table(wrapped, tmp_path):
     assert len(lines) == 2 * len(found)
     for line, each in zip(lines, [*found, *found], strict=True):
         assert float(line["value"]) == each["value"]
-        assert line["arc_length (m)"] == ("" if each["arc_length"] is None else repr(each["arc_length"]))
+        assert line["arc_length"] == ("" if each["arc_length"] is None else repr(each["arc_length"]))
         assert {key: line[key] for key in ("probe", "component", "unit")} == {
             key: each[key] for key in ("probe", "component", "unit")
         }
