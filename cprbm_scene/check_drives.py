@@ -5,31 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cprbm_scene.freedoms import Row, body_of, can_turn, guide_rows, has_guide, held, is_stated, row_of, same_point
-from cprbm_scene.mistakes import Mistake, unknown_name
-from cprbm_scene.statement import BodyLoad, Drive, RotationDrive, Scene, SlidingBody, TurningBody
-
-
-def wrong_guides(scene: Scene) -> Iterator[Mistake]:
-    """Slides without a direction, pivots that are no point of their body."""
-    for name, body in scene.bodies.items():
-        if isinstance(body, SlidingBody) and body.along == (0.0, 0.0):
-            yield Mistake(f"bodies.{name}.along", "[0, 0]", "a direction, at least one number not zero")
-        if isinstance(body, TurningBody | SlidingBody) and body.about is not None and body.about not in body.points:
-            yield unknown_name(f"bodies.{name}.about", body.about, "point of this body", body.points)
-        elif isinstance(body, SlidingBody) and body.about is not None and not body.turns:
-            found = f"{body.about!r}, a point to turn about, of a body that does not turn"
-            yield Mistake(f"bodies.{name}.about", found, "turns = true, or no point")
-        elif isinstance(body, SlidingBody) and body.turns and body.about is None and len(body.points) > 1:
-            found = "nothing: of the points of a body that slides and turns, one stays in the slot"
-            yield Mistake(f"bodies.{name}.about", found, f"one of {', '.join(map(repr, body.points))}")
+from cprbm_scene.mistakes import Mistake
+from cprbm_scene.statement import BodyLoad, Drive, RotationDrive, Scene, TurningBody
 
 
 def wrong_drives(scene: Scene) -> Iterator[Mistake]:
     """Drives without a direction, of what cannot move that way, or of what another drive or a load has."""
     taken: dict[str, dict[str, Row]] = {}
     for name, drive in scene.drives.items():
-        if not isinstance(drive, RotationDrive) and drive.direction == (0.0, 0.0):
-            yield Mistake(f"drives.{name}.direction", "[0, 0]", "a direction, at least one number not zero")
         if not is_stated(scene, drive):
             continue
         owner = body_of(scene, drive)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from bisect import bisect
 from collections.abc import Iterator
-from math import isclose
 
-from cprbm_scene.check_names import point_names
 from cprbm_scene.freedoms import body_of, guide_rows, has_guide, held, is_named, is_stated, rank, row_of
 from cprbm_scene.mistakes import Mistake
-from cprbm_scene.statement import BodyLoad, Force, FreeEnd, Moment, PinnedEnd, Scene, TurningBody
+from cprbm_scene.names import point_names
+from cprbm_scene.statement import BeamForce, BeamMoment, BodyLoad, FreeEnd, Moment, PinnedEnd, Scene, TurningBody
 
 FREEDOMS = 3  # of what is rigid in the plane
 
@@ -53,11 +51,11 @@ def wrong_supports(scene: Scene) -> Iterator[Mistake]:
 def wrong_loads(scene: Scene) -> Iterator[Mistake]:
     """Loads on bodies that cannot move, and forces without a direction."""
     for name, load in scene.loads.items():
+        if isinstance(load, BeamForce | BeamMoment):
+            yield from _held_end(scene, name, load)
         if not isinstance(load, BodyLoad):
             continue
         what = "body" if isinstance(load, Moment) else "point"
-        if isinstance(load, Force) and load.direction == (0.0, 0.0):
-            yield Mistake(f"loads.{name}.direction", "[0, 0]", "a direction, at least one number not zero")
         if not is_named(scene, load):
             continue
         owner = body_of(scene, load)
@@ -77,30 +75,6 @@ def wrong_loads(scene: Scene) -> Iterator[Mistake]:
                 guide = "towards the pivot" if isinstance(body, TurningBody) else "across the slide"
                 found, allowed = f"a force {guide} of {owner!r}", "a direction along which the body can move"
                 yield Mistake(f"loads.{name}.direction", found, allowed)
-
-
-def wrong_stages(scene: Scene) -> Iterator[Mistake]:
-    """Stages with one name, and stations of one stage with one value: answers are told apart by these two.
-
-    What a stage is to show is one of its stations.
-    """
-    seen: set[str] = set()
-    for i, stage in enumerate(scene.stages):
-        if stage.name in seen:
-            yield Mistake(f"stages[{i}].name", f"{stage.name!r} again", "each stage's name once")
-        seen.add(stage.name)
-        before: list[float] = []  # in ascending order: what a value is close to stands beside its place
-        for j, value in enumerate(stage.stations):
-            place = bisect(before, value)
-            beside = before[max(0, place - 1) : place + 1]
-            before.insert(place, value)
-            if any(isclose(value, other, rel_tol=1e-9) for other in beside):
-                allowed = "each value once in a stage; a further stage may go back to it"
-                yield Mistake(f"stages[{i}].stations[{j}]", f"{value:g} again", allowed)
-        stations = set(stage.stations)
-        for j, value in enumerate(stage.shown):
-            if value not in stations:
-                yield Mistake(f"stages[{i}].shown[{j}]", f"{value:g}", "one of the stage's stations")
 
 
 def rows_stated(scene: Scene) -> bool:
@@ -127,6 +101,18 @@ def _holds(scene: Scene, bodies: set[str]) -> bool:
     rows = [row for name in bodies for row in guide_rows(scene, name)]
     rows += [row_of(scene, drive) for drive in scene.drives.values() if body_of(scene, drive) in bodies]
     return rank(rows) == FREEDOMS
+
+
+def _held_end(scene: Scene, name: str, load: BeamForce | BeamMoment) -> Iterator[Mistake]:
+    """A load at an end of a beam that a fixed body holds; a pin lets the end turn under a moment."""
+    if load.beam not in scene.beams or load.at not in (0.0, 1.0):
+        return
+    end = scene.beams[load.beam].start if load.at == 0.0 else scene.beams[load.beam].end
+    fixed = {point for body in scene.bodies.values() if body.motion == "fixed" for point in body.points}
+    turns = isinstance(load, BeamMoment) and isinstance(end, PinnedEnd)
+    if not isinstance(end, FreeEnd) and not turns and end.point in fixed:
+        found = f"{load.at:g}, an end of {load.beam!r} that is held at {end.point!r}, a point of a fixed body"
+        yield Mistake(f"loads.{name}.at", found, "a place of the beam that can move")
 
 
 def _movable(scene: Scene) -> str:

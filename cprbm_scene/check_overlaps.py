@@ -1,161 +1,179 @@
-"""Beams of a contact: two different ones or one and itself, each once, that do not overlap or cross as drawn."""
+"""Overlap of beams with other beams or themselves as drawn, and repeated contacts.
+
+======  ================================================
+symbol  meaning
+======  ================================================
+t       thickness, m
+s       arc length, m; Δs between two places of a beam
+d       distance of the places in the plane, m
+κ       largest curvature, 1/m; t κ < 1 for every beam
+======  ================================================
+
+Contact of a beam with itself.  By Schur's comparison theorem d ≥ (2/κ) sin(κ Δs/2) for Δs ≤ 2π/κ.  With t κ < 1, places
+of d < t are therefore either neighbours, Δs ≤ 1.05 d, or have Δs > 5 t.  Lines and
+graphs have no places of the second kind: with enough rotation of the tangent, by the angle φ, a graph extends along
+the axis by ∫ cos φ dφ/κ > 1.9 t.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import product
-from typing import Literal
+from math import dist
 
 import numpy as np
 
-from cprbm_scene.check_shapes import MEETING, is_beam
-from cprbm_scene.geometry import arc_length, closest_pair, distance, largest_coordinate, points_on, scaled, tangents_on
+from cprbm_scene.beam_records import Beam, WeldedEnd
+from cprbm_scene.closest import WHOLE, ClosestPair, Range, closest_pair
+from cprbm_scene.curve_records import MEETING, shape_of
 from cprbm_scene.mistakes import Mistake, written_place
-from cprbm_scene.statement import Beam, BeamContact, BeamEnd, Curve, Scene, SelfContact, WeldedEnd
-from cprbm_scene.surfaces import Range, surfaces_apart
+from cprbm_scene.statement import Arc, BeamContact, RigidContact, Scene, Spline
 
-Side = Literal["start", "end"]
+OVERLAP = 1e-6
+"""Overlap that counts as touching, of the mean thickness where both beams are thinnest."""
+HELD_OVERLAP = 1e-3
+"""The same beside ends on the same body, with a constant gap: coordinates are rounded."""
+CROSSING_ANGLE = 1e-3
+"""Angle, rad, below which two lines that meet are tangent."""
+JOINED = 5.0
+"""Mean thicknesses beside a shared end in which beams overlap by their nature."""
+SIDE_BY_SIDE = 2.0
+"""Mean thicknesses between ends that lie side by side on one body."""
+NEIGHBOURS = 5.0
+"""Thicknesses along a beam between places that are no neighbours."""
+_SAMPLES = 1501
 
-OVERLAP = 1e-6  # of the mean thickness, where both beams are thinnest
-HELD_OVERLAP = 1e-3  # of the mean thickness, beside ends that one body holds: coordinates that were rounded
-CROSSING_ANGLE = 1e-3  # rad; lines that meet at less are taken as tangent
-JOINED = 5.0  # mean thicknesses beside a shared end in which an overlap is no mistake
-SIDE_BY_SIDE = 2.0  # mean thicknesses between ends that one body holds beside each other
 
-
-def wrong_contacts(scene: Scene) -> Iterator[Mistake]:
-    """A beam named as its own partner, and pairs or beams that may touch themselves named twice."""
-    seen: dict[frozenset[str], str] = {}
+def repeated_contacts(scene: Scene) -> Iterator[Mistake]:
+    """Contacts of the same beams, or of the same beam and rigid shape."""
+    seen: dict[object, str] = {}
     for name, contact in scene.contacts.items():
-        if not isinstance(contact, BeamContact | SelfContact):
-            continue
-        paired = isinstance(contact, BeamContact)
-        key = f"contacts.{name}.{'between' if paired else 'beam'}"
-        beams = frozenset(contact.beams)
-        if paired and len(beams) == 1:
-            found = f"{contact.beams[0]!r} twice"
-            yield Mistake(key, found, "two different beams; a beam may touch itself in a contact of kind 'beam-self'")
-            continue
-        if beams in seen:
-            what, allowed = ("pair", "each pair of beams once") if paired else ("beam", "each beam once")
-            yield Mistake(key, f"the {what} of contacts.{seen[beams]} again", allowed)
-        seen.setdefault(beams, name)
+        if isinstance(contact, RigidContact):
+            shape = tuple(value for field, value in contact if field not in {"thick", "paper"})
+            first = seen.setdefault(shape, name)
+            found, key = f"the beam and the shape of contacts.{first} again", f"contacts.{name}"
+            allowed = "each beam and shape once"
+        else:
+            first = seen.setdefault(frozenset(contact.beams), name)
+            paired = isinstance(contact, BeamContact)
+            what, key = ("pair", "between") if paired else ("beam", "beam")
+            found, key = f"the {what} of contacts.{first} again", f"contacts.{name}.{key}"
+            allowed = "each pair of beams once" if paired else "each beam once"
+        if first != name:
+            yield Mistake(key, found, allowed)
 
 
-def overlaps(scene: Scene) -> Iterator[Mistake]:
-    """Beams of a contact that overlap (thick) or cross (lines) where they start.
+def overlapping_beams(scene: Scene) -> Iterator[Mistake]:
+    """Overlap (thick beams) or crossing (lines) of the beams of a contact as drawn.
 
-    Where the two beams share an end, they overlap there by their nature: a stretch of a few thicknesses
-    beside the shared end is left out of the check.  Where one body holds two ends side by side, no motion changes
-    the gap between them: there an overlap may be as large as rounded coordinates make it.
+    Stretches beside shared ends are left out.  Beside ends on the same body a larger overlap counts as touching.
     """
     for name, contact in scene.contacts.items():
-        if not isinstance(contact, BeamContact):
+        if not isinstance(contact, BeamContact) or contact.between[0] == contact.between[1]:
             continue
         first, second = (scene.beams.get(beam) for beam in contact.between)
-        if first is None or second is None or contact.between[0] == contact.between[1]:
+        if first is None or second is None or not (first.sound and second.sound):
             continue
-        if not (is_beam(first) and is_beam(second)):
-            continue
-        found = _overlap(first, second, _welded_to(scene, first, second), thick=contact.thick)
+        found = _overlap(scene, first, second) if contact.thick else _crossing(first, second)
         if found is not None:
             beams = f"{contact.between[0]!r} and {contact.between[1]!r}"
             yield Mistake(f"contacts.{name}", f"{beams} {found[0]}", found[1])
 
 
-def _welded_to(scene: Scene, first: Beam, second: Beam) -> list[tuple[Side, Side]]:
-    """The ends of two beams, one of each, that are welded to the same body."""
-    owners = {point: name for name, body in scene.bodies.items() for point in body.points}
-    return [
-        (side1, side2)
-        for (side1, end1), (side2, end2) in product(_ends(first), _ends(second))
-        if isinstance(end1, WeldedEnd)
-        and isinstance(end2, WeldedEnd)
-        and end1.point in owners
-        and owners[end1.point] == owners.get(end2.point)
-    ]
-
-
-def _ends(beam: Beam) -> tuple[tuple[Side, BeamEnd], tuple[Side, BeamEnd]]:
-    return ("start", beam.start), ("end", beam.end)
-
-
-def _overlap(first: Beam, second: Beam, welded: list[tuple[Side, Side]], *, thick: bool) -> tuple[str, str] | None:
-    """What is wrong between two beams, and what is allowed; None where nothing is."""
-    size = max(largest_coordinate(first.curve), largest_coordinate(second.curve))
-    curve1, curve2 = scaled(first.curve, size), scaled(second.curve, size)
-    largest = 0.5 * (first.thickest + second.thickest) / size
-    mean = 0.5 * (first.thinnest + second.thinnest) / size
-    left_out = JOINED * largest if thick else CROSSING_ANGLE * min(arc_length(curve1), arc_length(curve2))
-    range1, range2 = (
-        _apart_from_shared(curve1, curve2, left_out),
-        _apart_from_shared(curve2, curve1, left_out),
-    )
-    if range1[0] >= range1[1] or range2[0] >= range2[1]:
+def _overlap(scene: Scene, first: Beam, second: Beam) -> tuple[str, str] | None:
+    """Values found and allowed for thick beams; None without an overlap."""
+    mean, largest = 0.5 * (first.thinnest + second.thinnest), 0.5 * (first.thickest + second.thickest)
+    ranges = _apart_from_shared(first, second, JOINED * largest)
+    if ranges is None:
         return None
-
-    def depth_in(ranges: tuple[Range, Range]) -> float:
-        if first.tapered or second.tapered:
-            return -surfaces_apart((first, second), (curve1, curve2), size, ranges)
-        return mean - closest_pair(curve1, curve2, *ranges).distance
-
-    if thick:
-        depth = depth_in((range1, range2))
-        if depth <= OVERLAP * mean:
+    depth = -closest_pair(first, second, *ranges).gap
+    if depth <= OVERLAP * mean:
+        return None
+    if depth <= HELD_OVERLAP * mean:
+        beside = _apart_from_held(scene, (first, second), largest, ranges)
+        if not all(low < high for low, high in beside):
             return None
-        if depth <= HELD_OVERLAP * mean:
-            beside = _apart_from_held(curve1, curve2, welded, largest, (range1, range2))
-            if not all(low < high for low, high in beside):
-                return None
-            if beside != (range1, range2) and depth_in(beside) <= OVERLAP * mean:
-                return None
-        return (
-            f"that overlap at the start by {depth * size:.3g} m, {depth / mean:.3g} of their mean thickness",
-            f"beams that touch or are apart (overlap at most {OVERLAP:g} of the mean thickness)",
-        )
-    pair = closest_pair(curve1, curve2, range1, range2)
-    t1 = tangents_on(curve1, np.array([pair.u1]))[0]
-    t2 = tangents_on(curve2, np.array([pair.u2]))[0]
-    inside = all(1e-6 < u < 1.0 - 1e-6 for u in (pair.u1, pair.u2))
-    meets = pair.distance <= MEETING * min(arc_length(curve1), arc_length(curve2))
-    if not (inside and meets and abs(t1[0] * t2[1] - t1[1] * t2[0]) > CROSSING_ANGLE):
+        if beside != ranges and -closest_pair(first, second, *beside).gap <= OVERLAP * mean:
+            return None
+    return (
+        f"that overlap at the start by {depth:.3g} m, {depth / mean:.3g} of their mean thickness",
+        f"beams that touch or are apart (overlap at most {OVERLAP:g} of the mean thickness)",
+    )
+
+
+def _crossing(first: Beam, second: Beam) -> tuple[str, str] | None:
+    """Values found and allowed for beams as lines; None without a crossing."""
+    shapes = shape_of(first.curve), shape_of(second.curve)
+    shortest = min(shape.length for shape in shapes)
+    ranges = _apart_from_shared(first, second, CROSSING_ANGLE * shortest)
+    if ranges is None:
         return None
-    place = points_on(curve1, np.array([pair.u1]))[0] * size
-    where = written_place((float(place[0]), float(place[1])))
-    return f"that cross at the start, at {where} m", "neutral lines that touch or are apart"
+    pair = closest_pair(first, second, *ranges, thick=False)
+    t1, t2 = (shape.tangent(np.array([u]))[0] for shape, u in zip(shapes, (pair.u1, pair.u2), strict=True))
+    inside = all(1e-6 < u < 1.0 - 1e-6 for u in (pair.u1, pair.u2))
+    if not (inside and pair.gap <= MEETING * shortest and abs(t1[0] * t2[1] - t1[1] * t2[0]) > CROSSING_ANGLE):
+        return None
+    x, y = shapes[0].point(np.array([pair.u1]))[0]
+    return f"that cross at the start, at {written_place((x, y))} m", "neutral lines that touch or are apart"
 
 
-def _apart_from_shared(curve: Curve, other: Curve, left_out: float) -> Range:
-    """Range of u on ``curve`` without ``left_out`` metres beside an end that is an end of ``other`` too."""
-    length = arc_length(curve)
-    share = left_out / length
-    low, high = 0.0, 1.0
-    near = MEETING * max(length, arc_length(other))
-    for end in (other.start, other.end):
-        if distance(curve.start, end) <= near:
-            low = share
-        if distance(curve.end, end) <= near:
-            high = 1.0 - share
-    return low, high
+def _apart_from_shared(first: Beam, second: Beam, left_out: float) -> tuple[Range, Range] | None:
+    """Ranges of u without ``left_out`` (m) beside shared ends; None if nothing is left."""
+    lengths = [shape_of(beam.curve).length for beam in (first, second)]
+    near, ranges = MEETING * max(lengths), list[Range]()
+    for beam, other, length in ((first, second, lengths[0]), (second, first, lengths[1])):
+        starts, ends = (
+            any(dist(place, end) <= near for end in (other.curve.start, other.curve.end))
+            for place in (beam.curve.start, beam.curve.end)
+        )
+        ranges.append((left_out / length if starts else 0.0, 1.0 - left_out / length if ends else 1.0))
+    return (ranges[0], ranges[1]) if all(low < high for low, high in ranges) else None
 
 
 def _apart_from_held(
-    curve1: Curve,
-    curve2: Curve,
-    welded: list[tuple[Side, Side]],
-    mean: float,
-    ranges: tuple[Range, Range],
+    scene: Scene, beams: tuple[Beam, Beam], mean: float, ranges: tuple[Range, Range]
 ) -> tuple[Range, Range]:
-    """The ranges of u without the stretches beside ends that one body holds side by side."""
-    shares = JOINED * mean / arc_length(curve1), JOINED * mean / arc_length(curve2)
+    """The ranges of u without stretches beside ends welded side by side to the same body."""
+    owners = {point: name for name, body in scene.bodies.items() for point in body.points}
     cut = list(ranges)
-    for sides in welded:
-        ends = [
-            curve.start if side == "start" else curve.end for curve, side in zip((curve1, curve2), sides, strict=True)
-        ]
-        if distance(*ends) > SIDE_BY_SIDE * mean:
+    for sides in product(("start", "end"), repeat=2):
+        joints = [getattr(beam, side) for beam, side in zip(beams, sides, strict=True)]
+        places = [getattr(beam.curve, side) for beam, side in zip(beams, sides, strict=True)]
+        bodies = [owners.get(joint.point) if isinstance(joint, WeldedEnd) else None for joint in joints]
+        if bodies[0] is None or bodies[0] != bodies[1] or dist(*places) > SIDE_BY_SIDE * mean:
             continue
-        for i, (side, share) in enumerate(zip(sides, shares, strict=True)):
-            low, high = cut[i]
+        for i, (beam, side) in enumerate(zip(beams, sides, strict=True)):
+            (low, high), share = cut[i], JOINED * mean / shape_of(beam.curve).length
             cut[i] = (max(low, share), high) if side == "start" else (low, min(high, 1.0 - share))
     return cut[0], cut[1]
+
+
+def overlapping_themselves(scene: Scene) -> Iterator[Mistake]:
+    """Arcs and splines closer to themselves than their thickness."""
+    for name, beam in scene.beams.items():
+        pair = _itself(beam) if isinstance(beam.curve, Arc | Spline) and beam.sound else None
+        if pair is None:
+            continue
+        thickness = float(np.mean(beam.thickness_at(np.array([pair.u1, pair.u2]))))
+        if -pair.gap > OVERLAP * thickness:
+            x, y = shape_of(beam.curve).point(np.array([pair.u1]))[0]
+            found = f"a beam that overlaps itself: near {written_place((x, y))} m it comes to "
+            found += f"{thickness + pair.gap:.3g} m from itself, and is {thickness:g} m thick"
+            yield Mistake(f"beams.{name}.curve", found, "a curve that keeps a thickness away from itself")
+
+
+def _itself(beam: Beam) -> ClosestPair | None:
+    """Closest places of a beam, neighbours excluded; None if all such places are far apart."""
+    from scipy.spatial import cKDTree  # scenes of lines and graphs need no SciPy
+
+    shape, u = shape_of(beam.curve), np.linspace(*WHOLE, _SAMPLES)
+    step = 2.0 / (_SAMPLES - 1)
+    p, half = shape.point(u), 0.5 * beam.thickness_at(u)
+    i, j = cKDTree(p).query_pairs(beam.thickest + step * shape.length, output_type="ndarray").T
+    far = (u[j] - u[i]) * shape.length > NEIGHBOURS * beam.thickest
+    i, j = i[far], j[far]
+    if len(i) == 0:
+        return None
+    k = int(np.argmin(np.hypot(*(p[i] - p[j]).T) - half[i] - half[j]))
+    ranges = [(max(0.0, at - step), min(1.0, at + step)) for at in (float(u[i[k]]), float(u[j[k]]))]
+    return closest_pair(beam, beam, *ranges)

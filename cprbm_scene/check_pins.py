@@ -14,12 +14,12 @@ that B leaves is one that bends no beam, and nothing resists it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from math import dist
 
 import numpy as np
 
 from cprbm_scene.check_motion import rows_stated, wrong_supports
-from cprbm_scene.check_names import point_names
-from cprbm_scene.check_shapes import MEETING
+from cprbm_scene.curve_records import MEETING
 from cprbm_scene.freedoms import (
     NEGLIGIBLE,
     Row,
@@ -31,8 +31,8 @@ from cprbm_scene.freedoms import (
     row_of,
     unit,
 )
-from cprbm_scene.geometry import distance
 from cprbm_scene.mistakes import Mistake, written_place
+from cprbm_scene.names import point_names
 from cprbm_scene.statement import BodyPin, FreeEnd, Scene, WeldedEnd
 
 
@@ -44,7 +44,7 @@ def wrong_pins(scene: Scene) -> Iterator[Mistake]:
             continue
         one, other = (scene.body_of(point) for point in pin.points)
         places = [scene.place_of(point) for point in pin.points]
-        apart = distance(places[0], places[1])
+        apart = dist(*places)
         if one == other:
             found = f"{pin.points[0]!r} and {pin.points[1]!r}, both of the body {one!r}"
             yield Mistake(f"pins.{name}.points", found, "points of two different bodies")

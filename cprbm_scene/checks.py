@@ -1,67 +1,66 @@
-"""What ties the records together: everything that is wrong with a scene, at once."""
+"""All mistakes of a scene at once: rules within records and rules between records."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import chain
 
-from cprbm_scene.check_assembly import wrong_assembly
-from cprbm_scene.check_beam_loads import wrong_beam_loads
-from cprbm_scene.check_beside_itself import beside_themselves
-from cprbm_scene.check_circles import circle_overlaps, wrong_circles
 from cprbm_scene.check_closing import open_linkages
-from cprbm_scene.check_drives import wrong_drives, wrong_guides
-from cprbm_scene.check_edges import edge_overlaps, wrong_edges
-from cprbm_scene.check_motion import wrong_loads, wrong_stages, wrong_supports
-from cprbm_scene.check_names import repeated_names, unknown_names
-from cprbm_scene.check_overlaps import overlaps, wrong_contacts
-from cprbm_scene.check_paper import wrong_hints, wrong_spacings
+from cprbm_scene.check_drives import wrong_drives
+from cprbm_scene.check_motion import wrong_loads, wrong_supports
+from cprbm_scene.check_overlaps import overlapping_beams, overlapping_themselves, repeated_contacts
 from cprbm_scene.check_pins import loose_bodies, wrong_pins
-from cprbm_scene.check_profiles import wrong_profiles
-from cprbm_scene.check_questions import wrong_claims, wrong_probes
-from cprbm_scene.check_shapes import wrong_curves, wrong_ends, wrong_sections
-from cprbm_scene.check_stops import wrong_stops
+from cprbm_scene.check_rigid import overlapping_rigid_shapes
+from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
 from cprbm_scene.mistakes import Mistake, first_of
+from cprbm_scene.names import records, repeated_names, unknown_names
+from cprbm_scene.offset import OffsetQuestion
+from cprbm_scene.questions import repeated_stages, wrong_claims, wrong_probes, wrong_spacings
+from cprbm_scene.record import Record
 from cprbm_scene.statement import Scene
+
+
+def broken_rules(root: Record) -> Iterator[Mistake]:
+    """Mistakes within the records of a scene or another question."""
+    for key, record in records(root):
+        for mistake in record.rules():
+            below = mistake.key if not mistake.key or not key else f".{mistake.key}"
+            yield replace(mistake, key=f"{key}{below}")
+
 
 _CHECKS = (
     repeated_names,
     unknown_names,
-    wrong_curves,
-    wrong_profiles,
-    wrong_sections,
-    beside_themselves,
-    wrong_ends,
+    overlapping_themselves,
+    distant_ends,
     wrong_assembly,
     wrong_stops,
-    wrong_guides,
     wrong_pins,
     wrong_supports,
     loose_bodies,
     wrong_loads,
-    wrong_beam_loads,
     wrong_drives,
-    wrong_contacts,
+    repeated_contacts,
     wrong_spacings,
-    wrong_hints,
-    overlaps,
-    wrong_circles,
-    circle_overlaps,
-    wrong_edges,
-    edge_overlaps,
-    wrong_stages,
+    overlapping_beams,
+    overlapping_rigid_shapes,
+    repeated_stages,
     wrong_probes,
     wrong_claims,
 )
 
 _LAST = (open_linkages,)
-"""What is asked of a scene in which nothing else is wrong."""
+"""Checks of a scene without other mistakes."""
 
 
-def mistakes_in(scene: Scene) -> list[Mistake]:
-    """What is wrong in what ties the records of ``scene`` together; empty where it is a good question.
+def mistakes_in(question: Scene | OffsetQuestion) -> list[Mistake]:
+    """All mistakes of a question; empty for a valid question.
 
-    A check that needs what another one found wrong keeps silent, so that one slip is named once.
+    A check is silent on parts with other mistakes: a slip has a single message.
     """
-    found = first_of(mistake for check in _CHECKS for mistake in check(scene))
-    found = found or first_of(mistake for check in _LAST for mistake in check(scene))
-    return [replace(mistake, file=scene.file) for mistake in found]
+    between = (check(question) for check in _CHECKS) if isinstance(question, Scene) else ()
+    found = first_of(chain(broken_rules(question), *between))
+    if not found and isinstance(question, Scene):
+        found = first_of(mistake for check in _LAST for mistake in check(question))
+    return [replace(mistake, file=question.file) for mistake in found]

@@ -7,21 +7,21 @@ from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel, Tag
 
-from cprbm_scene.statement import Record, Scene
+from cprbm_scene.record import Record
 
 
-def keys_at(loc: tuple[int | str, ...], root: type[Record] = Scene) -> tuple[str, ...]:
+def keys_at(loc: tuple[int | str, ...], root: type[Record]) -> tuple[str, ...]:
     """Keys of the table at ``loc``, a place in ``root`` as pydantic names it (tags of unions included)."""
     record = _bare(_place(loc, root))
     return tuple(key for key in record.model_fields if (record, key) != (root, "file"))
 
 
-def is_tag(loc: tuple[int | str, ...], depth: int, root: type[Record] = Scene) -> bool:
+def is_tag(loc: tuple[int | str, ...], depth: int, root: type[Record]) -> bool:
     """Whether pydantic put the tag of a union at ``depth`` of ``loc``, where no key stands."""
     return get_origin(_bare(_place(loc[:depth], root))) in (Union, UnionType)
 
 
-def tags_at(loc: tuple[int | str, ...], root: type[Record] = Scene) -> tuple[str, ...]:
+def tags_at(loc: tuple[int | str, ...], root: type[Record]) -> tuple[str, ...]:
     """Kinds (or joints, or motions) of which the table at ``loc`` may be one."""
     return tuple(tag for record in get_args(_bare(_place(loc, root))) for tag in _tags(record))
 

@@ -1,30 +1,39 @@
-"""The question of an offset curve: where points at a distance from a curve lie, without any mechanics.
+"""Question of an offset curve: the places of points at a distance from a curve, without mechanics.
 
-It is a record beside :class:`~cprbm_scene.statement.Scene`; a file says ``question = "offset"`` to ask it.
+The question is a record beside :class:`~cprbm_scene.statement.Scene`; a file says ``question = "offset"``.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import Field
 
-from cprbm_scene.statement import Curve, Fraction, Name, Named, Positive, Record
+from cprbm_scene.curve_records import CurveField, shape_of
+from cprbm_scene.mistakes import Mistake
+from cprbm_scene.record import Name, Named, Record, Text, Title
+from cprbm_scene.units import Positive, PositiveLength, PositiveShare
 
 FEWEST, MOST = 4, 200
-"""Springs that a question may ask for."""
+"""Allowed numbers of springs."""
+
+_SAMPLES = 2001
+_ACROSS = 1e-3
+"""Least component of the curve's tangent along the other axis, over which the curve is a graph."""
 
 Number = Annotated[int, Field(ge=FEWEST, le=MOST)]
-Offsets = Annotated[tuple[Positive, ...], Field(min_length=1, max_length=100)]
+Offsets = Annotated[tuple[PositiveLength, ...], Field(min_length=1, max_length=100)]
 Numbers = Annotated[tuple[Number, ...], Field(min_length=1, max_length=100)]
 
 
 class Spacing(Record):
-    """How a chain's joints are spread over a curve's variable (a polynomial's; of others the arc length).
+    """Places of a chain's joints along a curve's variable (a polynomial's; for other curves the arc length).
 
-    ``law`` is ``even``, or ``sine``: x = m + h sin φ with φ even from −π/2 to π/2, m and h middle and half of the
-    range.  It holds ``of`` the ``joints`` (both ends and every spring) or of the ``elements``' ends, with the springs
-    in the middles.
+    ``law`` is ``even``, or ``sine``: x = m + h sin φ with equally spaced φ from −π/2 to π/2, m and h middle and half of
+    the range.  The law holds ``of`` the ``joints`` (both ends and every spring) or of the ends of the ``elements``,
+    with the springs in the middles.
     """
 
     law: Literal["even", "sine"]
@@ -32,11 +41,11 @@ class Spacing(Record):
 
 
 class OffsetClaim(Record):
-    """What a publication says: from ``numbers_from`` springs on, every relative error is below ``bound``."""
+    """Statement of a publication: from ``numbers_from`` springs on, every relative error is below ``bound``."""
 
     numbers_from: Number
     bound: Positive
-    text: str = ""
+    text: Text = ""
 
 
 class Shown(Record):
@@ -47,18 +56,18 @@ class Shown(Record):
 
 
 class OffsetQuestion(Record):
-    """How near the offset points of a chain come to the exact offset curve.
+    """Distance between the offset points of a chain and the exact offset curve.
 
-    ``side`` is that of the curve as it runs.  The error is taken along ``axis``, at the offset point's place on the
-    other axis, relative to the exact curve's ``ordinate`` (its coordinate along ``axis``) or to the ``offset``.
-    ``numbers`` are springs N; ``offsets`` distances t, m.  ``verdict_limit`` is as of a scene.
+    ``side`` is the side of the curve, seen from start to end.  The error is taken along ``axis``, at the offset point's
+    place on the other axis, relative to the exact curve's ``ordinate`` (the coordinate along ``axis``) or to the
+    ``offset``.  ``numbers`` are springs N; ``offsets`` distances t, m.  ``verdict_limit`` is the same as of a scene.
     """
 
     question: Literal["offset"]
     name: Name
-    title: str = ""
-    source: str = ""
-    curve: Curve
+    title: Title = ""
+    source: Text = ""
+    curve: CurveField
     side: Literal["left", "right"]
     axis: Literal["x", "y"] = "y"
     relative_to: Literal["ordinate", "offset"] = "ordinate"
@@ -67,10 +76,36 @@ class OffsetQuestion(Record):
     spacings: Annotated[Named[Spacing], Field(min_length=1)]
     claims: tuple[OffsetClaim, ...] = ()
     shown: Shown | None = None
-    verdict_limit: Fraction = 0.015
+    verdict_limit: PositiveShare = 0.015
     file: str = ""
 
     @property
     def sign(self) -> float:
-        """+1 where the offset lies to the left, −1 to the right."""
+        """+1 for an offset to the left, −1 to the right."""
         return 1.0 if self.side == "left" else -1.0
+
+    def rules(self) -> Iterator[Mistake]:
+        """Repeated values, claims on numbers without a run, and offset curves that are no graph over the other axis."""
+        for key, values in (("offsets", self.offsets), ("numbers", self.numbers)):
+            if len(set(values)) < len(values):
+                yield Mistake(key, "a value twice", "each once")
+        for i, claim in enumerate(self.claims):
+            if claim.numbers_from > max(self.numbers):
+                found = f"{claim.numbers_from}, beyond all numbers"
+                yield Mistake(f"claims[{i}].numbers_from", found, f"at most {max(self.numbers)}")
+        if any(self.curve.rules()):
+            return
+        u, shape = np.linspace(0.0, 1.0, _SAMPLES), shape_of(self.curve)
+        p, tangents = shape.point(u), shape.tangent(u)
+        across = tangents[:, 0 if self.axis == "y" else 1]
+        if np.min(np.abs(across)) < _ACROSS or np.ptp(np.sign(across)) > 0.0:
+            yield Mistake("axis", repr(self.axis), "an axis to which the curve is nowhere parallel")
+            return
+        normals = self.sign * np.column_stack((-tangents[:, 1], tangents[:, 0]))
+        for key, offsets in (("offsets", self.offsets), ("shown.offsets", self.shown.offsets if self.shown else ())):
+            for i, t in enumerate(offsets):
+                # beyond the radius of curvature the offset curve runs backwards, with a cusp
+                forwards = (np.diff(p + t * normals, axis=0) * tangents[:-1]).sum(axis=1)
+                if np.min(forwards) <= 0.0:
+                    allowed = "less than the radius of curvature on that side of the curve"
+                    yield Mistake(f"{key}[{i}]", f"{t:g}", allowed)

@@ -1,547 +1,145 @@
-"""The problem statement: frozen records in SI units, angles in radians; a file may state others (:mod:`.units`).
+"""The problem statement: immutable records in SI units, angles in radians; a file may state other units.
 
-Every record refuses unknown keys, NaN and infinity.  Bounds stand only on
-dimensionless numbers and on signs that have no meaning (a thickness is
-positive).  What ties records together (a beam's end meets a body's point, a
-load acts on something that can move) is checked in :mod:`cprbm_scene.checks`.
+Every record refuses unknown keys, NaN and infinity, and states the rules between the fields.  Rules between records
+(a beam's end meets a body's point, a load acts on a movable body) are in :mod:`cprbm_scene.checks`.
 
-Kinds are tagged unions: a further curve, joint, body, load, drive or contact is a further
-record with a ``kind`` (or ``joint``, or ``motion``) of its own, and nothing here changes.
+Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a new record with another ``kind`` (or
+``joint``, or ``motion``).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from bisect import bisect
+from collections.abc import Iterator, Mapping
 from math import isclose
-from typing import Annotated, ClassVar, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, StringConstraints, Tag
+from pydantic import Field, ValidationInfo, field_validator
 
+from cprbm_scene.beam_records import (
+    Beam,
+    BeamEnd,
+    FreeEnd,
+    Material,
+    PaperBeam,
+    PinnedEnd,
+    Profile,
+    Size,
+    WeldedEnd,
+)
+from cprbm_scene.body_records import (
+    Assembly,
+    BeamForce,
+    BeamMoment,
+    Body,
+    BodyLoad,
+    BodyPin,
+    DisplacementDrive,
+    DistributedLoad,
+    Drive,
+    FixedBody,
+    Force,
+    FreeBody,
+    Load,
+    Moment,
+    RotationDrive,
+    SlidingBody,
+    Stop,
+    TurningBody,
+)
+from cprbm_scene.contact_records import (
+    BeamContact,
+    CircleContact,
+    Contact,
+    EdgeContact,
+    FunctionContact,
+    HalfPlaneContact,
+    LineContact,
+    PaperContact,
+    PaperRigid,
+    Related,
+    RigidContact,
+    SelfContact,
+)
+from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
 from cprbm_scene.frozendict import frozendict
-
-T = TypeVar("T")
-
-
-def _freeze(value: Mapping[str, T]) -> Mapping[str, T]:
-    return frozendict(value)
-
-
-Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_][A-Za-z0-9_-]*$", max_length=64)]
-Named = Annotated[Mapping[Name, T], AfterValidator(_freeze)]
-Point = tuple[float, float]
-Positive = Annotated[float, Field(gt=0.0)]
-Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
-
-
-class Record(BaseModel):
-    """What all records share: immutable, strict, nothing unknown, no number that is not finite."""
-
-    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
-
-
-class Material(Record):
-    """A linear elastic, isotropic material: ``youngs_modulus`` in Pa, ``poisson_ratio`` a number."""
-
-    youngs_modulus: Positive
-    poisson_ratio: Annotated[float, Field(gt=-1.0, le=0.5)]
-
-
-class Line(Record):
-    """A straight neutral line from ``start`` to ``end``, metres."""
-
-    kind: Literal["line"]
-    start: Point
-    end: Point
-
-
-class Arc(Record):
-    """A circular neutral line about ``center`` from ``start`` round to ``end``, metres.
-
-    Both ends lie on the circle; ``direction`` says which way round, so that an arc is less than a full turn.
-    """
-
-    kind: Literal["arc"]
-    center: Point
-    start: Point
-    end: Point
-    direction: Literal["counterclockwise", "clockwise"]
-
-
-class Polynomial(Record):
-    """A neutral line y = f(x) (``axis`` is ``x``) or x = f(y) (``axis`` is ``y``), metres.
-
-    ``coefficients`` of f, lowest power first, f in metres for a variable in metres; ``range`` is where the variable
-    begins and ends, so that a beam may run against its axis.
-    """
-
-    kind: Literal["polynomial"]
-    axis: Literal["x", "y"]
-    coefficients: Annotated[tuple[float, ...], Field(min_length=2)]
-    range: tuple[float, float]
-
-    @property
-    def start(self) -> Point:
-        """Where the line begins, metres."""
-        return self._at(self.range[0])
-
-    @property
-    def end(self) -> Point:
-        """Where the line ends, metres."""
-        return self._at(self.range[1])
-
-    def _at(self, variable: float) -> Point:
-        value = 0.0
-        for coefficient in reversed(self.coefficients):
-            value = value * variable + coefficient
-        return (variable, value) if self.axis == "x" else (value, variable)
-
-
-class Spline(Record):
-    """A smooth neutral line through ``points`` (at least three), metres, from the first to the last.
-
-    x and y are cubic splines of t, which is zero at the first point and grows from each to the next by their distance:
-    cubic in between, with two continuous derivatives, so that tangent and curvature have no jumps.  At an end that has
-    a ``start_direction`` or ``end_direction`` the derivative is its unit vector (in the sense in which the beam runs);
-    at one that has none the outer two pieces are one cubic.  Of three points without directions it is the parabola
-    through them.
-    """
-
-    kind: Literal["spline"]
-    points: Annotated[tuple[Point, ...], Field(min_length=3)]
-    start_direction: Point | None = None
-    end_direction: Point | None = None
-
-    @property
-    def start(self) -> Point:
-        """Where the line begins, metres."""
-        return self.points[0]
-
-    @property
-    def end(self) -> Point:
-        """Where the line ends, metres."""
-        return self.points[-1]
-
-
-Curve = Annotated[Line | Arc | Polynomial | Spline, Field(discriminator="kind")]
-
-
-class WeldedEnd(Record):
-    """The beam's end is fixed to a body's ``point``: it moves and turns with the body."""
-
-    joint: Literal["weld"]
-    point: Name
-
-
-class PinnedEnd(Record):
-    """The beam's end stays at a body's ``point`` and turns freely about it."""
-
-    joint: Literal["pin"]
-    point: Name
-
-
-class FreeEnd(Record):
-    """The beam's end is held by nothing."""
-
-    joint: Literal["free"]
-
-
-BeamEnd = Annotated[WeldedEnd | PinnedEnd | FreeEnd, Field(discriminator="joint")]
-
-
-class Profile(Record):
-    """A size that varies along a beam: ``values`` (metres) at fractions ``at`` of its arc length, straight between.
-
-    The first fraction is 0, the last 1, and they ascend.
-    """
-
-    at: Annotated[tuple[float, ...], Field(min_length=2)]
-    values: Annotated[tuple[Positive, ...], Field(min_length=2)]
-
-
-def _size_tag(value: object) -> str:
-    return "profile" if isinstance(value, Mapping | Profile) else "number"
-
-
-Size = Annotated[Annotated[Positive, Tag("number")] | Annotated[Profile, Tag("profile")], Discriminator(_size_tag)]
-
-
-class PaperBeam(Record):
-    """How the paper cuts a beam into elements: ``uniform`` along ``x`` or ``y``; without this even in arc length."""
-
-    uniform: Literal["x", "y"]
-
-
-class Beam(Record):
-    """A slender beam of rectangular section, free of stress in the shape of its ``curve``.
-
-    ``thickness`` lies in the plane of motion, ``width`` across it, both in metres; each is a number or varies along
-    the beam.
-    """
-
-    curve: Curve
-    thickness: Size
-    width: Size
-    material: Name
-    start: BeamEnd
-    end: BeamEnd
-    paper: PaperBeam | None = None
-
-    def thickness_at(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Thickness at fractions ``u`` of the arc length, m, in the same shape."""
-        return _size_at(self.thickness, u)
-
-    def width_at(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Width at fractions ``u`` of the arc length, m, in the same shape."""
-        return _size_at(self.width, u)
-
-    @property
-    def knots(self) -> NDArray[np.float64]:
-        """Fractions (k,) between which thickness and width go straight, from 0 to 1."""
-        inner = [size.at for size in (self.thickness, self.width) if isinstance(size, Profile)]
-        return np.array(sorted({0.0, 1.0}.union(*inner)))
-
-    @property
-    def thinnest(self) -> float:
-        """The least thickness, m."""
-        return min(self.thickness.values) if isinstance(self.thickness, Profile) else self.thickness
-
-    @property
-    def thickest(self) -> float:
-        """The largest thickness, m."""
-        return max(self.thickness.values) if isinstance(self.thickness, Profile) else self.thickness
-
-    @property
-    def tapered(self) -> bool:
-        """Whether the thickness varies along the beam."""
-        return self.thinnest < self.thickest
-
-
-def _size_at(size: float | Profile, u: NDArray[np.float64]) -> NDArray[np.float64]:
-    if isinstance(size, Profile):
-        return np.asarray(np.interp(u, size.at, size.values))
-    return np.full(np.shape(u), size)
-
-
-Points = Annotated[Named[Point], Field(min_length=1)]
-
-
-class FixedBody(Record):
-    """The ground: a rigid body with named points (metres) that does not move."""
-
-    motion: Literal["fixed"]
-    points: Points
-
-
-class FreeBody(Record):
-    """A rigid body with two translations and a rotation; ``points`` in metres, initial position."""
-
-    motion: Literal["free"]
-    points: Points
-
-
-class SlidingBody(Record):
-    """A rigid body that the ground guides without friction: it moves ``along`` a direction and does not turn.
-
-    Where it ``turns``, one of its points stays in the slot and it turns about that: ``about``, which a body with one
-    point need not say.  ``along`` is made a unit vector; ``points`` in metres, initial position.
-    """
-
-    motion: Literal["slides"]
-    along: Point
-    turns: bool = False
-    about: Name | None = None
-    points: Points
-
-    @property
-    def pin(self) -> Name | None:
-        """The point that stays in the slot as the body turns; None of a body that does not turn."""
-        if not self.turns:
-            return None
-        return next(iter(self.points)) if self.about is None else self.about
-
-
-class TurningBody(Record):
-    """A rigid body on a frictionless pivot of the ground: it turns ``about`` one of its own points.
-
-    ``points`` in metres, initial position.
-    """
-
-    motion: Literal["turns"]
-    about: Name
-    points: Points
-
-
-Body = Annotated[FixedBody | FreeBody | SlidingBody | TurningBody, Field(discriminator="motion")]
-
-
-class BodyPin(Record):
-    """Joins two bodies by a frictionless hinge: the ``points``, one of each, stay together."""
-
-    points: tuple[Name, Name]
-
-
-class Stop(Record):
-    """Limits the angle at which a pinned ``beam`` stands at its pin, rad: ``least`` and ``most``, or one of them.
-
-    The angle runs counter-clockwise from the line that leads from the pin to ``towards``, another point of the same
-    body, to the direction in which the beam leaves the pin.  As drawn it lies in (−π, π], and it is counted on from
-    there: it grows as the beam's ``end`` turns counter-clockwise against the body.  Without friction; a limit that is
-    reached holds by a moment.
-    """
-
-    beam: Name
-    end: Literal["start", "end"]
-    towards: Name
-    least: float | None = None
-    most: float | None = None
-
-
-class Assembly(Record):
-    """Beams are drawn free of stress, some with their pinned ``end`` apart from its point, and brought there first.
-
-    Three parts, in which nothing else is loaded or driven: ``moments`` (N·m, counter-clockwise on that end of the
-    beam of the name) grow while the ends are free; the ends go straight to their points; the moments go away.
-    Where beams can be assembled in several ways, the moments say in which.  Contacts act throughout, stops as soon
-    as the ends are at their points.
-    """
-
-    moments: Named[float] = Field(default_factory=frozendict)
-
-
-class Moment(Record):
-    """A moment on a ``body``, counter-clockwise positive, N·m."""
-
-    kind: Literal["moment"]
-    body: Name
-
-
-class Force(Record):
-    """A dead force at a body's ``point``: its ``direction`` (made a unit vector) stays as the body turns."""
-
-    kind: Literal["force"]
-    point: Name
-    direction: Point
-
-
-Share = Annotated[float, Field(ge=0.0, le=1.0)]
-
-
-class BeamForce(Record):
-    """A dead force on a ``beam``, N, ``at`` a fraction of its arc length from the start.
-
-    Its ``direction`` (made a unit vector) stays as the beam turns.
-    """
-
-    kind: Literal["beam_force"]
-    beam: Name
-    at: Share
-    direction: Point
-
-
-class BeamMoment(Record):
-    """A moment on a ``beam``, counter-clockwise positive, N·m, ``at`` a fraction of its arc length from the start."""
-
-    kind: Literal["beam_moment"]
-    beam: Name
-    at: Share
-
-
-class DistributedLoad(Record):
-    """A dead load on a ``beam``, N per metre of its arc length, the same ``along`` it from one fraction to another.
-
-    Its ``direction`` (made a unit vector) stays as the beam turns: a weight, not a pressure.
-    """
-
-    kind: Literal["distributed"]
-    beam: Name
-    direction: Point
-    along: tuple[Share, Share] = (0.0, 1.0)
-
-
-Load = Annotated[Moment | Force | BeamForce | BeamMoment | DistributedLoad, Field(discriminator="kind")]
-BodyLoad = Moment | Force
-
-
-class DisplacementDrive(Record):
-    """Prescribes how far a body's ``point`` moves along ``direction`` (made a unit vector), m; across it is free."""
-
-    kind: Literal["displacement"]
-    point: Name
-    direction: Point
-
-
-class RotationDrive(Record):
-    """Prescribes a ``body``'s rotation, counter-clockwise, rad."""
-
-    kind: Literal["rotation"]
-    body: Name
-
-
-Drive = Annotated[DisplacementDrive | RotationDrive, Field(discriminator="kind")]
-
-
-class Related(Record):
-    """The joints of one beam that may touch: initial ``x`` or ``y`` (one of them) in the range, metres."""
-
-    x: Point | None = None
-    y: Point | None = None
-
-
-class PaperContact(Record):
-    """What the paper's contact must be told: whose offset is the boundary, along which axis, which joints.
-
-    ``boundary`` names the beam that carries g_s; ``axis`` is the axis of the gap: ``y`` for g_s(x) − y,
-    ``x`` for g_s(y) − x.  Without an entry in ``related`` all joints of a beam are related.
-    """
-
-    boundary: Name
-    axis: Literal["x", "y"] = "y"
-    related: Named[Related] = Field(default_factory=frozendict)
-
-
-class PaperRigid(Record):
-    """Which joints of the beam the paper's contact with something rigid holds outside; without an entry all."""
-
-    related: Named[Related] = Field(default_factory=frozendict)
-
-
-class BeamContact(Record):
-    """Two beams that may touch, without friction; ``thick`` beams touch by their edges, others as lines."""
-
-    kind: Literal["beam-beam"]
-    between: tuple[Name, Name]
-    thick: bool = True
-    paper: PaperContact | None = None
-
-    @property
-    def beams(self) -> tuple[str, ...]:
-        """The beams that may touch, the first of which places are measured along."""
-        return self.between
-
-
-class SelfContact(Record):
-    """A beam that may touch itself, without friction, once it has turned far enough to come back to itself.
-
-    A ``thick`` beam touches by its edges, half of the thickness of either place from its neutral line, another as a
-    line.  Which of its sides meet is not told: it is the one on which a part of the beam comes near another.
-    """
-
-    kind: Literal["beam-self"]
-    beam: Name
-    thick: bool = True
-    paper: ClassVar[None] = None  # its formulation has no form for this
-
-    @property
-    def beams(self) -> tuple[str, ...]:
-        """The beam that may touch itself."""
-        return (self.beam,)
-
-
-class RigidContact(Record):
-    """What contacts of a beam with something rigid have in common.  They are without friction.
-
-    What the beam may touch is fixed to ``body`` and stated where it is initially, metres.  A ``thick`` beam touches by
-    its edge, half of the thickness of the place from its neutral line, another as a line.
-    """
-
-    beam: Name
-    body: Name
-    thick: bool = True
-    paper: PaperRigid | None = None
-
-    @property
-    def beams(self) -> tuple[str, ...]:
-        """The beam that may touch."""
-        return (self.beam,)
-
-
-class CircleContact(RigidContact):
-    """A beam that may touch a rigid circle of ``radius`` about ``center`` from outside."""
-
-    kind: Literal["beam-circle"]
-    center: Point
-    radius: Positive
-
-
-class LineContact(RigidContact):
-    """A beam that may touch a rigid line of straight pieces between ``points``.
-
-    The beam lies on the free ``side``, seen along the points.  What is rigid lies behind the line, and ends where it
-    does: at right angles to its first and its last piece.  A line whose last point is its first goes round and has no
-    ends.
-    """
-
-    kind: Literal["beam-line"]
-    points: Annotated[tuple[Point, ...], Field(min_length=2)]
-    side: Literal["left", "right"]
-
-    @property
-    def closed(self) -> bool:
-        """Whether it goes round."""
-        return len(self.points) > 2 and self.points[0] == self.points[-1]
-
-
-class HalfPlaneContact(RigidContact):
-    """A beam that may touch a rigid half-plane, whose straight edge goes through ``point``.
-
-    ``normal`` points away from the half-plane, to where the beam lies; it is made a unit vector.
-    """
-
-    kind: Literal["beam-half-plane"]
-    point: Point
-    normal: Point
-
-
-class FunctionContact(RigidContact):
-    """A beam that may touch a rigid edge y = f(x) (``axis`` is ``x``) or x = f(y) (``axis`` is ``y``).
-
-    ``coefficients`` of f, lowest power first, f in metres for a variable in metres, which is within ``range``.  The
-    beam lies ``above``, where the other coordinate is larger than f, or ``below``.  As with a :class:`LineContact`,
-    what is rigid lies behind the edge and ends where that does.
-    """
-
-    kind: Literal["beam-function"]
-    axis: Literal["x", "y"]
-    coefficients: Annotated[tuple[float, ...], Field(min_length=2)]
-    range: tuple[float, float]
-    side: Literal["above", "below"]
-
-    @property
-    def curve(self) -> Polynomial:
-        """The edge."""
-        return Polynomial(kind="polynomial", axis=self.axis, coefficients=self.coefficients, range=self.range)
-
-
-EdgeContact = LineContact | HalfPlaneContact | FunctionContact
-"""Contacts with what a beam may lie on up to its own pin, where it is held like by a stop."""
-
-Contact = Annotated[BeamContact | SelfContact | CircleContact | EdgeContact, Field(discriminator="kind")]
-
-
-class Stage(Record):
-    """A part of the loading: the values of one load or drive, in the order in which they are reached.
-
-    Loads and drives that no stage has stepped yet are zero (such a drive holds what it drives where it is);
-    each keeps its last value in later stages.
-
-    ``beyond`` asks where the branch that is followed ends because it is no minimum of the potential energy any more,
-    and says what happens there: ``stop``, or ``jump`` to the state that the decrease of the energy leads to.  Then
-    steps are so short that no end is passed.  Without it they are as long as they can be, and an end is told of only
-    where a step finds no way past it; where the energy's decrease leads to a state beside it, both solvers go on there
-    and say so in a note.  ``shown`` are the stations that tables and pictures are to show beside the last
-    of all.  ``critical_limit`` (in the unit of the stations) is how far apart and how uncertain critical values may be
-    within one theory with which the stage still wants to hear AGREE; without it what is usual.
-    """
-
-    name: Name
-    steps: Name
-    stations: Annotated[tuple[float, ...], Field(min_length=1, max_length=10_001)]
-    shown: tuple[float, ...] = ()
-    critical_limit: Positive | None = None
-    beyond: Literal["stop", "jump"] | None = None
-
+from cprbm_scene.mistakes import Mistake
+from cprbm_scene.record import Name, Named, Of, Record, Text, Title
+from cprbm_scene.units import (
+    ANGLE,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    STRESS,
+    Following,
+    Point,
+    Positive,
+    PositiveShare,
+    Reading,
+    Unit,
+    Units,
+    mistake,
+)
+
+__all__ = [
+    "CRITICAL",
+    "STRESSES",
+    "Arc",
+    "Assembly",
+    "Beam",
+    "BeamContact",
+    "BeamEnd",
+    "BeamForce",
+    "BeamMoment",
+    "Body",
+    "BodyLoad",
+    "BodyPin",
+    "CircleContact",
+    "Claim",
+    "Contact",
+    "Curve",
+    "DisplacementDrive",
+    "DistributedLoad",
+    "Drive",
+    "EdgeContact",
+    "FixedBody",
+    "Force",
+    "FreeBody",
+    "FreeEnd",
+    "FunctionContact",
+    "HalfPlaneContact",
+    "Line",
+    "LineContact",
+    "Load",
+    "Material",
+    "Moment",
+    "PaperBeam",
+    "PaperContact",
+    "PaperRigid",
+    "PinnedEnd",
+    "Point",
+    "Polynomial",
+    "Probe",
+    "Profile",
+    "Quantity",
+    "Record",
+    "Related",
+    "RigidContact",
+    "RotationDrive",
+    "Scene",
+    "SelfContact",
+    "Size",
+    "SlidingBody",
+    "Spline",
+    "Stage",
+    "Stop",
+    "TurningBody",
+    "Units",
+    "WeldedEnd",
+]
+
+Curve = NeutralLine
+V = TypeVar("V")
 
 Quantity = Literal[
     "displacement",
@@ -559,81 +157,155 @@ Quantity = Literal[
     "moment",
 ]
 
-
 STRESSES: frozenset[Quantity] = frozenset({"bending_stress", "combined_stress"})
-"""Quantities that are wanted at places along a beam."""
+"""Quantities at several places along a beam."""
+
+_UNITS: Mapping[Quantity, Unit] = frozendict(
+    {
+        "displacement": LENGTH,
+        "rotation": ANGLE,
+        "force": FORCE,
+        "centre": LENGTH,
+        "ends": LENGTH,
+        "bending_stress": STRESS,
+        "combined_stress": STRESS,
+        "reaction": FORCE,
+        "reaction_moment": MOMENT,
+        "potential_energy": MOMENT,
+        "angle": ANGLE,
+        "moment": MOMENT,
+    }
+)
+"""Units of probes; a closing load has the unit of its stage."""
+
+CRITICAL = "critical"
+"""Name of a claim's probe for the first critical value of a stage."""
+
+
+def _of_stage(reading: Reading, stage: Mapping[str, Any]) -> Unit | None:
+    """Unit of a stage's stations: the unit of the stepped load or drive."""
+    return reading.stepped.get(stage.get("steps", ""))
+
+
+def _of_stations(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
+    """Unit of the stations of a claim's stages."""
+    stage = claim.get("stage")
+    units = {unit for name, unit in reading.stages.items() if stage in (None, name)}
+    if len(units) > 1 and reading.units != Units():
+        found = "a number in the unit of several stages, which step different kinds"
+        raise mistake(found, "a stage beside it")
+    return next(iter(units), None)
+
+
+def _of_value(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
+    """Unit of a claim's probe."""
+    probe = claim.get("probe")
+    if probe == CRITICAL or reading.probes.get(str(probe), LENGTH) is None:
+        return _of_stations(reading, claim)
+    return reading.probes.get(str(probe))
+
+
+Station = Annotated[float, Following(_of_stage)]
+
+
+class Stage(Record):
+    """Part of the loading: the values of a load or drive, in the order of stepping.
+
+    Loads and drives are zero before a stage steps them (such a drive holds the initial place) and keep their last value
+    in later stages.
+
+    ``beyond`` selects the path at a critical point, where the state ceases to be a minimum of the potential
+    energy: ``stop``, or ``jump`` to the state at the end of the energy descent.  Load steps are then short enough
+    to pass no critical point.  Without ``beyond`` load steps are as long as possible, and a critical point is reported
+    only where no step leads past; a branch jump to a state beside the critical point is reported in a note.  ``shown``
+    are stations for tables and pictures, beside the last of all.  ``critical_limit`` (in the unit of the stations) replaces
+    the usual largest difference and uncertainty of critical values for the verdict AGREE.
+    """
+
+    name: Name
+    steps: Annotated[Name, Of("load or drive")]
+    stations: Annotated[tuple[Station, ...], Field(min_length=1, max_length=10_001)]
+    shown: tuple[Station, ...] = ()
+    critical_limit: Annotated[float, Field(gt=0.0), Following(_of_stage)] | None = None
+    beyond: Literal["stop", "jump"] | None = None
+
+    def rules(self) -> Iterator[Mistake]:
+        """Repeated stations, indistinguishable in an answer, and shown values without a station."""
+        before: list[float] = []  # ascending
+        for j, value in enumerate(self.stations):
+            place = bisect(before, value)
+            beside = before[max(0, place - 1) : place + 1]
+            before.insert(place, value)
+            if any(isclose(value, other, rel_tol=1e-9) for other in beside):
+                allowed = "each value once in a stage; a further stage may go back to it"
+                yield Mistake(f"stations[{j}]", f"{value:g} again", allowed)
+        stations = set(self.stations)
+        for j, value in enumerate(self.shown):
+            if value not in stations:
+                yield Mistake(f"shown[{j}]", f"{value:g}", "one of the stage's stations")
 
 
 class Probe(Record):
-    """A number (or a few) that is wanted at every station, named ``of.quantity``.
+    """Requested number (or numbers) at every station, named ``of.quantity``.
 
-    ``of`` is the name of a body's point, a body, a beam, a contact, a stop, or ``scene`` itself;
-    ``points`` the number of equal arc-length steps plus one at which a beam's stress is wanted;
-    ``verdict_limit`` stands in the place of the scene's for this probe.
+    ``of`` is the name of a body's point, a body, a beam, a contact, a stop, or ``scene``.  ``points`` is the number of
+    places, equally spaced in arc length, of a beam's stress.  ``verdict_limit`` replaces the scene's for this probe.
     """
 
     of: Name
     quantity: Quantity
     points: Annotated[int, Field(ge=3, le=10_001)] = 81
-    verdict_limit: Fraction | None = None
+    verdict_limit: PositiveShare | None = None
 
     @property
     def name(self) -> str:
-        """The probe's name as tables and JSON show it."""
+        """The probe's name in tables and JSON."""
         return f"{self.of}.{self.quantity}"
 
-
-CRITICAL = "critical"
-"""What a claim of a critical value has in the place of a probe's name."""
+    def rules(self) -> Iterator[Mistake]:
+        """Places of quantities other than stress."""
+        if "points" in self.model_fields_set and self.quantity not in STRESSES:
+            allowed = "points for 'bending_stress' and 'combined_stress' only"
+            yield Mistake("points", f"places along {self.name!r}", allowed)
 
 
 class Claim(Record):
-    """What a publication says of one probe: its relative difference stays below ``bound``.
+    """Statement of a publication on a probe: the relative difference stays below ``bound``.
 
-    Without a ``station`` it says so of every station at which the probe has a value, without a ``stage`` of every
-    stage.  With a ``value`` (SI) it says what the probe's is: ours then stays within ``bound`` of it, a share of the
-    value, or of the probe's scale where the value is zero.
+    Without a ``station`` the claim concerns every station with a value of the probe, without a ``stage`` every stage.
+    With a ``value`` (SI) the claim states the probe's value: ours then stays within ``bound`` of the value, a fraction
+    of the value, or of the probe's scale if the value is zero.
 
-    Of the probe ``critical`` it speaks of the first critical value of the ``stage``, without one of every stage.
+    The probe ``critical`` is the first critical value of the ``stage``, without a stage of every stage.
     """
 
     probe: str
     stage: Name | None = None
-    station: float | None = None
-    value: float | None = None
+    station: Annotated[float, Following(_of_stations)] | None = None
+    value: Annotated[float, Following(_of_value)] | None = None
     bound: Positive
-    text: str = ""
+    text: Text = ""
 
     def speaks_of(self, stage: str, station: float) -> bool:
-        """Whether the claim is made at a station: at its own, whose digits may be written in another way, or at all."""
+        """True if the claim concerns a station; stations are equal up to round-off."""
         return self.in_stage(stage) and (self.station is None or isclose(self.station, station, rel_tol=1e-9))
 
     def in_stage(self, stage: str) -> bool:
-        """Whether the claim is made in a stage: in its own, or in all."""
+        """True if the claim concerns a stage."""
         return self.stage is None or self.stage == stage
 
 
-class Units(Record):
-    """Units of the numbers in a file; moments, distributed loads and energies are of force and length."""
-
-    length: Literal["m", "cm", "mm", "um", "in"] = "m"
-    force: Literal["N", "kN", "mN", "uN"] = "N"
-    angle: Literal["rad", "deg"] = "rad"
-    stress: Literal["Pa", "kPa", "MPa", "GPa"] = "Pa"
-
-
 class Scene(Record):
-    """One problem statement: what is there, what happens to it, and what is asked.
+    """The problem statement: mechanism, loading, requested quantities.
 
     Names of points, bodies, beams, contacts, stops, pins, loads and drives are unique across the scene.
-    ``verdict_limit`` is the largest total uncertainty (a fraction of a probe's scale)
-    with which the scene still wants to hear AGREE; a probe may have its own.  ``units`` are those of a file; of a scene
-    that was read they are SI (:mod:`cprbm_scene.units`).
+    ``verdict_limit`` is the largest total uncertainty, a fraction of a probe's scale, for the
+    verdict AGREE; a probe may have another limit.  ``units`` are those of a file; a scene from a file has SI units.
     """
 
     name: Name
-    title: str = ""
-    source: str = ""
+    title: Title = ""
+    source: Text = ""
     units: Units = Units()
     materials: Named[Material]
     beams: Annotated[Named[Beam], Field(min_length=1, max_length=256)]
@@ -647,18 +319,37 @@ class Scene(Record):
     stages: Annotated[tuple[Stage, ...], Field(min_length=1)]
     probes: Annotated[tuple[Probe, ...], Field(min_length=1)]
     claims: tuple[Claim, ...] = ()
-    verdict_limit: Fraction = 0.015
+    verdict_limit: PositiveShare = 0.015
     file: str = ""
 
+    @field_validator("units", "loads", "drives", "stages", "probes")
+    @classmethod
+    def _register(cls, value: V, info: ValidationInfo) -> V | Units:
+        """The value itself, with units stored for later fields; SI units in place of the file's units."""
+        reading = info.context
+        if not isinstance(reading, Reading):
+            return value
+        match info.field_name, value:
+            case "units", _:
+                return Units()
+            case "stages", tuple(stages):
+                units = ((stage.name, reading.stepped.get(stage.steps)) for stage in stages)
+                reading.stages.update({name: unit for name, unit in units if unit is not None})
+            case "probes", tuple(probes):
+                reading.probes.update({probe.name: _UNITS.get(probe.quantity) for probe in probes})
+            case _, Mapping() as acting:
+                reading.stepped.update({name: each.unit for name, each in acting.items()})
+        return value
+
     def limit(self, probe: Probe) -> float:
-        """The largest total uncertainty, a fraction of the probe's scale, with which AGREE may be said of it."""
+        """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""
         return self.verdict_limit if probe.verdict_limit is None else probe.verdict_limit
 
     def stepped(self, stage: Stage) -> Load | Drive:
-        """The load or drive that a stage steps.
+        """The stepped load or drive of a stage.
 
         Raises:
-            KeyError: nothing has the name that the stage says.
+            KeyError: no load or drive has the stage's name of ``steps``.
         """
         return self.loads[stage.steps] if stage.steps in self.loads else self.drives[stage.steps]
 
@@ -671,7 +362,7 @@ class Scene(Record):
         return self.bodies[self.body_of(point)].points[point]
 
     def body_of(self, point: str) -> str:
-        """Name of the body that owns ``point``.
+        """Name of the body of a ``point``.
 
         Raises:
             KeyError: no body has a point of that name.

@@ -18,7 +18,7 @@ import numpy as np
 from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLine
 
 from cprbm_scene.answer import Array
-from cprbm_scene.check_shapes import is_apart
+from cprbm_scene.joints import is_apart
 from cprbm_scene.statement import (
     Beam,
     BeamEnd,

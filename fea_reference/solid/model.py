@@ -14,8 +14,8 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from cprbm_scene.answer import Array, Ints
-from cprbm_scene.check_shapes import is_apart
 from cprbm_scene.geometry import arc_length
+from cprbm_scene.joints import is_apart
 from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,

@@ -1,10 +1,15 @@
-"""Edits of plain scene data for tests: what is read from TOML, changed at one or more key paths."""
+"""Edits of plain scene data for tests, and beams on given curves."""
 
 import copy
 import tomllib
 from pathlib import Path
 
-from cprbm_scene import SceneError, scene_from
+import numpy as np
+
+from cprbm_scene import Beam, FreeEnd, SceneError, scene_from
+from cprbm_scene.closest import closest_pair
+from cprbm_scene.curves import least
+from cprbm_scene.geometry import points_on
 
 HINGE = tomllib.loads((Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml").read_text(encoding="utf-8"))
 REMOVED = object()
@@ -65,3 +70,19 @@ def two_lines(gap, *, thick=True, second=None):
         "stages": [{"name": "load", "steps": "F", "stations": [1.0]}],
         "probes": [{"of": "Q", "quantity": "displacement"}],
     }
+
+
+def beam_on(curve, thickness):
+    """A beam along a curve, without joints."""
+    free = FreeEnd(joint="free")
+    return Beam(curve=curve, thickness=thickness or 1e-9, width=0.01, material="m", start=free, end=free)
+
+
+def line_distance(first, second, near=0.0):
+    """Least distance of two neutral lines, m, that is ``near`` a value; a distance far above is not refined."""
+    return near + closest_pair(beam_on(first, near), beam_on(second, near), thick=near > 0.0).gap
+
+
+def distance_to(curve, point):
+    """Least distance of a neutral line from a point, m."""
+    return least(lambda u: np.hypot(*(points_on(curve, u) - point).T), np.linspace(0.0, 1.0, 2001))

@@ -75,5 +75,5 @@ def test_a_ring_that_overlaps_itself_as_drawn():
         "probes": [{"of": "own", "quantity": "force"}],
     }
     (sentence,) = mistakes(base=data).values()
-    assert "a ring that overlaps itself" in sentence
+    assert "a beam that overlaps itself" in sentence
     assert mistakes(("beams/ring/thickness", 0.0009), base=data) == {}

@@ -43,7 +43,7 @@ def test_a_ring_is_open_by_its_thickness_or_refused(direction):
     found = mistakes(base=_with(_ring(0.9 * T, direction)))
     assert list(found) == [KEY]
     assert "overlaps itself" in found[KEY]
-    assert "0.0018 m apart, and they are 0.002 m thick" in found[KEY]
+    assert "0.0018 m from itself, and is 0.002 m thick" in found[KEY]
 
 
 def test_a_short_arc_is_no_ring():

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cprbm_scene import Arc, Line, scene_from
-from cprbm_scene.geometry import distance_to, points_on
-from tests.cprbm_scene.editing import REMOVED, edited, mistakes
+from cprbm_scene.geometry import points_on
+from tests.cprbm_scene.editing import REMOVED, distance_to, edited, mistakes
 
 T, L, R = 0.002, 0.1, 0.03
 
@@ -125,7 +125,7 @@ def test_an_arc_inside_a_circle_and_one_round_it():
         ("thick", 1, "contacts.touch.thick", "true or false"),
         ("radius", 1e-9, "contacts.touch.radius", "1e-08 of the beam's length"),
         ("radius", 1e6, "contacts.touch.radius", "1e+07 of the beam's length"),
-        ("center", [0.0, -1e300], "contacts.touch.center", "coordinates up to 1e+300 m"),
+        ("center", [0.0, -1e40], "contacts.touch.center", "coordinates up to 1e+40 m"),
     ],
 )
 def test_a_mistake_is_named_by_its_key_and_only_once(path, value, key, words):
@@ -136,7 +136,7 @@ def test_a_mistake_is_named_by_its_key_and_only_once(path, value, key, words):
 
 def test_the_same_circle_twice_is_refused_and_two_circles_pass():
     second = dict(CIRCLE["contacts"]["touch"])
-    assert "circle of contacts.touch again" in mistakes(("contacts/more", second), base=CIRCLE)["contacts.more"]
+    assert "shape of contacts.touch again" in mistakes(("contacts/more", second), base=CIRCLE)["contacts.more"]
     assert mistakes(("contacts/more", {**second, "center": [0.06, 0.031]}), base=CIRCLE) == {}
     assert mistakes(("contacts/more", {**second, "body": "block"}), base=CIRCLE) == {}
 
@@ -180,7 +180,7 @@ def test_any_circle_is_a_scene_or_a_scene_error(x, y, radius, thick):
 
 
 @settings(max_examples=40, deadline=None, derandomize=True)
-@given(exponent=st.integers(-290, 290))
+@given(exponent=st.integers(-140, 140))
 def test_the_circle_at_any_scale_is_the_same_question(exponent):
     factor = math.ldexp(1.0, exponent)
     data = edited(base=CIRCLE)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from cprbm_scene import FunctionContact, HalfPlaneContact, LineContact, SceneError, scene_from
-from cprbm_scene.check_edges import distance_from
+from cprbm_scene.check_rigid import distance_from
 from tests.cprbm_scene.editing import REMOVED, edited, mistakes
 
 T, L = 0.002, 0.1
@@ -164,12 +164,10 @@ def test_distances_from_lines_and_functions():
     line = LineContact(
         kind="beam-line", beam="b", body="g", points=tuple(map(tuple, corners.tolist())), side="left", thick=False
     )
-    d = distance_from(line, 1.0)(p)
+    d = distance_from(line)(p)
     assert np.abs(d) == pytest.approx(sampled(corners, p), abs=1e-3)
     # in front of it and behind, and beside its end
-    near = distance_from(line, 1.0)(
-        np.array([(-0.3, 0.5), (0.0, 0.7), (0.0, 0.5), (0.3, 0.0), (0.3, -0.2), (0.9, -0.2)])
-    )
+    near = distance_from(line)(np.array([(-0.3, 0.5), (0.0, 0.7), (0.0, 0.5), (0.3, 0.0), (0.3, -0.2), (0.9, -0.2)]))
     assert np.sign(near).tolist() == [1.0, 1.0, -1.0, 1.0, -1.0, 1.0]
 
     edge = FunctionContact(
@@ -182,14 +180,14 @@ def test_distances_from_lines_and_functions():
         side="above",
     )
     y = np.linspace(-0.6, 0.5, 21)
-    d = distance_from(edge, 1.0)(p)
+    d = distance_from(edge)(p)
     assert np.abs(d) == pytest.approx(sampled(np.column_stack((0.1 + 0.3 * y - 0.8 * y**2, y)), p), abs=1e-3)
     inside = (np.abs(p[:, 1]) < 0.2) & (np.abs(d) < 0.3)
     f = 0.1 + 0.3 * p[:, 1] - 0.8 * p[:, 1] ** 2
     assert np.array_equal(np.sign(d[inside]), np.sign(p[inside, 0] - f[inside]))
 
     plane = HalfPlaneContact(kind="beam-half-plane", beam="b", body="g", point=(0.1, 0.2), normal=(3.0, 4.0))
-    assert distance_from(plane, 1.0)(p) == pytest.approx((p - (0.1, 0.2)) @ (0.6, 0.8))
+    assert distance_from(plane)(p) == pytest.approx((p - (0.1, 0.2)) @ (0.6, 0.8))
 
 
 @pytest.mark.parametrize("contact", KINDS)

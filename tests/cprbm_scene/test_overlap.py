@@ -6,8 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cprbm_scene import Arc, Line
-from cprbm_scene.geometry import closest_pair
-from tests.cprbm_scene.editing import HINGE, edited, mistakes, two_lines
+from tests.cprbm_scene.editing import HINGE, edited, line_distance, mistakes, two_lines
 
 T = 0.002
 
@@ -81,12 +80,12 @@ def test_the_distance_of_two_circles_is_that_of_their_centres_less_the_radii(off
         ends = [(middle[0] + R * np.cos(opening + d), middle[1] + R * np.sin(opening + d)) for d in (0.1, -0.1)]
         return Arc(kind="arc", center=middle, start=ends[0], end=ends[1], direction="counterclockwise")
 
-    pair = closest_pair(ring((0.0, 0.0), 1.0, towards + np.pi), ring(centre, radius, towards))
-    assert pair.distance == pytest.approx(offset - 1.0 - radius, abs=1e-8)
+    apart = line_distance(ring((0.0, 0.0), 1.0, towards + np.pi), ring(centre, radius, towards))
+    assert apart == pytest.approx(offset - 1.0 - radius, abs=1e-8)
 
 
 def test_a_crossing_is_found_where_another_place_is_nearly_as_near():
     """A chord cuts the arc twice, close to grazing: the distance is zero, not the samples' spacing."""
     arc = Arc(kind="arc", center=(0.0, 0.0), start=(1.0, 0.0), end=(-1.0, 0.0), direction="counterclockwise")
     chord = Line(kind="line", start=(-0.7, 0.9999), end=(0.9, 0.9999))
-    assert closest_pair(arc, chord).distance == pytest.approx(0.0, abs=1e-8)
+    assert line_distance(arc, chord) == pytest.approx(0.0, abs=1e-8)

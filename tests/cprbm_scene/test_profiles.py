@@ -56,7 +56,7 @@ def size(at=(0.0, 0.25, 1.0), values=(0.003, 0.001, 0.002), **more):
         (size(values=[0.003, NAN, 0.002]), "values[1]", "finite"),
         (size(values=[0.003, "thin", 0.002]), "values[1]", "a number"),
         ({"at": [0.0, 1.0], "values": 0.002}, "values", "a list"),
-        (size(values=[1e-300, 1e300, 0.002]), "values", "1e-300 m to 1e+300 m; values of which the largest"),
+        (size(values=[1e-30, 1e30, 0.002]), "values", "1e-30 m to 1e+30 m; values of which the largest"),
         (size(a=1), "a", "no key here"),
         ({"at": [0.0, 1.0]}, "values", "required"),
     ],

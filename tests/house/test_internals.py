@@ -112,10 +112,15 @@ def documented(module):
 
 
 def defined(module):
-    """Names of the public classes and functions of a module, if they have a docstring."""
+    """Names of the public classes and functions of a module, also those in ``__all__``, if they have a docstring."""
     owner = importlib.import_module(module)
+    exported = getattr(owner, "__all__", ())
     kinds = {*inspect.getmembers(owner, inspect.isclass), *inspect.getmembers(owner, inspect.isfunction)}
-    return [name for name, value in kinds if value.__module__ == module and value.__doc__ and name[0] != "_"]
+    return [
+        name
+        for name, value in kinds
+        if (value.__module__ == module or name in exported) and value.__doc__ and name[0] != "_"
+    ]
 
 
 @pytest.mark.parametrize("module", DOCUMENTED)

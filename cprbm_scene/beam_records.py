@@ -1,0 +1,196 @@
+"""Records of beams: material, ends, sizes along the beam.
+
+Bounds are on dimensionless numbers, with thickness t, arc length L and curvature κ:
+
+* 1e-5 ≤ t/L ≤ 0.2: a thicker beam has no beam theory, a thinner beam's EI/L³ is lost in round-off;
+* t κ/2 < 0.5: the inner edge keeps at least half of the neutral line's length; for a varying t, at every place;
+* values of a size within a factor of 1e5, at places at least 1e-6 of the length apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from itertools import pairwise
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Discriminator, Field, Tag
+
+from cprbm_scene.curve_records import CurveField, shape_of
+from cprbm_scene.mistakes import Mistake
+from cprbm_scene.record import Name, Of, Record
+from cprbm_scene.units import NUMBER, STRESS, Number, PositiveLength
+
+Array = NDArray[np.float64]
+
+THINNEST, THICKEST = 1e-5, 0.2
+MOST_CURVED = 0.5
+CLOSEST = 1e-6
+MOST_PLACES = 1001
+LARGEST_RATIO = 1e5
+_SAMPLES = 2001
+"""Samples of a beam of varying thickness, with two samples in 1/1000 of the length."""
+
+
+class Material(Record):
+    """Linear elastic, isotropic material: ``youngs_modulus`` in Pa, ``poisson_ratio`` a number."""
+
+    youngs_modulus: Annotated[float, Field(gt=0.0), STRESS]
+    poisson_ratio: Annotated[float, Field(gt=-1.0, le=0.5), NUMBER]
+
+
+PointName = Annotated[Name, Of("point")]
+
+
+class WeldedEnd(Record):
+    """End of a beam, moving and turning with the body of a ``point``."""
+
+    joint: Literal["weld"]
+    point: PointName
+
+
+class PinnedEnd(Record):
+    """End of a beam at a body's ``point``, free to turn about the point."""
+
+    joint: Literal["pin"]
+    point: PointName
+
+
+class FreeEnd(Record):
+    """End of a beam without a joint."""
+
+    joint: Literal["free"]
+
+
+BeamEnd = Annotated[WeldedEnd | PinnedEnd | FreeEnd, Field(discriminator="joint")]
+
+
+class Profile(Record):
+    """Variable size of a beam: ``values`` (m) at fractions ``at`` of the arc length, linear between them.
+
+    The fractions ascend from 0 to 1.
+    """
+
+    at: Annotated[tuple[Number, ...], Field(min_length=2)]
+    values: Annotated[tuple[PositiveLength, ...], Field(min_length=2)]
+
+    def rules(self) -> Iterator[Mistake]:
+        """Places without ascent from 0 to 1, or more or fewer than the values; jumps of the size."""
+        at, values = self.at, self.values
+        if len(at) != len(values):
+            found = f"{len(values)} values at {len(at)} places"
+            yield Mistake("values", found, "as many values as places in at")
+        elif len(at) > MOST_PLACES:
+            yield Mistake("at", f"{len(at)} places", f"at most {MOST_PLACES} of them")
+        elif at[0] != 0.0 or at[-1] != 1.0:
+            allowed = "fractions of the beam's length that begin with 0 and end with 1"
+            yield Mistake("at", f"places from {at[0]:.9g} to {at[-1]:.9g}", allowed)
+        elif not max(values) / LARGEST_RATIO <= min(values):
+            allowed = f"values of which the largest is at most {LARGEST_RATIO:g} times the least"
+            yield Mistake("values", f"values from {min(values):g} m to {max(values):g} m", allowed)
+        else:
+            for i, (before, place) in enumerate(pairwise(at), start=1):
+                if not place - before >= CLOSEST:
+                    allowed = f"places that ascend, each at least {CLOSEST:g} after the one before"
+                    yield Mistake(f"at[{i}]", f"{place:.9g} after {before:.9g}", allowed)
+                    return
+
+
+def _size_tag(value: object) -> str:
+    return "profile" if isinstance(value, Mapping | Profile) else "number"
+
+
+Size = Annotated[
+    Annotated[PositiveLength, Tag("number")] | Annotated[Profile, Tag("profile")], Discriminator(_size_tag)
+]
+
+
+class PaperBeam(Record):
+    """Elements of the formulation ``paper``, ``uniform`` along ``x`` or ``y`` instead of the arc length."""
+
+    uniform: Literal["x", "y"]
+
+
+class Beam(Record):
+    """Slender beam of rectangular section, free of stress in the shape of the ``curve``.
+
+    ``thickness`` lies in the plane of motion, ``width`` across the plane, m.  Both are a number or vary along the beam.
+    """
+
+    curve: CurveField
+    thickness: Size
+    width: Size
+    material: Annotated[Name, Of("material")]
+    start: BeamEnd
+    end: BeamEnd
+    paper: PaperBeam | None = None
+
+    def thickness_at(self, u: Array) -> Array:
+        """Thickness at fractions ``u`` of the arc length, m, in the same shape."""
+        return _size_at(self.thickness, u)
+
+    def width_at(self, u: Array) -> Array:
+        """Width at fractions ``u`` of the arc length, m, in the same shape."""
+        return _size_at(self.width, u)
+
+    @property
+    def knots(self) -> Array:
+        """Fractions (k,) between which thickness and width are linear, from 0 to 1."""
+        inner = [size.at for size in (self.thickness, self.width) if isinstance(size, Profile)]
+        return np.array(sorted({0.0, 1.0}.union(*inner)))
+
+    @property
+    def thinnest(self) -> float:
+        """The least thickness, m."""
+        return min(self.thickness.values) if isinstance(self.thickness, Profile) else self.thickness
+
+    @property
+    def thickest(self) -> float:
+        """The largest thickness, m."""
+        return max(self.thickness.values) if isinstance(self.thickness, Profile) else self.thickness
+
+    @property
+    def tapered(self) -> bool:
+        """True if the thickness varies along the beam."""
+        return self.thinnest < self.thickest
+
+    @property
+    def sound(self) -> bool:
+        """True if curve and sizes exist and are in proportion: geometry and clearance need this."""
+        return _sound(self)
+
+    def rules(self) -> Iterator[Mistake]:
+        """Thickness out of proportion to the length or the curvature, of a curve and sizes without mistakes."""
+        parts = [part for part in (self.curve, self.thickness, self.width) if isinstance(part, Record)]
+        if any(mistake for part in parts for mistake in part.rules()):
+            return
+        shape = shape_of(self.curve)
+        for thickness in (self.thinnest, self.thickest):
+            share = thickness / shape.length
+            if not THINNEST <= share <= THICKEST:
+                found = f"{thickness:g} m, which is {share:.3g} of the beam's length"
+                allowed = f"a thickness between {THINNEST:g} and {THICKEST:g} of the beam's length"
+                yield Mistake("thickness", found, allowed)
+                return
+        thickness, curvature = self.thickest, shape.largest_curvature
+        if self.tapered and 0.5 * thickness * curvature >= MOST_CURVED:
+            u = np.union1d(np.linspace(0.0, 1.0, _SAMPLES), self.knots)
+            worst = u[[(self.thickness_at(u) * shape.curvature(u)).argmax()]]
+            thickness, curvature = float(self.thickness_at(worst)[0]), float(shape.curvature(worst)[0])
+        if 0.5 * thickness * curvature >= MOST_CURVED:
+            found = f"{thickness:g} m, half of which is {0.5 * thickness * curvature:.3g} of the radius of curvature"
+            yield Mistake("thickness", found, f"half a thickness less than {MOST_CURVED:g} of the radius of curvature")
+
+
+@lru_cache(maxsize=512)
+def _sound(beam: Beam) -> bool:
+    parts = [part for part in (beam, beam.curve, beam.thickness, beam.width) if isinstance(part, Record)]
+    return not any(mistake for part in parts for mistake in part.rules())
+
+
+def _size_at(size: float | Profile, u: Array) -> Array:
+    if isinstance(size, Profile):
+        return np.asarray(np.interp(u, size.at, size.values))
+    return np.full(np.shape(u), size)

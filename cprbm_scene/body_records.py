@@ -1,0 +1,224 @@
+"""Records of rigid bodies, pins between bodies, stops at pins, assembly, loads and drives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from cprbm_scene.beam_records import PointName
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake, unknown_name
+from cprbm_scene.record import Name, Named, Of, Record, nonzero
+from cprbm_scene.units import ANGLE, FORCE, LENGTH, LINE_LOAD, MOMENT, Direction, Point, Share, Unit
+
+SHORTEST_STRETCH = 1e-6
+"""Least length of a distributed load, of the beam's length."""
+
+Points = Annotated[Named[Point], Field(min_length=1)]
+BodyName = Annotated[Name, Of("body")]
+BeamName = Annotated[Name, Of("beam")]
+
+
+class FixedBody(Record):
+    """The ground: a rigid body with named points (m), at rest."""
+
+    motion: Literal["fixed"]
+    points: Points
+
+
+class FreeBody(Record):
+    """Rigid body with two translations and a rotation; ``points`` at their initial places, m."""
+
+    motion: Literal["free"]
+    points: Points
+
+
+class SlidingBody(Record):
+    """Rigid body on a frictionless guide of the ground: the body moves ``along`` a direction and does not turn.
+
+    With ``turns`` the body is a pin in a slot: the point ``about`` stays in the slot and the body turns about the
+    point.  A body with a single point needs no ``about``.  ``points`` at their initial places, m.
+    """
+
+    motion: Literal["slides"]
+    along: Direction
+    turns: bool = False
+    about: Name | None = None
+    points: Points
+
+    @property
+    def pin(self) -> Name | None:
+        """The point in the slot, about which the body turns; None without ``turns``."""
+        if not self.turns:
+            return None
+        return next(iter(self.points)) if self.about is None else self.about
+
+    def rules(self) -> Iterator[Mistake]:
+        """A guide without direction; a pin without a point, of another body or without ``turns``."""
+        yield from nonzero("along", self.along)
+        if self.about is not None and self.about not in self.points:
+            yield unknown_name("about", self.about, "point of this body", self.points)
+        elif self.about is not None and not self.turns:
+            found = f"{self.about!r}, a point to turn about, of a body that does not turn"
+            yield Mistake("about", found, "turns = true, or no point")
+        elif self.turns and self.about is None and len(self.points) > 1:
+            found = "nothing: of the points of a body that slides and turns, one stays in the slot"
+            yield Mistake("about", found, f"one of {', '.join(map(repr, self.points))}")
+
+
+class TurningBody(Record):
+    """Rigid body on a frictionless pivot of the ground: the body turns ``about`` a point of the body.
+
+    ``points`` at their initial places, m.
+    """
+
+    motion: Literal["turns"]
+    about: Name
+    points: Points
+
+    def rules(self) -> Iterator[Mistake]:
+        """A pivot outside the body's points."""
+        if self.about not in self.points:
+            yield unknown_name("about", self.about, "point of this body", self.points)
+
+
+Body = Annotated[FixedBody | FreeBody | SlidingBody | TurningBody, Field(discriminator="motion")]
+
+
+class BodyPin(Record):
+    """Frictionless hinge between two bodies: the ``points``, from two bodies, stay together."""
+
+    points: Annotated[tuple[Name, Name], Of("point")]
+
+
+class Stop(Record):
+    """Limits of the angle between a pinned ``beam`` and the body, rad: ``least``, ``most`` or both.
+
+    The angle runs counter-clockwise from the line between the pin and ``towards``, another point of the same body, to
+    the direction of the beam away from the pin.  As drawn the angle lies in (−π, π].  The angle is continuous and
+    grows as the beam's ``end`` turns counter-clockwise against the body.  A reached limit holds by a moment, without
+    friction.
+    """
+
+    beam: BeamName
+    end: Literal["start", "end"]
+    towards: PointName
+    least: Annotated[float, ANGLE] | None = None
+    most: Annotated[float, ANGLE] | None = None
+
+    def rules(self) -> Iterator[Mistake]:
+        """No limit, or limits in the wrong order."""
+        if self.least is None and self.most is None:
+            yield Mistake("", "neither 'least' nor 'most'", "at least one of the two, rad")
+        elif self.least is not None and self.most is not None and not self.least < self.most:
+            found = f"least = {self.least:g} rad and most = {self.most:g} rad"
+            yield Mistake("", found, "a least angle that is less than the most")
+
+
+class Assembly(Record):
+    """Motion of pinned ends, drawn apart from their points, to the points before the first stage.
+
+    Three parts, without other loads or drives: ``moments`` (N·m, counter-clockwise on the end of the named beam) grow
+    while the ends are free; the ends move straight to their points; the moments decrease to zero.  The moments select
+    an assembled state among several.  Contacts act throughout, stops as soon as the ends are at their points.
+    """
+
+    moments: Annotated[Named[Annotated[float, MOMENT]], Of("beam")] = Field(default_factory=frozendict)
+
+
+class Moment(Record):
+    """Moment on a ``body``, counter-clockwise positive, N·m."""
+
+    unit: ClassVar[Unit] = MOMENT
+    kind: Literal["moment"]
+    body: BodyName
+
+
+class Force(Record):
+    """Dead force at a body's ``point``, N: the ``direction`` (of any length but zero) stays as the body turns."""
+
+    unit: ClassVar[Unit] = FORCE
+    kind: Literal["force"]
+    point: PointName
+    direction: Direction
+
+    def rules(self) -> Iterator[Mistake]:
+        """A direction [0, 0]."""
+        return nonzero("direction", self.direction)
+
+
+class BeamForce(Record):
+    """Dead force on a ``beam``, N, ``at`` a fraction of the arc length from the start.
+
+    The ``direction`` (of any length but zero) stays as the beam turns.
+    """
+
+    unit: ClassVar[Unit] = FORCE
+    kind: Literal["beam_force"]
+    beam: BeamName
+    at: Share
+    direction: Direction
+
+    def rules(self) -> Iterator[Mistake]:
+        """A direction [0, 0]."""
+        return nonzero("direction", self.direction)
+
+
+class BeamMoment(Record):
+    """Moment on a ``beam``, counter-clockwise positive, N·m, ``at`` a fraction of the arc length from the start."""
+
+    unit: ClassVar[Unit] = MOMENT
+    kind: Literal["beam_moment"]
+    beam: BeamName
+    at: Share
+
+
+class DistributedLoad(Record):
+    """Dead load on a ``beam``, N per metre of arc length, constant ``along`` the beam between two fractions.
+
+    The ``direction`` (of any length but zero) stays as the beam turns: a weight, not a pressure.
+    """
+
+    unit: ClassVar[Unit] = LINE_LOAD
+    kind: Literal["distributed"]
+    beam: BeamName
+    direction: Direction
+    along: tuple[Share, Share] = (0.0, 1.0)
+
+    def rules(self) -> Iterator[Mistake]:
+        """A direction [0, 0], and a stretch without length."""
+        yield from nonzero("direction", self.direction)
+        begin, end = self.along
+        if not end - begin >= SHORTEST_STRETCH:
+            allowed = "two fractions of the beam's length, the smaller one first"
+            yield Mistake("along", f"a stretch from {begin:.9g} to {end:.9g}", allowed)
+
+
+Load = Annotated[Moment | Force | BeamForce | BeamMoment | DistributedLoad, Field(discriminator="kind")]
+BodyLoad = Moment | Force
+
+
+class DisplacementDrive(Record):
+    """Prescribed displacement of a body's ``point`` along ``direction`` (of any length but zero), m."""
+
+    unit: ClassVar[Unit] = LENGTH
+    kind: Literal["displacement"]
+    point: PointName
+    direction: Direction
+
+    def rules(self) -> Iterator[Mistake]:
+        """A direction [0, 0]."""
+        return nonzero("direction", self.direction)
+
+
+class RotationDrive(Record):
+    """Prescribed rotation of a ``body``, counter-clockwise, rad."""
+
+    unit: ClassVar[Unit] = ANGLE
+    kind: Literal["rotation"]
+    body: BodyName
+
+
+Drive = Annotated[DisplacementDrive | RotationDrive, Field(discriminator="kind")]

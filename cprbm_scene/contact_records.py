@@ -1,0 +1,224 @@
+"""Records of contacts: two beams, a beam with itself, a beam with a rigid circle or edge."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations, islice, pairwise
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from cprbm_scene.curve_records import MOST_POINTS, Polynomial, graph_rules
+from cprbm_scene.curves import unit_vector
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake
+from cprbm_scene.record import Name, Named, Of, Record, nonzero
+from cprbm_scene.units import Coefficients, Direction, Length, Point, PositiveLength
+
+BACKWARDS = 1e-3
+"""1 + cos of the angle between two pieces of a line, below which the line turns back on itself: 2.6 degrees."""
+
+
+class Related(Record):
+    """Joints of a beam with possible contact: a range of the initial ``x`` or ``y`` (not both), m."""
+
+    x: tuple[Length, Length] | None = None
+    y: tuple[Length, Length] | None = None
+
+    def rules(self) -> Iterator[Mistake]:
+        """Ranges of both coordinates or of none, and descending ranges."""
+        ranges = [(axis, span) for axis, span in (("x", self.x), ("y", self.y)) if span is not None]
+        if len(ranges) != 1:
+            yield Mistake("", "both x and y" if ranges else "neither x nor y", "a range in exactly one of x and y")
+        for axis, span in ranges:
+            if span[0] >= span[1]:
+                yield Mistake(axis, str(list(span)), "a range from the smaller to the larger value")
+
+
+class PaperContact(Record):
+    """Data for the formulation ``paper``: beam and axis of the boundary function, related joints.
+
+    ``boundary`` names the beam of the function g_s; ``axis`` is the axis of the gap: ``y`` for g_s(x) − y,
+    ``x`` for g_s(y) − x.  Without an entry in ``related`` all joints of a beam are related.
+    """
+
+    boundary: Name
+    axis: Literal["x", "y"] = "y"
+    related: Named[Related] = Field(default_factory=frozendict)
+
+
+class PaperRigid(Record):
+    """Joints of the beam outside the rigid shape in the formulation ``paper``; without an entry all joints."""
+
+    related: Named[Related] = Field(default_factory=frozendict)
+
+
+def _paper_rules(paper: PaperContact | PaperRigid | None, beams: tuple[str, ...], allowed: str) -> Iterator[Mistake]:
+    """Entries for beams outside the contact."""
+    if isinstance(paper, PaperContact) and paper.boundary not in beams:
+        yield Mistake("paper.boundary", repr(paper.boundary), allowed)
+    for beam in paper.related if paper is not None else ():
+        if beam not in beams:
+            yield Mistake(f"paper.related.{beam}", f"the beam {beam!r}", allowed)
+
+
+class BeamContact(Record):
+    """Frictionless contact of two beams; ``thick`` beams touch by their edges, other beams as lines."""
+
+    kind: Literal["beam-beam"]
+    between: Annotated[tuple[Name, Name], Of("beam")]
+    thick: bool = True
+    paper: PaperContact | None = None
+
+    @property
+    def beams(self) -> tuple[str, ...]:
+        """Names of the beams; places are measured along the first beam."""
+        return self.between
+
+    def rules(self) -> Iterator[Mistake]:
+        """A pair of the same beam twice, and data for ``paper`` of other beams."""
+        if self.between[0] == self.between[1]:
+            allowed = "two different beams; a beam may touch itself in a contact of kind 'beam-self'"
+            yield Mistake("between", f"{self.between[0]!r} twice", allowed)
+        allowed = f"one of the pair: {', '.join(map(repr, self.between))}"
+        yield from _paper_rules(self.paper, self.between, allowed)
+
+
+class SelfContact(Record):
+    """Frictionless contact of a beam with itself, after enough rotation.
+
+    A ``thick`` beam touches by the edges, half of the local thickness from the neutral line; another beam as a line.
+    The touching side of the beam follows from the motion.
+    """
+
+    kind: Literal["beam-self"]
+    beam: Annotated[Name, Of("beam")]
+    thick: bool = True
+    paper: ClassVar[None] = None  # the formulation has no form for self-contact
+
+    @property
+    def beams(self) -> tuple[str, ...]:
+        """Name of the beam."""
+        return (self.beam,)
+
+
+class RigidContact(Record):
+    """Fields of all contacts of a beam with a rigid shape, without friction.
+
+    The shape is fixed to ``body`` and stated at the initial place, m.  A ``thick`` beam touches by the edge, half of
+    the local thickness from the neutral line; another beam as a line.
+    """
+
+    beam: Annotated[Name, Of("beam")]
+    body: Annotated[Name, Of("body")]
+    thick: bool = True
+    paper: PaperRigid | None = None
+
+    @property
+    def beams(self) -> tuple[str, ...]:
+        """Name of the beam."""
+        return (self.beam,)
+
+    def rules(self) -> Iterator[Mistake]:
+        """Data for ``paper`` of other beams, and shapes without geometry."""
+        yield from _paper_rules(self.paper, self.beams, f"the contact's beam {self.beam!r}")
+        yield from islice(self.shape_rules(), 1)
+
+    def shape_rules(self) -> Iterator[Mistake]:
+        """Mistakes of the shape, only the first of them valid; none by default."""
+        return iter(())
+
+
+class CircleContact(RigidContact):
+    """Contact of a beam with a rigid circle of ``radius`` about ``center`` from outside."""
+
+    kind: Literal["beam-circle"]
+    center: Point
+    radius: PositiveLength
+
+
+class LineContact(RigidContact):
+    """Contact of a beam with a rigid line of straight pieces between ``points``.
+
+    The beam lies on the free ``side``, seen along the points.  The solid lies behind the line and ends at right angles
+    to the first and the last piece.  A line is closed, without ends, if the last point equals the first.
+    """
+
+    kind: Literal["beam-line"]
+    points: Annotated[tuple[Point, ...], Field(min_length=2)]
+    side: Literal["left", "right"]
+
+    @property
+    def closed(self) -> bool:
+        """True if the last point is the first."""
+        return len(self.points) > 2 and self.points[0] == self.points[-1]
+
+    def shape_rules(self) -> Iterator[Mistake]:
+        """Too many points, repeated points, lines with reversals or crossings."""
+        if len(self.points) > MOST_POINTS:
+            yield Mistake("points", f"{len(self.points)} points", f"at most {MOST_POINTS} of them")
+        pieces = list(pairwise(self.points))
+        for i, (a, b) in enumerate(pieces, start=1):
+            if a == b:
+                yield Mistake(f"points[{i}]", "a point 0 m from the one before", "two different points")
+        tau = [unit_vector((b[0] - a[0], b[1] - a[1])) for a, b in pieces]
+        for i, (before, behind) in enumerate(pairwise([*tau, tau[0]] if self.closed else tau), start=1):
+            if 1.0 + float(before @ behind) < BACKWARDS:
+                yield Mistake(f"points[{i}]", "a point at which the line turns back on itself", "a line that goes on")
+        for (i, first), (j, second) in combinations(enumerate(pieces), 2):
+            neighbours = j == i + 1 or (self.closed and j - i == len(pieces) - 1)
+            if not neighbours and _crosses(first, second) and _crosses(second, first):
+                found = f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}"
+                yield Mistake("points", found, "a line that does not meet itself")
+
+
+def _crosses(piece: tuple[Point, Point], other: tuple[Point, Point]) -> bool:
+    """True if the ends of ``other`` lie on different sides of the line of ``piece``, or on the line."""
+    (ax, ay), (bx, by) = piece
+    one, two = ((bx - ax) * (y - ay) - (by - ay) * (x - ax) for x, y in other)
+    return one * two <= 0.0
+
+
+class HalfPlaneContact(RigidContact):
+    """Contact of a beam with a rigid half-plane with a straight edge through ``point``.
+
+    ``normal`` points away from the half-plane, towards the beam; the solver makes the normal a unit vector.
+    """
+
+    kind: Literal["beam-half-plane"]
+    point: Point
+    normal: Direction
+
+    def shape_rules(self) -> Iterator[Mistake]:
+        """A normal [0, 0]."""
+        return nonzero("normal", self.normal)
+
+
+class FunctionContact(RigidContact):
+    """Contact of a beam with a rigid edge y = f(x) (``axis`` is ``x``) or x = f(y) (``axis`` is ``y``).
+
+    ``coefficients`` of f, lowest power first, f in metres for a variable in metres within ``range``.  The beam lies
+    ``above`` the edge, at a coordinate larger than f, or ``below``.  As with a :class:`LineContact`, the solid lies
+    behind the edge and ends at the edge's ends.
+    """
+
+    kind: Literal["beam-function"]
+    axis: Literal["x", "y"]
+    coefficients: Coefficients
+    range: tuple[Length, Length]
+    side: Literal["above", "below"]
+
+    @property
+    def curve(self) -> Polynomial:
+        """The edge as a curve."""
+        return Polynomial(kind="polynomial", axis=self.axis, coefficients=self.coefficients, range=self.range)
+
+    def shape_rules(self) -> Iterator[Mistake]:
+        """Coefficients and ranges without a graph of finite slope."""
+        return graph_rules(self.curve)
+
+
+EdgeContact = LineContact | HalfPlaneContact | FunctionContact
+"""Contacts with edges on which a beam may lie up to its own pin; the edge then holds the pin like a stop."""
+
+Contact = Annotated[BeamContact | SelfContact | CircleContact | EdgeContact, Field(discriminator="kind")]

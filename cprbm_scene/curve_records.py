@@ -1,0 +1,211 @@
+"""Records of neutral lines, and of graphs as rigid edges.
+
+Bounds are on dimensionless numbers:
+
+* length ≥ 1e-6 of the largest coordinate, and of a polynomial's largest term: a shorter curve has lost six digits;
+* |f'| ≤ 1e3 and degree ≤ 20 of a polynomial f: a steeper graph is a function of the other coordinate;
+* at most 1001 points of a spline, at least 1e-6 of the sum of their distances apart, and a speed of at least 0.1 with
+  respect to the distance: at a lower speed the spline has a cusp.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from itertools import islice, pairwise
+from math import dist, inf, isfinite
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from cprbm_scene.curves import CircularArc, Curve, Graph, SplineCurve, StraightLine
+from cprbm_scene.mistakes import Mistake, written_place
+from cprbm_scene.record import Record, nonzero
+from cprbm_scene.units import Coefficients, Direction, Length, Point
+
+SHORTEST = 1e-6
+STEEPEST = 1e3
+HIGHEST_DEGREE = 20
+MOST_POINTS = 1001
+SLOWEST = 0.1
+MEETING = 1e-6
+"""Distance between an end and its point, of the beam's length, and difference of an arc's radii, of the radius."""
+
+
+class _Curve(Record):
+    """Neutral line between ``start`` and ``end``, m."""
+
+    def rules(self) -> Iterator[Mistake]:
+        """The first mistake of the curve: later rules need the geometry that earlier rules ensure."""
+        assert isinstance(self, Line | Arc | Polynomial | Spline)
+        return islice(_curve_rules(self), 1)
+
+
+class Line(_Curve):
+    """Straight neutral line from ``start`` to ``end``, m."""
+
+    kind: Literal["line"]
+    start: Point
+    end: Point
+
+
+class Arc(_Curve):
+    """Circular neutral line about ``center`` from ``start`` to ``end``, m.
+
+    Both ends lie on the circle; ``direction`` is the sense of rotation, so that an arc is less than a full turn.
+    """
+
+    kind: Literal["arc"]
+    center: Point
+    start: Point
+    end: Point
+    direction: Literal["counterclockwise", "clockwise"]
+
+
+class Polynomial(_Curve):
+    """Neutral line y = f(x) (``axis`` is ``x``) or x = f(y) (``axis`` is ``y``), m.
+
+    ``coefficients`` of f, lowest power first, f in metres for a variable in metres.  ``range`` is the variable at the
+    start and at the end: a beam may run against its axis.
+    """
+
+    kind: Literal["polynomial"]
+    axis: Literal["x", "y"]
+    coefficients: Coefficients
+    range: tuple[Length, Length]
+
+    @property
+    def start(self) -> Point:
+        """Start of the line, m."""
+        return self._at(self.range[0])
+
+    @property
+    def end(self) -> Point:
+        """End of the line, m."""
+        return self._at(self.range[1])
+
+    def _at(self, variable: float) -> Point:
+        value = 0.0
+        for coefficient in reversed(self.coefficients):
+            value = value * variable + coefficient
+        return (variable, value) if self.axis == "x" else (value, variable)
+
+
+class Spline(_Curve):
+    """Smooth neutral line through ``points`` (at least three), m, from the first to the last.
+
+    x and y are cubic splines of t; t is zero at the first point and grows between points by their distance.  Tangent
+    and curvature are continuous.  At an end with a ``start_direction`` or ``end_direction`` the derivative is the unit
+    vector of the direction, in the sense of the beam.  At an end without a direction the outer two pieces are one
+    cubic.  The spline of three points without directions is the parabola through them.
+    """
+
+    kind: Literal["spline"]
+    points: Annotated[tuple[Point, ...], Field(min_length=3)]
+    start_direction: Direction | None = None
+    end_direction: Direction | None = None
+
+    @property
+    def start(self) -> Point:
+        """Start of the line, m."""
+        return self.points[0]
+
+    @property
+    def end(self) -> Point:
+        """End of the line, m."""
+        return self.points[-1]
+
+
+NeutralLine = Line | Arc | Polynomial | Spline
+CurveField = Annotated[NeutralLine, Field(discriminator="kind")]
+
+
+@lru_cache(maxsize=256)
+def shape_of(curve: NeutralLine) -> Curve:
+    """Geometry of a curve by fractions of the arc length; curves without mistakes have a geometry."""
+    match curve:
+        case Line():
+            return StraightLine(curve.start, curve.end)
+        case Arc():
+            ccw = curve.direction == "counterclockwise"
+            return CircularArc(curve.center, curve.start, curve.end, counterclockwise=ccw)
+        case Polynomial():
+            return Graph(curve.coefficients, *curve.range, along=int(curve.axis == "y"))
+        case Spline():
+            return SplineCurve(curve.points, (curve.start_direction, curve.end_direction))
+
+
+def _curve_rules(curve: NeutralLine) -> Iterator[Mistake]:
+    match curve:
+        case Polynomial():
+            yield from graph_rules(curve)
+        case Spline():
+            yield from _spline_rules(curve)
+    if curve.start == curve.end:
+        found = f"a start and an end at the same place {written_place(curve.start)} m"
+        yield Mistake("", found, "two different places")
+    if isinstance(curve, Arc):
+        yield from _arc_rules(curve)
+    places = curve.points if isinstance(curve, Spline) else (curve.start, curve.end)
+    places += (curve.center,) if isinstance(curve, Arc) else ()
+    length, largest = shape_of(curve).length, max(abs(number) for place in places for number in place)
+    if not SHORTEST * largest <= length < inf:
+        found = f"a length of {length:.3g} m at coordinates up to {largest:.3g} m"
+        yield Mistake("", found, f"a length of at least {SHORTEST:g} of the largest coordinate")
+    if isinstance(curve, Polynomial) and not SHORTEST * _largest_term(curve) <= length:
+        found = f"a term of {_largest_term(curve):.3g} m in a curve of {length:.3g} m"
+        yield Mistake("coefficients", found, f"a length of at least {SHORTEST:g} of the largest term")
+
+
+def _arc_rules(curve: Arc) -> Iterator[Mistake]:
+    first, last = dist(curve.start, curve.center), dist(curve.end, curve.center)
+    if min(first, last) == 0.0:
+        yield Mistake("", "an end at the arc's own center", "ends on a circle about the center")
+    if not abs(last - first) <= MEETING * first:
+        found = f"ends that lie on no common circle: the start is {first:.9g} m from the center, the end {last:.9g} m"
+        yield Mistake("", found, f"distances that differ by at most {MEETING:g} of the radius")
+
+
+def graph_rules(curve: Polynomial) -> Iterator[Mistake]:
+    """Mistakes of a polynomial that leave no graph with a finite slope; each rule needs the earlier ones."""
+    first, last = curve.range
+    if len(curve.coefficients) > HIGHEST_DEGREE + 1:
+        found = f"{len(curve.coefficients)} coefficients"
+        yield Mistake("coefficients", found, f"at most {HIGHEST_DEGREE + 1} of them")
+    if first == last:
+        yield Mistake("range", f"a range from {first:g} m to the same {last:g} m", "two different values")
+    finite = isfinite(_largest_term(curve)) and isfinite(last - first)
+    slope = Graph(curve.coefficients, first, last, along=0).steepest if finite else inf
+    if not slope <= STEEPEST:
+        other = {"x": "y", "y": "x"}[curve.axis]
+        allowed = f"a slope of at most {STEEPEST:g} (a steeper curve may be a function of {other})"
+        yield Mistake("coefficients", f"a slope of up to {slope:.3g} in the range", allowed)
+
+
+def _largest_term(curve: Polynomial) -> float:
+    """Largest term |c_k v^k| of f in the range, m; not finite beyond the range of floating-point numbers."""
+    variable, power, largest = max(abs(v) for v in curve.range), 1.0, 0.0
+    for coefficient in curve.coefficients:
+        largest = max(largest, abs(coefficient) * power if coefficient else 0.0)
+        power *= variable
+    return largest
+
+
+def _spline_rules(curve: Spline) -> Iterator[Mistake]:
+    if len(curve.points) > MOST_POINTS:
+        yield Mistake("points", f"{len(curve.points)} points", f"at most {MOST_POINTS} of them")
+    yield from nonzero("start_direction", curve.start_direction)
+    yield from nonzero("end_direction", curve.end_direction)
+    chords = [dist(*pair) for pair in pairwise(curve.points)]
+    for i, chord in enumerate(chords, start=1):
+        if not SHORTEST * sum(chords) <= chord < inf:
+            found = f"{written_place(curve.points[i])} m, {chord:.3g} m from the point before"
+            allowed = f"a point at least {SHORTEST:g} of all the distances between the points away from the one before"
+            yield Mistake(f"points[{i}]", found, allowed)
+    shape = shape_of(curve)
+    assert isinstance(shape, SplineCurve)
+    speed, place = shape.slowest
+    if not speed >= SLOWEST:
+        found = f"points through which a smooth line has to turn back on the spot, near {written_place(place)} m"
+        allowed = "points (and directions) that a smooth line follows; more of them where it turns sharply"
+        yield Mistake("points", found, allowed)

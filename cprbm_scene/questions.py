@@ -1,0 +1,166 @@
+"""Checks of probes, claims, stages and elements for the formulation ``paper``."""
+
+from __future__ import annotations
+
+from bisect import bisect
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from cprbm_scene.curve_records import shape_of
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake, unknown_name
+from cprbm_scene.names import RESERVED, point_names
+from cprbm_scene.statement import (
+    CRITICAL,
+    STRESSES,
+    Beam,
+    DisplacementDrive,
+    EdgeContact,
+    FreeEnd,
+    PinnedEnd,
+    Quantity,
+    RotationDrive,
+    Scene,
+    SlidingBody,
+    TurningBody,
+)
+
+_OF: Mapping[Quantity, str] = frozendict(
+    {
+        "displacement": "a body's point",
+        "rotation": "a body",
+        "force": "a contact",
+        "centre": "a contact",
+        "ends": "a contact",
+        "closing_load": "a contact",
+        "bending_stress": "a beam",
+        "combined_stress": "a beam",
+        "reaction": "a point of a fixed body at which a beam ends, a pivot, a driven point, or a body that slides",
+        "reaction_moment": "a point of a fixed body at which a beam ends, or a body whose rotation is driven",
+        "potential_energy": f"{RESERVED!r}, the scene itself",
+        "angle": "a stop",
+        "moment": "a stop, or a contact with a line, a half-plane or a function of the body that the beam is pinned to",
+    }
+)
+"""Parts of the scene with a quantity."""
+
+_LISTED = 200
+"""Stations of a stage in a message."""
+
+_SEVERAL = STRESSES | {"displacement", "reaction", "ends"}
+"""Quantities of more than one number."""
+
+_SAMPLES = 1001
+_BACKWARDS = 1e-9
+"""Component of a unit tangent that counts as zero."""
+_LEAST_EXTENT = 1e-3
+"""Extent of a beam along an axis, of the length, below which the beam does not run along the axis."""
+
+
+def wrong_probes(scene: Scene) -> Iterator[Mistake]:
+    """Probes of unknown names, of parts without the quantity, and repeated probes."""
+    bearers = _bearers(scene)
+    everything = list(dict.fromkeys(name for names in bearers.values() for name in names))
+    seen: set[str] = set()
+    for i, probe in enumerate(scene.probes):
+        names = bearers[_OF[probe.quantity]]
+        if probe.of not in everything:
+            yield unknown_name(f"probes[{i}].of", probe.of, "point, body, beam, contact or stop", everything)
+        elif probe.of not in names:
+            listed = ", ".join(map(repr, names)) or "there is none"
+            allowed = f"{probe.quantity!r} of {_OF[probe.quantity]}: {listed}"
+            yield Mistake(f"probes[{i}]", f"{probe.quantity!r} of {probe.of!r}", allowed)
+        if probe.name in seen:
+            yield Mistake(f"probes[{i}]", f"{probe.name!r} again", "each probe once")
+        seen.add(probe.name)
+
+
+def wrong_claims(scene: Scene) -> Iterator[Mistake]:
+    """Claims on unknown probes, stages or stations, and a single value for a probe of several numbers."""
+    probes = {probe.name: probe for probe in scene.probes}
+    stages = [stage.name for stage in scene.stages]
+    ascending = {stage.name: sorted(stage.stations) for stage in scene.stages}
+    for i, claim in enumerate(scene.claims):
+        key = f"claims[{i}]"
+        if claim.probe not in probes and claim.probe != CRITICAL:
+            yield unknown_name(f"{key}.probe", claim.probe, "probe", [*probes, CRITICAL])
+        elif claim.value is not None and claim.probe != CRITICAL and probes[claim.probe].quantity in _SEVERAL:
+            yield Mistake(f"{key}.value", f"a value of {claim.probe!r}, which has several", "a probe of one number")
+        if claim.stage is not None and claim.stage not in stages:
+            yield unknown_name(f"{key}.stage", claim.stage, "stage", stages)
+        elif claim.station is not None and claim.probe == CRITICAL:
+            allowed = f"none: of {CRITICAL!r} the first of a stage is meant"
+            yield Mistake(f"{key}.station", f"{claim.station:g}", allowed)
+        elif claim.station is not None and not any(
+            claim.speaks_of(*station) for station in _beside(ascending, claim.station)
+        ):
+            spoken = [stage for stage in scene.stages if claim.in_stage(stage.name)]
+            listed = ", ".join(f"{value:g}" for stage in spoken for value in stage.stations[:_LISTED])
+            yield Mistake(f"{key}.station", f"{claim.station:g}", f"a station of a stage: {listed}")
+
+
+def repeated_stages(scene: Scene) -> Iterator[Mistake]:
+    """Stages with the same name: an answer could not tell their stations apart."""
+    seen: set[str] = set()
+    for i, stage in enumerate(scene.stages):
+        if stage.name in seen:
+            yield Mistake(f"stages[{i}].name", f"{stage.name!r} again", "each stage's name once")
+        seen.add(stage.name)
+
+
+def wrong_spacings(scene: Scene) -> Iterator[Mistake]:
+    """Elements of the formulation ``paper`` along an axis with reversals or without extent of the beam."""
+    for name, beam in scene.beams.items():
+        if beam.paper is not None and beam.sound and not _runs_along(beam, 0 if beam.paper.uniform == "x" else 1):
+            found = f"{beam.paper.uniform!r}, along which the curve turns back or does not run"
+            yield Mistake(f"beams.{name}.paper.uniform", found, "an axis along which the curve runs one way")
+
+
+def _runs_along(beam: Beam, axis: int) -> bool:
+    shape, extent = shape_of(beam.curve), beam.curve.end[axis] - beam.curve.start[axis]
+    forwards = np.sign(extent) * shape.tangent(np.linspace(0.0, 1.0, _SAMPLES))[:, axis]
+    return abs(extent) >= _LEAST_EXTENT * shape.length and bool(np.all(forwards >= -_BACKWARDS))
+
+
+def _beside(ascending: Mapping[str, list[float]], value: float) -> Iterator[tuple[str, float]]:
+    """The two stations of every stage beside a value."""
+    for name, stations in ascending.items():
+        place = bisect(stations, value)
+        yield from ((name, station) for station in stations[max(0, place - 1) : place + 1])
+
+
+def _bearers(scene: Scene) -> dict[str, list[str]]:
+    """Names of the parts of the scene with a quantity, by the values of ``_OF``."""
+    fixed = {point for body in scene.bodies.values() if body.motion == "fixed" for point in body.points}
+    ends = [end for beam in scene.beams.values() for end in (beam.start, beam.end)]
+    supports = [end.point for end in ends if not isinstance(end, FreeEnd) and end.point in fixed]
+    supports += [point for pin in scene.pins.values() for point in pin.points if point in fixed]
+    pivots = [body.about for body in scene.bodies.values() if isinstance(body, TurningBody)]
+    slides = [name for name, body in scene.bodies.items() if isinstance(body, SlidingBody)]
+    driven = [drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)]
+    turned = [drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive)]
+    edges = [name for name, each in scene.contacts.items() if isinstance(each, EdgeContact) and _pinned(scene, each)]
+    return {
+        _OF["displacement"]: point_names(scene),
+        _OF["rotation"]: list(scene.bodies),
+        _OF["force"]: list(scene.contacts),
+        _OF["bending_stress"]: list(scene.beams),
+        _OF["reaction"]: list(dict.fromkeys((*supports, *pivots, *driven, *slides))),
+        _OF["reaction_moment"]: list(dict.fromkeys((*supports, *turned))),
+        _OF["angle"]: list(scene.stops),
+        _OF["moment"]: [*scene.stops, *edges],
+        _OF["potential_energy"]: [RESERVED],
+    }
+
+
+def _pinned(scene: Scene, contact: EdgeContact) -> bool:
+    """True if pins at the same point join the beam and the edge's body; fixed bodies count as the same body."""
+    beam = scene.beams.get(contact.beam)
+    ends = () if beam is None else (beam.start, beam.end)
+    together = {end.point for end in ends if isinstance(end, PinnedEnd)}
+    for _ in scene.pins:
+        together |= {point for pin in scene.pins.values() if together & set(pin.points) for point in pin.points}
+    fixed = [body for body in scene.bodies.values() if body.motion == "fixed"]
+    own = scene.bodies.get(contact.body)
+    return any(together & set(body.points) for body in (fixed if own in fixed else [own]) if body is not None)
