@@ -1,171 +1,135 @@
-"""Linkages that pins and drives alone hold: can they follow their inputs?
+"""Linkages of pins, guides and drives alone: the stations that no motion of the bodies reaches.
 
-======  =====================================================================================
+======  ===================================================================================
 symbol  meaning
-======  =====================================================================================
-q       displacement and rotation of every body that moves, about its first point; lengths over the extent of all
-c(q)    what pins, guides and drives make vanish: as many rows as there are q, or beams have a say
-v       value of the drive that a stage steps
-======  =====================================================================================
+======  ===================================================================================
+q       displacement and rotation of every moving body about its first point, over ℓ
+c(q)    residuals of pins, guides and drives: as many as there are q, or beams have a share
+v       value of the drive of a stage
+ℓ       extent of all points, m
+======  ===================================================================================
 
-From station to station v goes in steps, and Newton's method closes the linkage after each; where it cannot, steps are
-halved.  What no step leads beyond is a dead point, from which on the bodies are too short, or too long, for the input.
-This is geometry of rigid bodies and no mechanics: it says which questions make sense.
+From station to station v grows in steps.  Newton's method closes the linkage, c(q) = 0, after each step; a step without
+a solution is halved.  A value of v that no step passes is a dead point.  This is geometry of rigid bodies.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cprbm_scene.freedoms import unit
+from cprbm_scene.freedoms import AXES, Freedoms, unit
 from cprbm_scene.mistakes import Mistake
-from cprbm_scene.statement import RotationDrive, Scene, SlidingBody, TurningBody
+from cprbm_scene.statement import Point, RotationDrive, Scene, SlidingBody, TurningBody
 
 Array = NDArray[np.float64]
 
-STEP = 0.2  # rad (and extents) at a time
+STEP = 0.2
+"""Largest step of a drive, rad or ℓ."""
 HALVINGS = 30
 _NEWTON_STEPS = 12
 _CLOSED = 1e-10
-_FARTHEST = 0.5  # rad (and extents) in one step: farther is another way to close
+_FARTHEST = 0.5
+"""Largest change of q in a step, rad or ℓ: a larger change leads to another branch of the linkage."""
 _SINGULAR = 1e-8
+"""Least singular value of c' below which beams share in the motion."""
 
 
-@dataclass(slots=True)
-class _Linkage:
-    """The bodies that move, by name, and where they are: ``q`` (3·bodies,)."""
+class Linkage:
+    """Moving bodies of a scene with their places ``q`` (3·bodies,) and the ``values`` of the drives."""
 
-    scene: Scene
-    extent: float
-    moving: list[str]
-    q: Array
-    values: dict[str, float] = field(default_factory=dict)
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.freedoms = scene, Freedoms(scene)
+        self.extent, self.values = self.freedoms.extent, dict.fromkeys(scene.drives, 0.0)
+        moving = [name for name, body in scene.bodies.items() if body.motion != "fixed"]
+        self._columns = {name: 3 * i for i, name in enumerate(moving)}
+        self.q = np.zeros(3 * len(moving))
 
     def closing(self, q: Array) -> tuple[Array, Array]:
-        """c(q) and its derivatives by q, row by row."""
-        scene, rows = self.scene, list[tuple[float, Array]]()
-        for pin in scene.pins.values():
-            one, other = (self._place(point, q) for point in pin.points)
-            rows += [(one[0][k] - other[0][k], one[1][k] - other[1][k]) for k in (0, 1)]
-        for name, body in scene.bodies.items():
+        """c(q) (rows,) and the derivatives (rows, 3·bodies)."""
+        rows = list[tuple[float, Array]]()
+        for pin in self.scene.pins.values():
+            for axis in AXES:
+                (one, by_one), (other, by_other) = (self._moved(point, axis, q) for point in pin.points)
+                rows.append((one - other, by_one - by_other))
+        for name, body in self.scene.bodies.items():
             if isinstance(body, TurningBody):
-                moved, by = self._moved(body.about, q)
-                rows += [(moved[k], by[k]) for k in (0, 1)]
+                rows += [self._moved(body.about, axis, q) for axis in AXES]
             elif isinstance(body, SlidingBody):
-                e = unit(body.along)
-                moved, by = self._moved(body.pin or next(iter(body.points)), q)
-                rows.append((e[0] * moved[1] - e[1] * moved[0], e[0] * by[1] - e[1] * by[0]))
-                if body.pin is None:
-                    rows.append(self._turned(name, q))
-        for name, drive in scene.drives.items():
-            value = self.values.get(name, 0.0)
+                across = (-body.along[1], body.along[0])
+                rows.append(self._moved(body.pin or next(iter(body.points)), across, q))
+                rows += [self._turned(name, q)] if body.pin is None else []
+        for name, drive in self.scene.drives.items():
             if isinstance(drive, RotationDrive):
-                turn, by = self._turned(drive.body, q)
-                rows.append((turn - value, by))
+                (motion, by), size = self._turned(drive.body, q), 1.0
             else:
-                moved, by = self._moved(drive.point, q)
-                e = unit(drive.direction)
-                rows.append((float(e @ moved) - value / self.extent, e @ by))
+                (motion, by), size = self._moved(drive.point, drive.direction, q), self.extent
+            rows.append((motion - self.values[name] / size, by))
         return np.array([c for c, _ in rows]), np.array([by for _, by in rows])
 
     def closed(self, q: Array) -> Array | None:
-        """Where the linkage closes near ``q``; None where it does not."""
+        """Places near ``q`` with c = 0; None without a solution within reach."""
         first = q
         for _ in range(_NEWTON_STEPS):
             c, by = self.closing(q)
+            far = np.abs(q - first).max()
             if np.abs(c).max() <= _CLOSED:
-                return q if np.abs(q - first).max() <= _FARTHEST else None
+                return q if far <= _FARTHEST else None
+            if not far <= 2.0 * _FARTHEST:
+                return None
             try:
                 q = q - np.linalg.solve(by, c)
             except np.linalg.LinAlgError:
                 return None
-            if not np.abs(q - first).max() <= 2.0 * _FARTHEST:
-                return None
         return None
 
-    def _place(self, point: str, q: Array) -> tuple[Array, Array]:
-        """Where a point is, (2,), and its derivatives, (2, 3·bodies)."""
-        name = self.scene.body_of(point)
-        r, by = np.array(self.scene.place_of(point)) / self.extent, np.zeros((2, q.size))
-        if name not in self.moving:
-            return r, by
-        i = 3 * self.moving.index(name)
-        pole = np.array(next(iter(self.scene.bodies[name].points.values()))) / self.extent
-        cos, sin = np.cos(q[i + 2]), np.sin(q[i + 2])
-        arm = np.array([[cos, -sin], [sin, cos]]) @ (r - pole)
-        by[:, i : i + 3] = [[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]]]
-        return pole + q[i : i + 2] + arm, by
-
-    def _moved(self, point: str, q: Array) -> tuple[Array, Array]:
-        """How far a point has moved, likewise."""
-        place, by = self._place(point, q)
-        return place - np.array(self.scene.place_of(point)) / self.extent, by
+    def _moved(self, point: str, direction: Point, q: Array) -> tuple[float, Array]:
+        """Displacement of a point along a direction, over ℓ, and the derivatives (3·bodies,)."""
+        name, e, by = self.freedoms.owners[point], unit(direction), np.zeros(q.size)
+        if name not in self._columns:
+            return 0.0, by
+        i = self._columns[name]
+        x, y = self.freedoms.places[point] - np.array(next(iter(self.scene.bodies[name].points.values())))
+        arm = np.array([x, y]) / self.extent
+        turned = np.array([[np.cos(q[i + 2]), -np.sin(q[i + 2])], [np.sin(q[i + 2]), np.cos(q[i + 2])]]) @ arm
+        by[i : i + 3] = (*e, turned[0] * e[1] - turned[1] * e[0])
+        return float(e @ (q[i : i + 2] + turned - arm)), by
 
     def _turned(self, body: str, q: Array) -> tuple[float, Array]:
-        """How far a body has turned, and its derivatives (3·bodies,)."""
-        by = np.zeros(q.size)
-        i = 3 * self.moving.index(body) + 2
-        by[i] = 1.0
-        return float(q[i]), by
+        """Rotation of a body, and the derivatives (3·bodies,)."""
+        return float(q[self._columns[body] + 2]), np.eye(q.size)[self._columns[body] + 2]
 
 
 def open_linkages(scene: Scene) -> Iterator[Mistake]:
-    """Stations at which bodies that only pins, guides and drives hold cannot be where these want them.
-
-    The scene is one in which nothing else about bodies, pins and drives is wrong.
-    """
+    """The first station that a linkage of pins, guides and drives alone does not reach, in a scene without mistakes."""
     if not scene.pins or not scene.drives:
         return
-    linkage = _linkage(scene)
-    if linkage is None:
+    linkage = Linkage(scene)
+    _, by = linkage.closing(linkage.q)
+    if by.shape[0] != by.shape[1] or np.linalg.svd(by, compute_uv=False).min() < _SINGULAR:
         return
     for i, stage in enumerate(scene.stages):
-        if stage.steps not in scene.drives:
-            continue
-        unit_value = 1.0 if isinstance(scene.drives[stage.steps], RotationDrive) else linkage.extent
-        for j, station in enumerate(stage.stations):
-            reached = _followed(linkage, stage.steps, station, STEP * unit_value)
-            if reached is not None:
+        for j, station in enumerate(stage.stations if stage.steps in scene.drives else ()):
+            reached = _followed(linkage, stage.steps, station)
+            if reached != station:
                 found = f"{station:g}, where the linkage cannot close: {stage.steps} comes to {reached:.6g} from before"
                 allowed = "what pins, guides and the other drives let it reach, without a dead point on the way"
                 yield Mistake(f"stages[{i}].stations[{j}]", found, allowed)
                 return
 
 
-def _linkage(scene: Scene) -> _Linkage | None:
-    """The scene's, where it begins; None unless pins, guides and drives give every motion."""
-    places = np.array([place for body in scene.bodies.values() for place in body.points.values()])
-    extent = float(np.abs(places - places[0]).max()) or 1.0
-    moving = [name for name, body in scene.bodies.items() if body.motion != "fixed"]
-    linkage = _Linkage(scene, extent, moving, np.zeros(3 * len(moving)))
-    _, by = linkage.closing(linkage.q)
-    if by.shape[0] != by.shape[1] or np.linalg.svd(by, compute_uv=False).min() < _SINGULAR:
-        return None
-    q = linkage.closed(linkage.q)
-    if q is None:
-        return None
-    linkage.q = q
-    return linkage
-
-
-def _followed(linkage: _Linkage, drive: str, station: float, step: float) -> float | None:
-    """Step a drive to a station; the value that it comes to if it cannot be reached."""
-    value, size = linkage.values.get(drive, 0.0), step
-    smallest = step / 2.0**HALVINGS
-    while value != station:
+def _followed(linkage: Linkage, drive: str, station: float) -> float:
+    """The value of a drive on the way to a station, equal to the station without a dead point."""
+    largest = STEP * (1.0 if isinstance(linkage.scene.drives[drive], RotationDrive) else linkage.extent)
+    value, size = linkage.values[drive], largest
+    while value != station and size >= largest / 2.0**HALVINGS:
         way = station - value
-        target = station if abs(way) <= size else value + float(np.copysign(size, way))
-        linkage.values[drive] = target
+        linkage.values[drive] = station if abs(way) <= size else value + float(np.copysign(size, way))
         q = linkage.closed(linkage.q)
         if q is None:
-            linkage.values[drive] = value
-            size = 0.5 * min(size, abs(way))
-            if size < smallest:
-                return value
+            linkage.values[drive], size = value, 0.5 * min(size, abs(way))
         else:
-            linkage.q, value = q, target
-    return None
+            linkage.q, value = q, linkage.values[drive]
+    return value

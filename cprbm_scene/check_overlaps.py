@@ -134,8 +134,7 @@ def _apart_from_held(
     scene: Scene, beams: tuple[Beam, Beam], mean: float, ranges: tuple[Range, Range]
 ) -> tuple[Range, Range]:
     """The ranges of u without stretches beside ends welded side by side to the same body."""
-    owners = {point: name for name, body in scene.bodies.items() for point in body.points}
-    cut = list(ranges)
+    owners, cut = scene.owners, list(ranges)
     for sides in product(("start", "end"), repeat=2):
         joints = [getattr(beam, side) for beam, side in zip(beams, sides, strict=True)]
         places = [getattr(beam.curve, side) for beam, side in zip(beams, sides, strict=True)]

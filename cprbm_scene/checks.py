@@ -6,14 +6,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import chain
 
+from cprbm_scene.actions import wrong_actions
 from cprbm_scene.check_closing import open_linkages
-from cprbm_scene.check_drives import wrong_drives
-from cprbm_scene.check_motion import wrong_loads, wrong_supports
 from cprbm_scene.check_overlaps import overlapping_beams, overlapping_themselves, repeated_contacts
-from cprbm_scene.check_pins import loose_bodies, wrong_pins
 from cprbm_scene.check_rigid import overlapping_rigid_shapes
 from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
 from cprbm_scene.mistakes import Mistake, first_of
+from cprbm_scene.mobility import wrong_mobility
 from cprbm_scene.names import records, repeated_names, unknown_names
 from cprbm_scene.offset import OffsetQuestion
 from cprbm_scene.questions import repeated_stages, wrong_claims, wrong_probes, wrong_spacings
@@ -36,11 +35,8 @@ _CHECKS = (
     distant_ends,
     wrong_assembly,
     wrong_stops,
-    wrong_pins,
-    wrong_supports,
-    loose_bodies,
-    wrong_loads,
-    wrong_drives,
+    wrong_mobility,
+    wrong_actions,
     repeated_contacts,
     wrong_spacings,
     overlapping_beams,

@@ -43,20 +43,15 @@ def _may_be_apart(scene: Scene, beam: Beam) -> bool:
 def _distance(scene: Scene, beam: Beam, side: str) -> float | None:
     """Distance of an end from the point, m; None if the end meets the point, or either does not exist."""
     joint = getattr(beam, side)
-    if isinstance(joint, FreeEnd) or joint.point not in _owners(scene) or any(beam.curve.rules()):
+    if isinstance(joint, FreeEnd) or joint.point not in scene.owners or any(beam.curve.rules()):
         return None
     apart = dist(getattr(beam.curve, side), scene.place_of(joint.point))
     return None if apart <= MEETING * shape_of(beam.curve).length else apart
 
 
-def _owners(scene: Scene) -> dict[str, str]:
-    """Names of bodies by their points."""
-    return {point: name for name, body in scene.bodies.items() for point in body.points}
-
-
 def wrong_assembly(scene: Scene) -> Iterator[Mistake]:
     """An assembly without distant ends, moments on other ends, beams too short for their points."""
-    owners = _owners(scene)
+    owners = scene.owners
     joints = [joint for beam in scene.beams.values() for joint in (beam.start, beam.end)]
     if scene.assembly is None or not all(isinstance(joint, FreeEnd) or joint.point in owners for joint in joints):
         return
@@ -105,7 +100,7 @@ def wrong_stops(scene: Scene) -> Iterator[Mistake]:
             yield Mistake(key, f"the {stop.end} of {stop.beam!r}, which stops.{first} limits", "one stop for each end")
         if stop.beam not in scene.beams:
             continue
-        owners, joint = _owners(scene), getattr(scene.beams[stop.beam], stop.end)
+        owners, joint = scene.owners, getattr(scene.beams[stop.beam], stop.end)
         if not isinstance(joint, PinnedEnd):
             found = f"the {stop.end} of {stop.beam!r}, whose joint is {joint.joint!r}"
             yield Mistake(f"{key}.end", found, "an end whose joint is 'pin'")

@@ -218,8 +218,8 @@ class Stage(Record):
     energy: ``stop``, or ``jump`` to the state at the end of the energy descent.  Load steps are then short enough
     to pass no critical point.  Without ``beyond`` load steps are as long as possible, and a critical point is reported
     only where no step leads past; a branch jump to a state beside the critical point is reported in a note.  ``shown``
-    are stations for tables and pictures, beside the last of all.  ``critical_limit`` (in the unit of the stations) replaces
-    the usual largest difference and uncertainty of critical values for the verdict AGREE.
+    are stations for tables and pictures, beside the last of all.  ``critical_limit`` (in the unit of the stations)
+    replaces the usual largest difference and uncertainty of critical values for the verdict AGREE.
     """
 
     name: Name
@@ -361,13 +361,15 @@ class Scene(Record):
         """
         return self.bodies[self.body_of(point)].points[point]
 
+    @property
+    def owners(self) -> dict[str, str]:
+        """Names of bodies by their points; for a repeated point the first body."""
+        return {point: name for name, body in reversed(list(self.bodies.items())) for point in body.points}
+
     def body_of(self, point: str) -> str:
         """Name of the body of a ``point``.
 
         Raises:
             KeyError: no body has a point of that name.
         """
-        for name, body in self.bodies.items():
-            if point in body.points:
-                return name
-        raise KeyError(point)
+        return self.owners[point]

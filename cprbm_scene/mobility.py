@@ -1,0 +1,190 @@
+"""Supports and mobility of the mechanism: loose bodies, and motions with two holders.
+
+=======  ==============================================================================
+symbol   meaning
+=======  ==============================================================================
+A        rows of guides, pins and drives over the freedoms of all bodies
+B        the same with every beam as a further rigid body, and rows of the beams' joints
+=======  ==============================================================================
+
+The rows of pins and drives must be independent in A: a linkage with a dependent row closes only by chance.  The null
+space of B contains the motions without bending: no force resists them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import dist
+
+import numpy as np
+
+from cprbm_scene.curve_records import MEETING
+from cprbm_scene.freedoms import AXES, NEGLIGIBLE, Freedoms, Row, rank, unit
+from cprbm_scene.mistakes import Mistake, written_place
+from cprbm_scene.names import unknown_names
+from cprbm_scene.statement import BodyPin, FreeEnd, PinnedEnd, Scene, WeldedEnd
+
+FREEDOMS = 3
+"""Freedoms of a rigid body in the plane."""
+
+_KINDS = {"slides": "sliding", "turns": "turning"}
+Part = tuple[str, str]
+"""A body or beam of a mechanism: its table and its name."""
+Motion = dict[Part, Row]
+"""A row over the freedoms of several parts."""
+
+
+def wrong_mobility(scene: Scene) -> Iterator[Mistake]:
+    """Pins between unsuitable points, missing supports, motions with two holders, loose bodies.
+
+    Checks of the whole mechanism need known points, guides and directions.
+    """
+    yield from _pins(scene)
+    unknown = {mistake.key for mistake in unknown_names(scene)}
+    acting = [*scene.bodies.values(), *scene.drives.values()]
+    sound = not any(key.startswith(("drives", "pins")) or key.endswith(".point") for key in unknown)
+    sound = sound and not any(mistake for record in acting for mistake in record.rules())
+    supports = list(_supports(scene, Freedoms(scene) if sound else None))
+    yield from supports
+    if not sound or any(_owners(scene, pin)[0] == _owners(scene, pin)[1] for pin in scene.pins.values()):
+        return
+    freedoms = Freedoms(scene)
+    if scene.pins:
+        yield from _held_twice(scene, freedoms)
+    held_otherwise = scene.contacts or scene.stops or scene.assembly is not None
+    if not supports and (scene.pins or not held_otherwise):
+        yield from _loose(scene, freedoms)
+
+
+def _owners(scene: Scene, pin: BodyPin) -> list[str]:
+    return [scene.body_of(point) for point in pin.points]
+
+
+def _pins(scene: Scene) -> Iterator[Mistake]:
+    """Pins within a body, between fixed bodies, or between distant points."""
+    places = {point: scene.place_of(point) for point in scene.owners}
+    first = next((place for body in scene.bodies.values() for place in body.points.values()), (0.0, 0.0))
+    extent = max((abs(a - b) for place in places.values() for a, b in zip(place, first, strict=True)), default=0.0)
+    for name, pin in scene.pins.items():
+        if any(point not in places for point in pin.points):
+            continue
+        key, (one, other) = f"pins.{name}.points", _owners(scene, pin)
+        both = [places[point] for point in pin.points]
+        if one == other:
+            found = f"{pin.points[0]!r} and {pin.points[1]!r}, both of the body {one!r}"
+            yield Mistake(key, found, "points of two different bodies")
+        elif scene.bodies[one].motion == scene.bodies[other].motion == "fixed":
+            yield Mistake(key, f"points of two fixed bodies, {one!r} and {other!r}", "one that moves")
+        elif not dist(*both) <= MEETING * extent:
+            found = f"points {dist(*both):.3g} m apart: {' and '.join(f'{written_place(place)} m' for place in both)}"
+            yield Mistake(key, found, f"at most {MEETING:g} of the scene's extent between them")
+
+
+def _supports(scene: Scene, freedoms: Freedoms | None) -> Iterator[Mistake]:
+    """Scenes without ground or drives, beams without supports, bodies without a way to a support."""
+    if all(body.motion == "free" for body in scene.bodies.values()) and not scene.drives:
+        yield Mistake("bodies", "no fixed body", 'at least one body with motion = "fixed"')
+        return
+    joints = {}
+    for name, beam in scene.beams.items():
+        ends = [end for end in (beam.start, beam.end) if not isinstance(end, FreeEnd)]
+        joints[name] = [end.point for end in ends]
+        if not ends:
+            yield Mistake(f"beams.{name}", "two free ends", "at least one end that meets a body")
+        elif len(ends) == 1 and isinstance(ends[0], PinnedEnd):
+            found = "a pin at one end and nothing at the other: the beam turns freely"
+            yield Mistake(f"beams.{name}", found, "a weld, or joints at both ends")
+    if freedoms is None:
+        return
+    links = [joints[name] for name in joints] + [list(pin.points) for pin in scene.pins.values()]
+    met = [{freedoms.owners[point] for point in points} for points in links]
+    for name, body in scene.bodies.items():
+        together = _connected(name, met)
+        rows = [row for each in together for row in freedoms.guide(each)]
+        rows += [freedoms.row(drive) for drive in scene.drives.values() if freedoms.owner(drive) in together]
+        if rank(rows) == FREEDOMS:
+            continue
+        found = f"a {_KINDS.get(body.motion, 'free')} body that "
+        if any(name in bodies for bodies in met):
+            allowed = "beams that lead to a fixed body, or slides, pivots and drives that hold it"
+            yield Mistake(f"bodies.{name}", f"{found}no fixed body holds", allowed)
+        else:
+            yield Mistake(f"bodies.{name}", f"{found}no beam meets", "a beam's end or a pin at one of its points")
+
+
+def _connected(body: str, met: Sequence[set[str]]) -> set[str]:
+    """Bodies connected to a ``body`` by beams and pins, including the body."""
+    reached = {body}
+    while more := {other for bodies in met if bodies & reached for other in bodies} - reached:
+        reached |= more
+    return reached
+
+
+def _held_twice(scene: Scene, freedoms: Freedoms) -> Iterator[Mistake]:
+    """Pins and drives with rows that depend on earlier rows of A."""
+    parts: list[Part] = [("body", name) for name in scene.bodies]
+    rows: list[Motion] = [{("body", name): row} for name in scene.bodies for row in freedoms.guide(name)]
+    closing = {f"pins.{name}": _pin_rows(freedoms, pin) for name, pin in scene.pins.items()}
+    for name, drive in scene.drives.items():
+        closing[f"drives.{name}"] = [{("body", freedoms.owner(drive)): freedoms.row(drive)}]
+    for key, more in closing.items():
+        if rank(_matrix([*rows, *more], parts)) < rank(_matrix(rows, parts)) + len(more):
+            what = "bodies" if key.startswith("pins") else "a motion"
+            found = f"{what} that guides, pins and drives hold already where it begins"
+            yield Mistake(key, found, "as many pins and drives as there are motions to hold, each for one of its own")
+        rows += more
+
+
+def _loose(scene: Scene, freedoms: Freedoms) -> Iterator[Mistake]:
+    """Bodies with a motion in the null space of B."""
+    parts: list[Part] = [("body", name) for name in scene.bodies] + [("beam", name) for name in scene.beams]
+    rows: list[Motion] = [{("body", name): row} for name in scene.bodies for row in freedoms.guide(name)]
+    rows += [row for pin in scene.pins.values() for row in _pin_rows(freedoms, pin)]
+    rows += [{("body", freedoms.owner(drive)): freedoms.row(drive)} for drive in scene.drives.values()]
+    for name, beam in scene.beams.items():
+        for end in (beam.start, beam.end):
+            if not isinstance(end, FreeEnd):
+                welded = isinstance(end, WeldedEnd)
+                own = list(np.eye(3)) if welded else [freedoms.along(end.point, axis) for axis in AXES]
+                rows += [{("beam", name): row, ("body", freedoms.owners[end.point]): -row} for row in own]
+    _, values, motions = np.linalg.svd(_matrix(rows, parts))
+    null_space = motions[np.count_nonzero(values > NEGLIGIBLE) :]
+    for i, (kind, name) in enumerate(parts):
+        own = list(null_space[:, 3 * i : 3 * i + 3])
+        if kind == "body" and np.abs(own).max(initial=0.0) > NEGLIGIBLE:
+            how = _in_words(freedoms, own[0]) if len(own) == 1 else f"move in {rank(own)} ways"
+            found = f"a body that can {how} where it is without bending a beam"
+            yield Mistake(f"bodies.{name}", found, "pins, guides, drives and beams that hold it")
+
+
+def _pin_rows(freedoms: Freedoms, pin: BodyPin) -> list[Motion]:
+    """The two relative displacements at a pin."""
+    one, other = pin.points
+    return [
+        {
+            ("body", freedoms.owners[one]): freedoms.along(one, axis),
+            ("body", freedoms.owners[other]): -freedoms.along(other, axis),
+        }
+        for axis in AXES
+    ]
+
+
+def _matrix(rows: Sequence[Mapping[Part, Row]], parts: Sequence[Part]) -> Row:
+    """Rows as a matrix (rows, 3·parts) with rows of length one."""
+    columns, matrix = {part: 3 * i for i, part in enumerate(parts)}, np.zeros((len(rows), 3 * len(parts)))
+    for line, row in zip(matrix, rows, strict=True):
+        for part, values in row.items():
+            line[columns[part] : columns[part] + 3] += values
+    return np.asarray(matrix / np.linalg.norm(matrix, axis=1, keepdims=True))
+
+
+def _in_words(freedoms: Freedoms, motion: Row) -> str:
+    """A small motion (3,) of a body: a turn about a place, or a displacement along a direction."""
+    u, v, turn = motion
+    if abs(turn) <= NEGLIGIBLE * np.hypot(u, v):
+        e = unit((float(u), float(v))) * np.sign(u if abs(u) > abs(v) else v)
+        e = np.where(np.abs(e) <= NEGLIGIBLE, 0.0, e)
+        return f"move along [{e[0]:.4g}, {e[1]:.4g}]"
+    away = np.array([-v, u]) / turn
+    pole = freedoms.origin + freedoms.extent * np.where(np.abs(away) <= NEGLIGIBLE, 0.0, away)
+    return f"turn about [{pole[0]:.4g}, {pole[1]:.4g}] m"
