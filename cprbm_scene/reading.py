@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 import tomllib
 from codecs import BOM_UTF8
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,6 +16,7 @@ from cprbm_scene.checks import mistakes_in
 from cprbm_scene.keys import keys_at
 from cprbm_scene.mistakes import Mistake, SceneError, first_of, unknown_name
 from cprbm_scene.offset import OffsetQuestion
+from cprbm_scene.parameters import register
 from cprbm_scene.statement import Scene
 from cprbm_scene.units import Reading, Units
 from cprbm_scene.wording import in_words, repeats_another
@@ -31,11 +33,13 @@ _DEEP_KEY = re.compile(rf"(?<![\w-])(?:{_PART}){{{DEEPEST}}}", re.ASCII)
 """A dotted key deeper than any scene's: the parser's time and memory grow with the square of the parts."""
 
 
-def read(path: str | Path) -> Scene:
+def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) -> Scene:
     """Read a scene file.
 
     Args:
         path: a TOML file, in SI units or in the units that the file states.
+        parameters: values of the file's parameters by name, numbers in SI units or texts such as ``1.9mm``; None keeps
+            the file's values.
 
     Returns:
         The scene, with ``file`` set to ``path``.
@@ -49,18 +53,19 @@ def read(path: str | Path) -> Scene:
         >>> hinge.beams["beam1"].thickness, hinge.place_of("B")
         (0.002, (0.051, 0.02625))
     """
-    question = read_question(path)
+    question = read_question(path, parameters)
     if isinstance(question, OffsetQuestion):
         allowed = "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it"
         raise SceneError([Mistake("question", repr(question.question), allowed, question.file)])
     return question
 
 
-def read_question(path: str | Path) -> Question:
+def read_question(path: str | Path, parameters: Mapping[str, float | str] | None = None) -> Question:
     """Read a file of either question: a scene, or an offset curve if the file says ``question = "offset"``.
 
     Args:
         path: a TOML file, a scene's in SI units or in the units that the file states.
+        parameters: as of :func:`read`.
 
     Returns:
         The scene or the offset question, with ``file`` set to ``path``.
@@ -69,7 +74,11 @@ def read_question(path: str | Path) -> Question:
         SceneError: as :func:`read`.
     """
     data = toml_data(path)
-    return (offset_from if "question" in data else scene_from)(data, file=str(path))
+    if "question" not in data:
+        return scene_from(data, file=str(path), parameters=parameters)
+    if parameters:
+        raise SceneError([Mistake("parameters", f"values of {', '.join(parameters)}", "a scene of beams", str(path))])
+    return offset_from(data, file=str(path))
 
 
 def toml_data(path: str | Path) -> dict[str, Any]:
@@ -111,13 +120,14 @@ def _parsed(text: str) -> dict[str, Any]:
         raise tomllib.TOMLDecodeError(str(error)) from None
 
 
-def scene_from(data: dict[str, Any], *, file: str = "") -> Scene:
+def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str, float | str] | None = None) -> Scene:
     """A scene from plain data, checked as :func:`read` checks a file.
 
     Args:
         data: tables, lists, numbers and texts with the keys of a scene file, as ``tomllib.loads`` returns them. Numbers
             are in SI units or in the units that ``data["units"]`` states.
         file: the name of the file in messages and in ``Scene.file``; may be empty.
+        parameters: as of :func:`read`.
 
     Returns:
         The scene in SI units.
@@ -134,7 +144,24 @@ def scene_from(data: dict[str, Any], *, file: str = "") -> Scene:
         >>> scene_from(data).beams["beam1"].thickness
         0.003
     """
-    return _record(Scene, data, file)
+    given = dict(parameters or {})
+    scene = _record(Scene, {**data, "parameters": {}} if given and "parameters" not in data else data, file, given)
+    if scene.parameters:
+        scene._source = _Source(data, file, given)
+    return scene
+
+
+@dataclass(frozen=True, slots=True)
+class _Source:
+    """Plain data of a scene with parameters."""
+
+    data: dict[str, Any]
+    file: str
+    parameters: dict[str, float | str]
+
+    def read(self, values: Mapping[str, float | str]) -> Scene:
+        """The scene with other values of parameters."""
+        return scene_from(self.data, file=self.file, parameters={**self.parameters, **values})
 
 
 def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
@@ -143,16 +170,19 @@ def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
     Raises:
         SceneError: the data are no valid question. The error names every mistake with its key.
     """
-    return _record(OffsetQuestion, data, file)
+    return _record(OffsetQuestion, data, file, {})
 
 
-def _record(kind: type[Asked], data: dict[str, Any], file: str) -> Asked:
+def _record(kind: type[Asked], data: dict[str, Any], file: str, settings: Mapping[str, float | str]) -> Asked:
     """A question of a ``kind`` from plain data."""
     if "file" in data:
         raise SceneError([replace(unknown_name("file", "file", "key here", keys_at((), kind)), file=file)])
     try:
         content = _tuples(data)
-        record = kind.model_validate({**content, "file": file}, context=Reading(_units(content)))
+        reading = Reading(_units(content), settings=settings)
+        if "parameters" not in content:
+            register(reading, {})
+        record = kind.model_validate({**content, "file": file}, context=reading)
     except ValidationError as error:
         mistakes = (in_words(details, kind) for details in error.errors() if not repeats_another(details))
         raise SceneError(first_of((replace(each, file=file) for each in mistakes), file)) from None

@@ -12,9 +12,9 @@ from __future__ import annotations
 from bisect import bisect
 from collections.abc import Iterator, Mapping
 from math import isclose
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, Protocol, TypeVar
 
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
 from cprbm_scene.beam_records import (
     Beam,
@@ -64,6 +64,7 @@ from cprbm_scene.contact_records import (
 from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake
+from cprbm_scene.parameters import Parameter, Tolerance, register
 from cprbm_scene.record import Name, Named, Of, Record, Text, Title
 from cprbm_scene.units import (
     ANGLE,
@@ -116,6 +117,7 @@ __all__ = [
     "PaperBeam",
     "PaperContact",
     "PaperRigid",
+    "Parameter",
     "PinnedEnd",
     "Point",
     "Polynomial",
@@ -133,6 +135,7 @@ __all__ = [
     "Spline",
     "Stage",
     "Stop",
+    "Tolerance",
     "TurningBody",
     "Units",
     "WeldedEnd",
@@ -295,6 +298,13 @@ class Claim(Record):
         return self.stage is None or self.stage == stage
 
 
+class Source(Protocol):
+    """Data of a scene with parameters, for another reading."""
+
+    def read(self, values: Mapping[str, float | str]) -> Scene:
+        """The scene with other values of parameters."""
+
+
 class Scene(Record):
     """The problem statement: mechanism, loading, requested quantities.
 
@@ -307,6 +317,7 @@ class Scene(Record):
     title: Title = ""
     source: Text = ""
     units: Units = Units()
+    parameters: Named[Parameter] = Field(default_factory=frozendict)
     materials: Named[Material]
     beams: Annotated[Named[Beam], Field(min_length=1, max_length=256)]
     bodies: Annotated[Named[Body], Field(max_length=256)]
@@ -321,10 +332,11 @@ class Scene(Record):
     claims: tuple[Claim, ...] = ()
     verdict_limit: PositiveShare = 0.015
     file: str = ""
+    _source: Source | None = PrivateAttr(default=None)
 
-    @field_validator("units", "loads", "drives", "stages", "probes")
+    @field_validator("units", "parameters", "loads", "drives", "stages", "probes")
     @classmethod
-    def _register(cls, value: V, info: ValidationInfo) -> V | Units:
+    def _register(cls, value: V, info: ValidationInfo) -> V | Units | Mapping[str, Parameter]:
         """The value itself, with units stored for later fields; SI units in place of the file's units."""
         reading = info.context
         if not isinstance(reading, Reading):
@@ -332,6 +344,8 @@ class Scene(Record):
         match info.field_name, value:
             case "units", _:
                 return Units()
+            case "parameters", Mapping() as parameters:
+                return register(reading, parameters)
             case "stages", tuple(stages):
                 units = ((stage.name, reading.stepped.get(stage.steps)) for stage in stages)
                 reading.stages.update({name: unit for name, unit in units if unit is not None})
@@ -340,6 +354,29 @@ class Scene(Record):
             case _, Mapping() as acting:
                 reading.stepped.update({name: each.unit for name, each in acting.items()})
         return value
+
+    def with_parameters(self, **values: float) -> Scene:
+        """The scene with other values of its parameters, checked as a file is checked.
+
+        Args:
+            values: numbers in SI units by the names of parameters; other parameters keep their values.
+
+        Returns:
+            A scene.
+
+        Raises:
+            SceneError: a name is unknown, a value is out of range, or the new scene has mistakes.
+            ValueError: the scene was not read from data with parameters, or was altered after reading.
+
+        Example:
+            >>> from cprbm_scene import read
+            >>> hinge = read("comparisons/cases/hinge.toml").with_parameters(t=1.9e-3)
+            >>> hinge.beams["beam1"].thickness
+            0.0019
+        """
+        if self._source is None or self._source.read({}) != self:
+            raise ValueError("found a scene without parameters or altered after reading; allowed: a scene from a file")
+        return self._source.read(values)
 
     def limit(self, probe: Probe) -> float:
         """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""

@@ -17,11 +17,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import astuple, dataclass, field
 from fractions import Fraction
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, GetCoreSchemaHandler, ValidationInfo, ValidatorFunctionWrapHandler
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ValidationInfo,
+    ValidatorFunctionWrapHandler,
+)
+from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from cprbm_scene.frozendict import frozendict
@@ -59,11 +68,25 @@ class Reading:
     stepped: dict[str, Unit] = field(default_factory=dict)
     stages: dict[str, Unit] = field(default_factory=dict)
     probes: dict[str, Unit | None] = field(default_factory=dict)
+    settings: Mapping[str, float | str] = field(default_factory=dict)
+    evaluate: Callable[[str, Unit | None], float] | None = None
+
+    def number(self, value: object, unit: Unit | None) -> object:
+        """The number of an expression in the file's units; another value unchanged.
+
+        Raises:
+            PydanticCustomError: the expression has no value, or another unit.
+        """
+        if not (isinstance(value, str) and value.startswith("=")):
+            return value
+        if self.evaluate is None:
+            raise PydanticCustomError("repeats", "parameters without mistakes")
+        return self.evaluate(value, unit)
 
 
-def mistake(found: str, allowed: str) -> PydanticCustomError:
-    """An error of a validator with both halves of a mistake's sentence."""
-    return PydanticCustomError("mistake", "{allowed}", {"found": found, "allowed": allowed})
+def mistake(found: str, allowed: str, key: str = "") -> PydanticCustomError:
+    """An error of a validator with both halves of a mistake's sentence, at a ``key`` below the validated field."""
+    return PydanticCustomError("mistake", "{allowed}", {"found": found, "allowed": allowed, "key": key})
 
 
 class Measured:
@@ -76,12 +99,15 @@ class Measured:
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.with_info_wrap_validator_function(self._number, handler(source))
 
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        return {"anyOf": [handler(schema), {"type": "string", "pattern": "^="}]}
+
     def _number(self, value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
-        number = handler(value)
-        if info.context is None or not isinstance(number, float):
-            return number
+        if not isinstance(info.context, Reading):
+            return handler(value)
         unit = self.of(info.context, info.data)
-        if unit is None or unit == NUMBER:
+        number = handler(info.context.number(value, unit))
+        if unit is None or unit == NUMBER or not isinstance(number, float):
             return number
         with suppress(OverflowError):
             found = unit.in_si(number, info.context.units)
@@ -109,11 +135,34 @@ class Unit(Measured):
         Raises:
             OverflowError: the number is above the largest floating-point number.
         """
+        size, turn = self._size(units)
+        return (value if size == 1 else float(Fraction(repr(value)) * size)) * turn
+
+    def _size(self, units: Units) -> tuple[Fraction, float]:
+        """Size of the unit in SI: an exact factor, and a factor with π."""
         size = Fraction(1)
         for name, power in ((units.length, self.length), (units.force, self.force), (units.stress, self.stress)):
             size *= _SIZES[name] ** power
-        turn = math.pi / _DEGREES if units.angle == "deg" and self.angle else 1.0
-        return (value if size == 1 else float(Fraction(repr(value)) * size)) * turn
+        return size, (math.pi / _DEGREES) ** self.angle if units.angle == "deg" else 1.0
+
+    def over(self, other: Unit, units: Units) -> float | None:
+        """Size over the size of the ``other`` unit; None for different quantities.
+
+        Stress is force over the square of length, and an angle is a pure number.
+        """
+        stress = self.stress - other.stress
+        if (self.length - other.length, self.force - other.force) != (2 * stress, -stress):
+            return None
+        (size, turn), (other_size, other_turn) = self._size(units), other._size(units)
+        return float(size / other_size) * turn / other_turn
+
+    def times(self, other: Unit, power: int = 1) -> Unit:
+        """Product with a power of another unit."""
+        return Unit(*(one + power * two for one, two in zip(astuple(self), astuple(other), strict=True)))
+
+    def __str__(self) -> str:
+        named = zip(("m", "N", "rad", "Pa"), astuple(self), strict=True)
+        return "*".join(f"{name}**{power}" if power != 1 else name for name, power in named if power)
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,12 +190,19 @@ Point = tuple[Length, Length]
 Direction = tuple[Number, Number]
 
 
+def _numbers(coefficients: object, info: ValidationInfo) -> object:
+    """Coefficients of f with numbers for expressions."""
+    if not isinstance(info.context, Reading) or not isinstance(coefficients, tuple):
+        return coefficients
+    return tuple(info.context.number(value, Unit(length=1 - k)) for k, value in enumerate(coefficients))
+
+
 def _by_powers(coefficients: tuple[float, ...], info: ValidationInfo) -> tuple[float, ...]:
     """Coefficients of f in SI."""
-    if info.context is None:
+    if not isinstance(info.context, Reading):
         return coefficients
     return tuple(Unit(length=1 - k).in_si(value, info.context.units) for k, value in enumerate(coefficients))
 
 
-Coefficients = Annotated[tuple[Number, ...], Field(min_length=2), AfterValidator(_by_powers)]
+Coefficients = Annotated[tuple[Number, ...], Field(min_length=2), BeforeValidator(_numbers), AfterValidator(_by_powers)]
 """Coefficients of a function f, a length, of a variable that is a length; lowest power first."""

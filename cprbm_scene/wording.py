@@ -70,14 +70,15 @@ def in_words(details: ErrorDetails, root: type[Record]) -> Mistake:
         case "model_type" if loc == ("units",):
             allowed += f", as {_UNITS}"
         case "mistake":
-            found = context["found"]
+            found, key = context["found"], f"{key}.{context['key']}".strip(".")
     return Mistake(key, found, allowed)
 
 
 def repeats_another(details: ErrorDetails) -> bool:
-    """True if pydantic misses only items that were given and have mistakes of their own."""
-    given = details.get("input")
-    return details["type"] == "too_short" and isinstance(given, tuple) and len(given) >= details["ctx"]["min_length"]
+    """True if pydantic misses only items with mistakes of their own, or parameters with mistakes."""
+    kind, given = details["type"], details.get("input")
+    short = kind == "too_short" and isinstance(given, tuple) and len(given) >= details["ctx"]["min_length"]
+    return short or kind == "repeats"
 
 
 def shown(value: object) -> str:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from comparisons.cli.options import settings
+
 if TYPE_CHECKING:
     from cprbm_scene import Question
 
@@ -21,7 +23,7 @@ def questions(asked: Sequence[str]) -> list[Question]:
     from comparisons import cases
 
     names = [name for text in asked for name in (cases.names() if text == "all" else (text,))]
-    found = [cases.asked(name) for name in dict.fromkeys(names)]
+    found = [cases.asked(name, settings()) for name in dict.fromkeys(names)]
     own = [question.name for question in found]
     twice = sorted({name for name in own if own.count(name) > 1})
     if twice:

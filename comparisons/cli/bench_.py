@@ -10,7 +10,7 @@ import click
 from comparisons import workshop
 from comparisons.choices import KINEMATICS, Kinematics
 from comparisons.cli.completing import offered
-from comparisons.cli.options import count, counts, folder, output, timed
+from comparisons.cli.options import count, counts, folder, output, parameters, settings, timed
 
 if TYPE_CHECKING:
     from comparisons.bench.contenders import Contender
@@ -54,6 +54,7 @@ def _named(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -
 
 @click.command("bench")
 @click.argument("case", metavar="CASE|FILE.toml", shell_complete=offered)
+@parameters
 @click.option(
     "--sizes",
     callback=counts,
@@ -135,7 +136,7 @@ def command(
     if sizes is not None and links:
         raise click.UsageError("found --sizes and -n; allowed: one of them.")
     whole = stations == "all"
-    opened = cases.opened(case)
+    opened = cases.opened(case, settings())
     named = tuple(one if isinstance(one, int) else frozendict(one) for one in links) or (sizes or ())
     for one in named:
         check(Choices(links=one), opened)

@@ -11,7 +11,7 @@ import click
 
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
-from comparisons.cli.options import folder, numerical, one_of_both, opinions, output
+from comparisons.cli.options import folder, numerical, one_of_both, opinions, output, parameters
 
 if TYPE_CHECKING:
     from comparisons.documents import Plain
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 @click.command("compare")
 @click.argument("asked", nargs=-1, required=True, metavar="CASE|FILE.toml...|all", shell_complete=offered)
+@parameters
 @click.option("--solver", "asking_solid", callback=opinions, default="cprbm,fea", show_default=True, metavar="SOLVERS",
               help="Who answers: 'cprbm,fea', or 'cprbm,fea,solid' for a third opinion.")  # fmt: skip
 @numerical

@@ -10,7 +10,7 @@ import click
 
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
-from comparisons.cli.options import family_sizes, folder, opinions, output, variants
+from comparisons.cli.options import family_sizes, folder, opinions, output, parameters, variants
 
 if TYPE_CHECKING:
     from comparisons.converging.report import Told
@@ -22,6 +22,7 @@ NOT_COMPLETED = 1
 
 @click.command("converge")
 @click.argument("asked", nargs=-1, required=True, metavar="CASE|FILE.toml...|all", shell_complete=offered)
+@parameters
 @click.option("--solver", "asking_solid", callback=opinions, default="cprbm,fea", show_default=True, metavar="SOLVERS",
               help="Who answers: 'cprbm,fea', or 'cprbm,fea,solid' for what the beam theories miss.")  # fmt: skip
 @click.option(

@@ -133,6 +133,23 @@ def one_of_both(found: float | None) -> None:
             raise click.UsageError(f"found --tol and {option}; allowed: one of them, for --tol finds N by itself.")
 
 
+def _kept(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -> None:
+    """Keep the values of parameters by name in the context."""
+    named = [part.partition("=") for part in value]
+    if not all(name.strip() and text.strip() for name, _, text in named):
+        raise click.BadParameter(f"found {', '.join(value)}; allowed: NAME=VALUE, such as t=1.9mm")
+    ctx.meta[__name__] = {name.strip(): text.strip() for name, _, text in named}
+
+
+parameters = click.option("--set", callback=_kept, multiple=True, expose_value=False, metavar="NAME=VALUE",
+                          help="Value of a parameter of the scene, such as t=1.9mm; may be repeated.")  # fmt: skip
+
+
+def settings() -> dict[str, str]:
+    """Values of parameters from the option --set of the running command, by name."""
+    return dict(click.get_current_context().meta.get(__name__, {}))
+
+
 def _number(text: str) -> float:
     try:
         return float(text)

@@ -10,7 +10,7 @@ import click
 
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
-from comparisons.cli.options import family_sizes, folder, output, sized, variants
+from comparisons.cli.options import family_sizes, folder, output, parameters, sized, variants
 
 if TYPE_CHECKING:
     from comparisons.pairing import Runs
@@ -21,6 +21,7 @@ PARTS = ("convergence", "times")
 
 @click.command("report")
 @click.argument("asked", nargs=-1, metavar="[CASE|FILE.toml...|all]", shell_complete=offered)
+@parameters
 @sized
 @variants
 @click.option("--sizes", callback=family_sizes, metavar="N,N,...", default="10,20,40,80", show_default=True,

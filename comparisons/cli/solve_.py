@@ -11,11 +11,12 @@ import click
 from comparisons.choices import Kinematics
 from comparisons.cli.answering import SOLVERS, SolverName, answered, told
 from comparisons.cli.completing import offered
-from comparisons.cli.options import numerical, one_of_both, output
+from comparisons.cli.options import numerical, one_of_both, output, parameters, settings
 
 
 @click.command("solve")
 @click.argument("case", metavar="CASE|FILE.toml", shell_complete=offered)
+@parameters
 @click.option("--solver", type=click.Choice(SOLVERS), default="cprbm", show_default=True)
 @numerical
 @output
@@ -40,7 +41,7 @@ def command(
     from comparisons.cli import showing
 
     one_of_both(tol)
-    scene = cases.opened(case)
+    scene = cases.opened(case, settings())
     choices = Choices(links, formulation, elements, kinematics, penetration, across)
     check(choices, scene)
     showing.room_for(json_file)

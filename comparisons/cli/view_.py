@@ -12,7 +12,7 @@ import click
 from comparisons.choices import Kinematics
 from comparisons.cli.answering import SOLVERS, SolverName, answered, told
 from comparisons.cli.completing import offered
-from comparisons.cli.options import numerical, one_of_both, verbose
+from comparisons.cli.options import numerical, one_of_both, parameters, settings, verbose
 
 if TYPE_CHECKING:
     from comparisons.viewing.frames import Coloured
@@ -23,6 +23,7 @@ _QUANTITIES = ("bending_stress", "combined_stress", "moment")
 
 @click.command("view")
 @click.argument("case", metavar="CASE|FILE.toml", shell_complete=offered)
+@parameters
 @click.option("--solver", type=click.Choice(SOLVERS), default="cprbm", show_default=True)
 @click.option("--out", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE",
               help="What to write; its name's end says what it is: .png, .svg; .gif, .apng (an animation through the "
@@ -63,7 +64,7 @@ def command(
     from comparisons.writing import write
 
     one_of_both(tol)
-    scene = with_stresses(cases.opened(case))
+    scene = with_stresses(cases.opened(case, settings()))
     path = Path(f"{scene.name}.png") if out is None else out
     kind = kind_of(path)
     if kind is None:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import Any
 
+from comparisons import cases
 from cprbm_scene import scene_from
 
 LENGTH, THICKNESS, WIDTH, MODULUS = 0.0731, 0.00113, 0.0087, 7.13e9
@@ -14,7 +14,7 @@ HINGE = Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml"
 
 
 def hinge_data() -> dict[str, Any]:
-    return tomllib.loads(HINGE.read_text(encoding="utf-8"))
+    return cases.data("hinge")
 
 
 def hinge(**changes: Any):

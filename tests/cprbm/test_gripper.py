@@ -1,12 +1,12 @@
 """The gripper of section 3.3 in the formulation ``paper``: two contacts at once, from the stress-free shape."""
 
-import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import cprbm
+from comparisons import cases
 from cprbm import following
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium
@@ -27,7 +27,7 @@ BEYOND = {(30, 40): "1 of 20", (60, 80): "2 of 40"}
 
 
 def gripper(case, steps, stations):
-    data = tomllib.loads((CASES / f"{case}.toml").read_text(encoding="utf-8"))
+    data = cases.data(case)
     data["claims"] = []
     data["stages"] = [{"name": "load", "steps": steps, "stations": stations}]
     data["probes"] = [{"of": of, "quantity": "displacement"} for of in ("A", "B", "O")]

@@ -4,20 +4,20 @@ The gripper on nine elements has a contact beside a border of elements at 12.8 N
 closes where the mesh fits its other contact to a part of an element.
 """
 
-import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import cprbm
+from comparisons import cases
 from cprbm_scene import scene_from
 
 GRIPPER = Path(__file__).parents[2] / "comparisons" / "cases" / "gripper.toml"
 
 
 def at_the_end(stations):
-    data = tomllib.loads(GRIPPER.read_text(encoding="utf-8"))
+    data = cases.data("gripper")
     data["claims"] = []
     data["stages"] = [{"name": "load", "steps": "F", "stations": stations}]
     answer = cprbm.answer(scene_from(data), cprbm.Settings(links=9))

@@ -1,17 +1,16 @@
 """Edits of plain scene data for tests, and beams on given curves."""
 
 import copy
-import tomllib
-from pathlib import Path
 
 import numpy as np
 
+from comparisons import cases
 from cprbm_scene import Beam, FreeEnd, SceneError, scene_from
 from cprbm_scene.closest import closest_pair
 from cprbm_scene.curves import least
 from cprbm_scene.geometry import points_on
 
-HINGE = tomllib.loads((Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml").read_text(encoding="utf-8"))
+HINGE = cases.data("hinge")
 REMOVED = object()
 
 

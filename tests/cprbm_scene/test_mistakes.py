@@ -2,10 +2,11 @@
 
 import pytest
 
-from tests.cprbm_scene.editing import REMOVED, edited, mistakes, two_lines
+from tests.cprbm_scene.editing import HINGE, REMOVED, edited, mistakes, two_lines
 
 INF, NAN = float("inf"), float("nan")
 BEAM = "beams/beam1"
+START = HINGE["beams"]["beam1"]["curve"]["start"]
 HUGE = 1 << 40_000
 
 RECORDS = [
@@ -60,8 +61,8 @@ TIES = [
     ("bodies/BD/points/scene", [0.0, 0.0], "bodies.BD.points.scene", "the scene itself"),
     (f"{BEAM}/thickness", 0.0199, "beams.beam1.thickness", "0.253 of the beam's length"),
     (f"{BEAM}/thickness", 1e-7, "beams.beam1.thickness", "of the beam's length"),
-    (f"{BEAM}/curve/end", [0.001, 0.02625], "beams.beam1.curve", "same place"),
-    (f"{BEAM}/curve/center", [0.001, 0.02625], "beams.beam1.curve", "own center"),
+    (f"{BEAM}/curve/end", START, "beams.beam1.curve", "same place"),
+    (f"{BEAM}/curve/center", START, "beams.beam1.curve", "own center"),
     (f"{BEAM}/curve/center", [0.0261, 0.02625], "beams.beam1.curve", "no common circle"),
     (
         "bodies/BD/points/B",

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from collections.abc import Callable
 from math import cos, pi, sin
 from pathlib import Path
 from typing import Any
 
 import elastica_reference
+from comparisons import cases
 from cprbm_scene import Answer, Ending, scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, WIDTH, cantilever_data, hinge_data
 from tests.references.hinge import Hinge
@@ -41,7 +41,7 @@ def completed(data: dict[str, Any]) -> Answer:
 
 def case(name: str) -> dict[str, Any]:
     """A built-in case without its claims."""
-    return {**tomllib.loads((CASES / f"{name}.toml").read_text(encoding="utf-8")), "claims": []}
+    return {**cases.data(name), "claims": []}
 
 
 # ------------------------------------------------------------------------------------------------ scenes

@@ -33,7 +33,7 @@ from tests.robustness.toml import toml_of
 
 ROOT = Path(__file__).parents[2]
 PLAN = Plan(0, limits=Limits(seconds=1.0, waiting=120.0))
-GRIPPER = tomllib.loads((Path(cases.__file__).parent / "gripper.toml").read_text("utf-8"))
+GRIPPER = cases.data("gripper")
 
 
 def last(steps_):

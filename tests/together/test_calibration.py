@@ -10,12 +10,11 @@ from __future__ import annotations
 
 import json
 import math
-import tomllib
 from functools import cache
 
 import pytest
 
-from comparisons import documents
+from comparisons import cases, documents
 from comparisons.calibration import Tally
 from comparisons.choices import Choices
 from comparisons.measures import rows_of
@@ -24,7 +23,6 @@ from comparisons.studies.calibration import Calibration, Trial, tallies, tried
 from comparisons.studies.calibration_told import told
 from comparisons.words import Word
 from cprbm_scene import scene_from
-from tests.cprbm.scenes import HINGE
 from tests.together import truths
 
 SHARES = (0.6, 1.4, 2.2)
@@ -80,7 +78,7 @@ def test_a_contact_that_closes_at_once():
 
     The finite elements may leave less of it than they were allowed, and the finer ones a larger share of theirs.
     """
-    data = tomllib.loads(HINGE.read_text(encoding="utf-8"))
+    data = cases.data("hinge")
     data["claims"] = []
     for body, beam in (("AC", "beam1"), ("BD", "beam2")):
         data["bodies"][body]["points"] = {

@@ -6,7 +6,6 @@ Each pair of a scene and a solver: the solver looks nothing up in the scene but 
 from __future__ import annotations
 
 import dataclasses
-import tomllib
 from collections.abc import Callable
 from functools import lru_cache
 
@@ -19,7 +18,6 @@ from comparisons.pairing import Solver
 from cprbm_scene import Answer, Certificate, Ending, Probe, Scene, Shape, StationAnswer, scene_from
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
-from tests.cprbm.scenes import HINGE
 from tests.references import hinge, three_cantilevers, two_cantilevers
 from tests.references.tapered import guided
 from tests.references.wrapped import Wrapped
@@ -59,7 +57,7 @@ def told_by(truth: Truth) -> Solver:
 
 def of_hinge(of: hinge.Hinge, shares: tuple[float, ...]) -> tuple[Scene, Solver]:
     """Contact in a point; the stations are ``shares`` of the moment at which it closes."""
-    data = tomllib.loads(HINGE.read_text(encoding="utf-8"))
+    data = cases.data("hinge")
     x0, x1, y = of.xc - of.radius, of.xc + of.radius, of.yc
     data["claims"] = []
     data["bodies"]["AC"]["points"] = {"A": [x0, y], "C": [x0, -y]}

@@ -1,0 +1,178 @@
+"""Parameters of a scene: named numbers for the expressions of a file, with a unit, a range and a tolerance."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+from pydantic import Field, ValidationInfo, ValidatorFunctionWrapHandler
+
+from cprbm_scene.expressions import FUNCTIONS, ExpressionError, Value, evaluated
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake, unknown_name
+from cprbm_scene.record import Record
+from cprbm_scene.units import ANGLE, FORCE, LENGTH, STRESS, Measured, Reading, Unit, Units, mistake
+
+_SETTING = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+_ROUNDED = 1e-12
+"""Share of a range by which a value may exceed the range: units are converted."""
+
+_NAMED = frozendict(
+    {name: (Units(length=name), LENGTH) for name in ("m", "cm", "mm", "um", "in")}
+    | {name: (Units(force=name), FORCE) for name in ("N", "kN", "mN", "uN")}
+    | {name: (Units(angle=name), ANGLE) for name in ("rad", "deg")}
+    | {name: (Units(stress=name), STRESS) for name in ("Pa", "kPa", "MPa", "GPa")}
+)
+
+
+class _Own(Measured):
+    """Metadata of numbers in the parameter's own unit."""
+
+    def of(self, reading: Reading, record: Mapping[str, Any]) -> None:
+        """None: the parameter states the unit."""
+
+    def _number(self, value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
+        expression = isinstance(info.context, Reading) and isinstance(value, str) and value.startswith("=")
+        return value if expression else handler(value)
+
+
+Own = Annotated[float, _Own()]
+PositiveOwn = Annotated[float, Field(gt=0.0), _Own()]
+
+
+class Tolerance(Record):
+    """Scatter of a parameter: ``normal``, a standard deviation, or ``uniform``, half of a width; in its unit."""
+
+    normal: PositiveOwn | None = None
+    uniform: PositiveOwn | None = None
+
+
+class Parameter(Record):
+    """A named number: a ``value`` in a ``unit`` such as ``mm`` or ``N*mm``, within a ``range``, with a ``tolerance``.
+
+    Without a unit the parameter is a plain number.  In place of a number the value may be an expression; it is then in
+    the file's units.  After reading all numbers are in SI.
+    """
+
+    value: Own
+    unit: str = ""
+    range: tuple[Own, Own] | None = None
+    tolerance: Tolerance | None = None
+
+
+def register(reading: Reading, parameters: Mapping[str, Parameter]) -> Mapping[str, Parameter]:
+    """The parameters in SI with the reading's settings; the reading evaluates expressions from now on.
+
+    Raises:
+        PydanticCustomError: an unknown name or unit, a cycle, or a value out of range.
+    """
+    for name in reading.settings:
+        if name not in parameters:
+            raise _as_error(unknown_name(name, name, "parameter", parameters))
+    resolved = _Resolved(reading, parameters)
+    found = {name: resolved.in_si(name) for name in parameters}
+    reading.evaluate = resolved.evaluate
+    return frozendict(found)
+
+
+class _Resolved:
+    """Values of parameters in the file's units, evaluated on demand."""
+
+    def __init__(self, reading: Reading, parameters: Mapping[str, Parameter]) -> None:
+        self._reading, self._parameters = reading, parameters
+        self._values: dict[str, Value] = {}
+        self._open: list[str] = []
+
+    def evaluate(self, text: str, unit: Unit | None) -> float:
+        """Number of an expression in the file's units, for a key with a ``unit``; None without a check of the unit."""
+        try:
+            value = evaluated(text.removeprefix("="), self._named, self._reading.units)
+        except ExpressionError as error:
+            known = ", ".join((*self._parameters, "pi", *FUNCTIONS))
+            raise mistake(f"{text!r}: {error}", f"an expression of numbers, + - * / ** ( ) and {known}") from None
+        factor = 1.0 if unit is None or value.unit is None else value.unit.over(unit, self._reading.units)
+        if factor is None:
+            found = f"{text!r}, a number in {value.unit}" if str(value.unit) else f"{text!r}, a ratio without unit"
+            raise mistake(found, f"a number in {unit}" if str(unit) else "a number without unit")
+        return value.number * factor
+
+    def in_si(self, name: str) -> Parameter:
+        """A parameter with all numbers in SI."""
+        given, value = self._parameters[name], self._value(name)
+        unit = value.unit or Unit()
+        size, own = _unit_of(given.unit, f"{name}.unit")
+        number = unit.in_si(value.number, self._reading.units)
+        span = given.range and (given.range[0] * size, given.range[1] * size)
+        if span is not None:
+            slack = _ROUNDED * max(abs(span[0]), abs(span[1]))
+            if not span[0] - slack <= number <= span[1] + slack:
+                allowed = f"a number from {span[0] / size:g} to {span[1] / size:g} {given.unit}".rstrip()
+                raise mistake(f"{number / size:.9g} {given.unit}".rstrip(), allowed, f"{name}.value")
+        scatter = given.tolerance and Tolerance(
+            normal=given.tolerance.normal and given.tolerance.normal * size,
+            uniform=given.tolerance.uniform and given.tolerance.uniform * size,
+        )
+        return Parameter(value=number, unit=str(own if given.unit else unit), range=span, tolerance=scatter)
+
+    def _named(self, name: str) -> Value:
+        if name not in self._parameters:
+            raise ExpressionError(unknown_name("", name, "parameter", self._parameters).found)
+        return self._value(name)
+
+    def _value(self, name: str) -> Value:
+        if name in self._open:
+            raise ExpressionError(f"a cycle: {' -> '.join((*self._open, name))}")
+        if name not in self._values:
+            self._open.append(name)
+            self._values[name] = self._computed(name, self._parameters[name])
+            self._open.pop()
+        return self._values[name]
+
+    def _computed(self, name: str, given: Parameter) -> Value:
+        size, unit = _unit_of(given.unit, f"{name}.unit")
+        setting = self._reading.settings.get(name)
+        if isinstance(given.value, str):
+            if given.unit or setting is not None:
+                raise mistake(f"{given.value!r}, an expression", "a number with a unit, or an expression alone", name)
+            try:
+                return evaluated(given.value.removeprefix("="), self._named, self._reading.units)
+            except ExpressionError as error:
+                raise mistake(f"{given.value!r}: {error}", "an expression of parameters", f"{name}.value") from None
+        number = given.value
+        if isinstance(setting, str):
+            written = _SETTING.fullmatch(setting)
+            if written is None:
+                raise mistake(repr(setting), "a number with a unit, such as 1.9mm", name)
+            other_size, other = _unit_of(written[2] or given.unit, name)
+            if other.over(unit, Units()) is None:
+                raise mistake(repr(setting), f"a number in {given.unit or 'no unit'}", name)
+            number = float(written[1]) * (other_size / size)
+        elif setting is not None:
+            number = float(setting) / size
+        if not math.isfinite(number):
+            raise mistake(f"{number:g}", "a finite number", name)
+        return Value(number * (size / unit.in_si(1.0, self._reading.units)), unit if given.unit else None)
+
+
+def _unit_of(text: str, key: str) -> tuple[float, Unit]:
+    """Size in SI and powers of a unit such as ``mm`` or ``N*mm``; a plain number for an empty text."""
+    if not text:
+        return 1.0, Unit()
+
+    def named(name: str) -> Value:
+        if name not in _NAMED:
+            raise ExpressionError(f"{name!r}, which is no unit")
+        units, unit = _NAMED[name]
+        return Value(unit.in_si(1.0, units), unit)
+
+    try:
+        value = evaluated(text.replace("^", "**"), named, Units())
+    except ExpressionError as error:
+        raise mistake(f"{text!r}: {error}", f"a product of {', '.join(_NAMED)}", key) from None
+    return value.number, value.unit or Unit()
+
+
+def _as_error(found: Mistake) -> Exception:
+    return mistake(found.found, found.allowed, found.key)
