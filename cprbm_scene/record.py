@@ -18,7 +18,9 @@ from cprbm_scene.mistakes import Mistake
 
 T = TypeVar("T")
 
-Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_][A-Za-z0-9_-]*$", max_length=64)]
+_LETTERS = "A-Za-z_À-ÖØ-öø-ɏΑ-Ωα-ω"
+Name = Annotated[str, StringConstraints(pattern=f"^[{_LETTERS}][{_LETTERS}0-9-]*$", max_length=64)]
+"""Latin and Greek letters, digits, '_' and '-': names are parts of file names, of HTML identifiers and of options."""
 Text = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x08\x0b-\x1f\x7f-\x9f]*$")]
 """Text without control characters, but for tabs and line ends."""
 Title = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]

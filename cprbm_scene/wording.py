@@ -51,6 +51,8 @@ def in_words(details: ErrorDetails, root: type[Record]) -> Mistake:
     match kind:
         case "extra_forbidden":
             return unknown_name(key, str(loc[-1]), "key here", keys_at(loc[:-1], root))
+        case "string_pattern_mismatch" if "x00" in context["pattern"]:
+            allowed = "a text without control characters"
         case "missing":
             found = "nothing"
             allowed = "an item here" if isinstance(loc[-1], int) else "a value: this key is required"

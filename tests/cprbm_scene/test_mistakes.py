@@ -131,6 +131,11 @@ TIES = [
 ]
 
 
+RECORDS += [
+    ("title", "a\u0007b", "title", "control characters"),
+    ("source", "a\u0000", "source", "control characters"),
+    ("bodies/a\u001bb", {"motion": "fixed", "points": {"Z": [0, 0]}}, "bodies.a\u001bb", "letters"),
+]
 ALL = RECORDS + TIES
 ONE = [row for row in RECORDS if row[0] != "beams/my beam"]  # an empty beam misses its keys too
 
@@ -144,6 +149,11 @@ def test_a_mistake_is_named_by_its_key(path, value, key, words):
 @pytest.mark.parametrize(("path", "value", "key", "words"), ONE, ids=[row[2] for row in ONE])
 def test_a_mistake_in_one_record_is_the_only_one(path, value, key, words):
     assert list(mistakes((path, value))) == [key]
+
+
+def test_names_have_latin_and_greek_letters():
+    body = {"motion": "fixed", "points": {"Füße": [0.0, 0.2], "φ_1": [0.1, 0.2]}}
+    assert mistakes(("bodies/Träger", body)) == {}
 
 
 def test_several_mistakes_are_reported_at_once():

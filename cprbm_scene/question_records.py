@@ -1,0 +1,181 @@
+"""Records of stages, probes and claims, with units by stepped loads and drives, and by quantities."""
+
+from __future__ import annotations
+
+from bisect import bisect
+from collections.abc import Iterator, Mapping
+from math import isclose
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake
+from cprbm_scene.record import Name, Of, Record, Text
+from cprbm_scene.units import (
+    ANGLE,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    STRESS,
+    Following,
+    Positive,
+    PositiveShare,
+    Reading,
+    Unit,
+    Units,
+    mistake,
+)
+
+Quantity = Literal[
+    "displacement",
+    "rotation",
+    "force",
+    "centre",
+    "ends",
+    "closing_load",
+    "bending_stress",
+    "combined_stress",
+    "reaction",
+    "reaction_moment",
+    "potential_energy",
+    "angle",
+    "moment",
+]
+
+STRESSES: frozenset[Quantity] = frozenset({"bending_stress", "combined_stress"})
+"""Quantities at several places along a beam."""
+
+UNITS: Mapping[Quantity, Unit] = frozendict(
+    {
+        "displacement": LENGTH,
+        "rotation": ANGLE,
+        "force": FORCE,
+        "centre": LENGTH,
+        "ends": LENGTH,
+        "bending_stress": STRESS,
+        "combined_stress": STRESS,
+        "reaction": FORCE,
+        "reaction_moment": MOMENT,
+        "potential_energy": MOMENT,
+        "angle": ANGLE,
+        "moment": MOMENT,
+    }
+)
+"""Units of probes; a closing load has the unit of its stage."""
+
+CRITICAL = "critical"
+"""Name of a claim's probe for the first critical value of a stage."""
+
+
+def _of_stage(reading: Reading, stage: Mapping[str, Any]) -> Unit | None:
+    """Unit of a stage's stations: the unit of the stepped load or drive."""
+    return reading.stepped.get(stage.get("steps", ""))
+
+
+def _of_stations(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
+    """Unit of the stations of a claim's stages."""
+    stage = claim.get("stage")
+    units = {unit for name, unit in reading.stages.items() if stage in (None, name)}
+    if len(units) > 1 and reading.units != Units():
+        found = "a number in the unit of several stages, which step different kinds"
+        raise mistake(found, "a stage beside it")
+    return next(iter(units), None)
+
+
+def _of_value(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
+    """Unit of a claim's probe."""
+    probe = claim.get("probe")
+    if probe == CRITICAL or reading.probes.get(str(probe), LENGTH) is None:
+        return _of_stations(reading, claim)
+    return reading.probes.get(str(probe))
+
+
+Station = Annotated[float, Following(_of_stage)]
+
+
+class Stage(Record):
+    """Part of the loading: the values of a load or drive, in the order of stepping.
+
+    Loads and drives are zero before a stage steps them (such a drive holds the initial place) and keep their last value
+    in later stages.
+
+    ``beyond`` selects the path at a critical point, where the state ceases to be a minimum of the potential
+    energy: ``stop``, or ``jump`` to the state at the end of the energy descent.  Load steps are then short enough
+    to pass no critical point.  Without ``beyond`` load steps are as long as possible, and a critical point is reported
+    only where no step leads past; a branch jump to a state beside the critical point is reported in a note.  ``shown``
+    are stations for tables and pictures, beside the last of all.  ``critical_limit`` (in the unit of the stations)
+    replaces the usual largest difference and uncertainty of critical values for the verdict AGREE.
+    """
+
+    name: Name
+    steps: Annotated[Name, Of("load or drive")]
+    stations: Annotated[tuple[Station, ...], Field(min_length=1, max_length=10_001)]
+    shown: tuple[Station, ...] = ()
+    critical_limit: Annotated[float, Field(gt=0.0), Following(_of_stage)] | None = None
+    beyond: Literal["stop", "jump"] | None = None
+
+    def rules(self) -> Iterator[Mistake]:
+        """Repeated stations, indistinguishable in an answer, and shown values without a station."""
+        before: list[float] = []  # ascending
+        for j, value in enumerate(self.stations):
+            place = bisect(before, value)
+            beside = before[max(0, place - 1) : place + 1]
+            before.insert(place, value)
+            if any(isclose(value, other, rel_tol=1e-9) for other in beside):
+                allowed = "each value once in a stage; a further stage may go back to it"
+                yield Mistake(f"stations[{j}]", f"{value:g} again", allowed)
+        stations = set(self.stations)
+        for j, value in enumerate(self.shown):
+            if value not in stations:
+                yield Mistake(f"shown[{j}]", f"{value:g}", "one of the stage's stations")
+
+
+class Probe(Record):
+    """Requested number (or numbers) at every station, named ``of.quantity``.
+
+    ``of`` is the name of a body's point, a body, a beam, a contact, a stop, or ``scene``.  ``points`` is the number of
+    places, equally spaced in arc length, of a beam's stress.  ``verdict_limit`` replaces the scene's for this probe.
+    """
+
+    of: Name
+    quantity: Quantity
+    points: Annotated[int, Field(ge=3, le=10_001)] = 81
+    verdict_limit: PositiveShare | None = None
+
+    @property
+    def name(self) -> str:
+        """The probe's name in tables and JSON."""
+        return f"{self.of}.{self.quantity}"
+
+    def rules(self) -> Iterator[Mistake]:
+        """Places of quantities other than stress."""
+        if "points" in self.model_fields_set and self.quantity not in STRESSES:
+            allowed = "points for 'bending_stress' and 'combined_stress' only"
+            yield Mistake("points", f"places along {self.name!r}", allowed)
+
+
+class Claim(Record):
+    """Statement of a publication on a probe: the relative difference stays below ``bound``.
+
+    Without a ``station`` the claim concerns every station with a value of the probe, without a ``stage`` every stage.
+    With a ``value`` (SI) the claim states the probe's value: ours then stays within ``bound`` of the value, a fraction
+    of the value, or of the probe's scale if the value is zero.
+
+    The probe ``critical`` is the first critical value of the ``stage``, without a stage of every stage.
+    """
+
+    probe: str
+    stage: Name | None = None
+    station: Annotated[float, Following(_of_stations)] | None = None
+    value: Annotated[float, Following(_of_value)] | None = None
+    bound: Positive
+    text: Text = ""
+
+    def speaks_of(self, stage: str, station: float) -> bool:
+        """True if the claim concerns a station; stations are equal up to round-off."""
+        return self.in_stage(stage) and (self.station is None or isclose(self.station, station, rel_tol=1e-9))
+
+    def in_stage(self, stage: str) -> bool:
+        """True if the claim concerns a stage."""
+        return self.stage is None or self.stage == stage
