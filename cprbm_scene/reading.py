@@ -50,8 +50,8 @@ def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) 
     Example:
         >>> from cprbm_scene import read
         >>> hinge = read("comparisons/cases/hinge.toml")
-        >>> hinge.beams["beam1"].thickness, hinge.place_of("B")
-        (0.002, (0.051, 0.02625))
+        >>> hinge.beams["beam1"].thickness, hinge.loads["M"].body
+        (0.002, 'BD')
     """
     question = read_question(path, parameters)
     if isinstance(question, OffsetQuestion):

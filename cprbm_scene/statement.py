@@ -126,7 +126,7 @@ __all__ = [
 ]
 
 Curve = NeutralLine
-V = TypeVar("V")
+T = TypeVar("T")
 
 
 class Source(Protocol):
@@ -167,7 +167,7 @@ class Scene(Record):
 
     @field_validator("units", "parameters", "loads", "drives", "stages", "probes")
     @classmethod
-    def _register(cls, value: V, info: ValidationInfo) -> V | Units | Mapping[str, Parameter]:
+    def _register(cls, value: T, info: ValidationInfo) -> T | Units | Mapping[str, Parameter]:
         """The value itself, with units stored for later fields; SI units in place of the file's units."""
         reading = info.context
         if not isinstance(reading, Reading):
