@@ -21,9 +21,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from comparisons.case import Comparison
     from comparisons.choices import Choices
     from comparisons.tidy import Number
-    from comparisons.verdict import Comparison
     from cprbm_scene import Answer, Scene
 
 __all__ = ["compare", "records", "write_csv"]
@@ -42,11 +42,11 @@ def compare(scene: Scene, choices: Choices | None = None) -> Comparison:
     Raises:
         SceneError: a solver refuses the question.
     """
+    from comparisons.case import compare
     from comparisons.choices import Choices
     from comparisons.pairing import paired, solvers_of
-    from comparisons.verdict import compared
 
-    return compared(scene, paired(scene, choices or Choices(), solvers_of(None)))
+    return compare(scene, paired(scene, choices or Choices(), solvers_of(None)))
 
 
 def records(scene: Scene, answer: Answer) -> list[Number]:

@@ -12,8 +12,12 @@ import numpy as np
 
 from comparisons.documents import Plain, plain
 from cprbm_scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Loss, Shape, StationAnswer
-from cprbm_scene.answer import Area, Array, Inside, Statics, frozen_array
+from cprbm_scene.answer import Array, BeamState, ContactState, PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict
+
+Record = (
+    BeamState | PointForces | ContactState | Critical | Event | Shape | Certificate
+)  # a record whose fields are plain data
 
 
 def text(answers: Mapping[str, Answer]) -> str:
@@ -44,7 +48,10 @@ def packed(answer: Answer) -> Plain:
                     "shapes": {name: _fields(shape) for name, shape in station.shapes.items()},
                     "touching": station.touching,
                     "certificate": _fields(station.certificate),
-                    "statics": None if station.statics is None else _packed_statics(station.statics),
+                    "beams": {name: _fields(beam) for name, beam in station.beams.items()},
+                    "forces": _fields(station.forces),
+                    "contacts": {name: _fields(contact) for name, contact in station.contacts.items()},
+                    "bodies": station.bodies,
                 }
                 for station in answer.stations
             ],
@@ -57,11 +64,7 @@ def _packed_critical(critical: Critical) -> Plain:
     return {**_fields(critical), "loss": critical.loss.name}
 
 
-def _packed_statics(statics: Statics) -> Plain:
-    return {**_fields(statics), "inside": {name: _fields(inside) for name, inside in statics.inside.items()}}
-
-
-def _fields(record: Statics | Inside | Area | Critical | Event | Shape | Certificate) -> Plain:
+def _fields(record: Record) -> Plain:
     return {field.name: getattr(record, field.name) for field in fields(record)}
 
 
@@ -78,13 +81,18 @@ def unpacked(data: Plain) -> Answer:
         ending=Ending[data["ending"]],
         sentence=data["sentence"],
         stations=tuple(_unpacked_station(station) for station in data["stations"]),
-        events=tuple(Event(**event) for event in data["events"]),
+        events=tuple(_unpacked_event(event) for event in data["events"]),
         critical=tuple(_unpacked_critical(critical) for critical in data["critical"]),
         # archives of before have none
         gone_over=tuple(GoneOver(_unpacked_critical(one["end"]), one["turned"]) for one in data.get("gone_over", ())),
         seconds=data["seconds"],
         notes=tuple(data["notes"]),
     )
+
+
+def _unpacked_event(data: Plain) -> Event:
+    interval = data["interval"]
+    return Event(**{**data, "interval": None if interval is None else tuple(interval)})
 
 
 def _unpacked_critical(data: Plain) -> Critical:
@@ -112,29 +120,27 @@ def _unpacked_station(data: Plain) -> StationAnswer:
         touching=frozendict({name: _pairs(places) for name, places in data["touching"].items()}),
         certificate=Certificate(**certificate),
         branch=data["branch"],
-        statics=None if data["statics"] is None else _unpacked_statics(data["statics"]),
-    )
-
-
-def _unpacked_statics(data: Plain) -> Statics:
-    return Statics(
-        by=tuple(data["by"]),
-        on=tuple(data["on"]),
-        s=_array(data["s"]),
-        places=_pairs(data["places"]),
-        forces=_pairs(data["forces"]),
-        moments=_array(data["moments"]),
+        beams=frozendict({name: BeamState(*map(_array, beam.values())) for name, beam in data["beams"].items()}),
+        forces=_unpacked_forces(data["forces"]),
+        contacts=frozendict(
+            {
+                name: ContactState(contact["active"], _pairs(contact["places"]), contact["indeterminate"])
+                for name, contact in data["contacts"].items()
+            }
+        ),
         bodies=frozendict({name: _array(values) for name, values in data["bodies"].items()}),
-        inside=frozendict({name: _unpacked_inside(inside) for name, inside in data["inside"].items()}),
     )
 
 
-def _unpacked_inside(data: Plain) -> Inside | Area:
-    if "made_of" in data:
-        start, end = map(float, data["upright"])
-        borders, angles, pulls = (_array(data[name]) for name in ("borders", "angles", "pulls"))
-        return Inside(data["made_of"], borders, angles, pulls, (start, end))
-    return Area(_array(data["along"]), _array(data["across"]), frozen_array(data["x"]), frozen_array(data["y"]))
+def _unpacked_forces(data: Plain) -> PointForces:
+    return PointForces(
+        tuple(data["source"]),
+        tuple(data["target"]),
+        _array(data["s"]),
+        _pairs(data["place"]),
+        _pairs(data["force"]),
+        _array(data["moment"]),
+    )
 
 
 def _pairs(values: list[Any]) -> Array:

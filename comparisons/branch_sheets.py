@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from comparisons.branches import Place
-from comparisons.criticals import mechanism, released
+from comparisons.case import Comparison
 from comparisons.formats import number, scaled_unit
-from comparisons.measures import load_unit
-from comparisons.per_branch import critical_word, distance, value_and_unit
+from comparisons.quantities import load_unit
+from comparisons.sentences import distance, load
 from comparisons.sheet import Sheet
-from comparisons.verdict import Comparison
+from comparisons.verdict.events import mechanism, released
+from comparisons.verdict.station_events import Place
 from cprbm_scene import Answer, Critical, Scene
 
 
@@ -30,7 +30,7 @@ def of_criticals(compared: Comparison) -> Sheet:
                 ),
                 distance(row.allowed, row.unit),
                 *(_released(found) for found in (row.cprbm, row.fea)),
-                critical_word(row).value,
+                row.word.value,
             )
         )
     return Sheet(
@@ -69,25 +69,21 @@ def of_branches(compared: Comparison) -> Sheet:
         )
         for each in told
     ]
-    for place in (Place.BETWEEN, Place.APART, Place.UNSETTLED):
-        stations = dict.fromkeys((row.stage, row.station) for row in compared.rows if row.place is place)
-        for stage in dict.fromkeys(stage for stage, _ in stations):
-            mine = [value for name, value in stations if name == stage]
-            word = {Place.APART: "DIFFER", Place.UNSETTLED: "UNDECIDED"}.get(place, "takes no part")
-            body.append(
-                (f"{stage}, {place.value}", ", ".join(f"{value:g}" for value in mine), str(len(mine)), "–", word)
-            )
+    between = dict.fromkeys(row.where for row in compared.rows if row.branch is None)
+    for stage in dict.fromkeys(stage for stage, _ in between):
+        mine = [value for name, value in between if name == stage]
+        values = ", ".join(f"{value:g}" for value in mine)
+        body.append((f"{stage}, {Place.BETWEEN.value}", values, str(len(mine)), "–", "takes no part"))
     return Sheet(
         "Branch by branch",
-        ("branch", "stations", "compared", "near a critical value", "says"),
+        ("branch", "stations", "compared", "between events", "says"),
         tuple(body),
-        "A branch is compared with the same branch. Stations between the critical values of two answers, and near one, "
-        "are listed and have no part in AGREE.",
+        "A branch is compared with the same branch. Stations between the runs' loads of one event take no part.",
     )
 
 
 def _ends(critical: Critical | None, unit: str) -> str:
-    return "–" if critical is None else f"{value_and_unit(critical.value, unit)}, {mechanism(critical)}"
+    return "–" if critical is None else f"{load(critical.value, unit)}, {mechanism(critical)}"
 
 
 def _released(critical: Critical | None) -> str:
@@ -105,7 +101,7 @@ def of_ends(scene: Scene, answer: Answer) -> Sheet:
     body = tuple(
         (
             each.stage,
-            value_and_unit(each.value, units[each.stage]),
+            load(each.value, units[each.stage]),
             distance(each.uncertainty, units[each.stage]),
             f"{mechanism(each)}{over.get(id(each), '')}",
             number(each.curvature),

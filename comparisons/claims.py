@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from comparisons.criticals import CriticalRow
-from comparisons.measures import Row
-from comparisons.scales import VANISHING, norm
+from comparisons.quantities import VANISHING, norm
+from comparisons.verdict.events import CriticalRow
+from comparisons.verdict.rows import Row
 from cprbm_scene import Claim, Scene
 from cprbm_scene.statement import CRITICAL
 

@@ -10,14 +10,16 @@ from typing import Any
 import numpy as np
 
 from comparisons.audit import Audit
+from comparisons.case import Comparison
 from comparisons.claims import claim_met, claim_of, claim_of_critical, claimed_difference, critical_difference
-from comparisons.criticals import CriticalRow, released
-from comparisons.measures import Row, arc_lengths, unit_of
-from comparisons.per_branch import critical_word
+from comparisons.quantities import arc_lengths, unit_of
 from comparisons.reactions import WorkEnergyReaction
+from comparisons.steps import contact_model, largest_difference, steps_of
 from comparisons.third import Third, thirds_of
 from comparisons.tolerances.search import Tolerance
-from comparisons.verdict import Comparison
+from comparisons.verdict.events import CriticalRow, released
+from comparisons.verdict.rows import Row
+from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Answer, Certificate, Critical, Probe, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES
@@ -39,6 +41,7 @@ def comparison(compared: Comparison) -> Plain:
     return {
         "case": compared.scene.name,
         "verdict": compared.verdict.word.value,
+        "reason": name_of(compared.verdict.reason),
         "sentence": compared.verdict.sentence,
         "solvers": {
             "cprbm": {
@@ -53,8 +56,8 @@ def comparison(compared: Comparison) -> Plain:
             **({} if compared.runs.solid is None else {"solid": _solid(compared, compared.runs.solid[-1])}),
         },
         "rows": [
-            {**_row(compared.scene, row), "verdict": None if word is None else word.value}
-            for row, word in zip(compared.rows, compared.verdict.words, strict=True)
+            {**_row(compared, row), "verdict": name_of(word), "reason": name_of(reason)}
+            for row, word, reason in zip(compared.rows, compared.verdict.words, compared.verdict.reasons, strict=True)
         ],
         "critical": [_critical_row(compared.scene, each) for each in compared.criticals],
         "branches": [
@@ -65,7 +68,7 @@ def comparison(compared: Comparison) -> Plain:
                 "to": each.last,
                 "stations": each.stations,
                 "near_critical": each.near,
-                "verdict": None if each.word is None else each.word.value,
+                "verdict": name_of(each.word),
             }
             for each in compared.verdict.branches
         ],
@@ -74,9 +77,14 @@ def comparison(compared: Comparison) -> Plain:
     }
 
 
+def name_of(value: Word | Reason | None) -> str | None:
+    """Name of a word or a reason; None without one."""
+    return None if value is None else value.value
+
+
 def _solid(compared: Comparison, finest: Answer) -> Plain:
     """How the solid fared on its finest mesh."""
-    return {**solver(finest, compared.audits.get("solid")), **_tolerance(compared.tolerances, "solid")}
+    return {**solver(finest), **_tolerance(compared.tolerances, "solid")}
 
 
 def solution(
@@ -129,11 +137,11 @@ def _audit(found: Audit) -> Plain | None:
     return {
         "holds": not found.complaints,
         "complaints": list(found.complaints),
-        "remarks": list(found.remarks),
+        "remarks": list(found.crossings),
         "stations": found.stations,
         "unbalance": plain(found.unbalance),
         "scaled_unbalance": plain(found.scaled),
-        "smallest_curvature": None if found.curvature is None else plain(found.curvature),
+        "smallest_curvature": None,
     }
 
 
@@ -227,10 +235,11 @@ def plain(value: object) -> Any:  # noqa: ANN401 - whatever JSON holds
             return str(value)
 
 
-def _row(scene: Scene, row: Row) -> Plain:
+def _row(compared: Comparison, row: Row) -> Plain:
+    scene, runs = compared.scene, compared.runs
     claim = claim_of(scene, row)
     bounds = row.bounds
-    steps = row.steps
+    steps, model = steps_of(runs, row), contact_model(runs, row)
     true = row.true_errors
     return {
         "probe": row.probe.name,
@@ -245,8 +254,8 @@ def _row(scene: Scene, row: Row) -> Plain:
         "uncertainty": {
             "cprbm": None if bounds is None else row.fraction(bounds.cprbm),
             "fea": None if bounds is None else row.fraction(bounds.fea),
-            "theory": None if bounds is None else row.fraction(bounds.theory),
-            "fea_bending": None if bounds is None else row.fraction(bounds.bending),
+            "theory": None if bounds is None or bounds.bending is None else row.fraction(bounds.theory),
+            "fea_bending": None if bounds is None or bounds.bending is None else row.fraction(bounds.bending),
             "round_off": None if bounds is None else row.fraction(bounds.round_off),
         },
         "claim": None if claim is None else claim.bound,
@@ -262,8 +271,8 @@ def _row(scene: Scene, row: Row) -> Plain:
             "stretch": row.fraction(steps.stretch),
             "shear": row.fraction(steps.shear),
         },
-        "contact_model": None if row.contact_model is None else row.fraction(row.contact_model),
-        "difference_largest": None if row.largest is None else row.fraction(row.largest),
+        "contact_model": None if model is None else row.fraction(model),
+        "difference_largest": row.fraction(largest_difference(row)),
         "exact": None if row.exact is None else values(row.probe, row.exact),
         "true_error": {
             "cprbm": None if true is None else row.fraction(true.cprbm),
@@ -323,7 +332,8 @@ def _critical_row(scene: Scene, row: CriticalRow) -> Plain:
         "claim_difference": off,
         "allowed": row.allowed,
         "span": row.span,
-        "verdict": critical_word(row).value,
+        "verdict": row.word.value,
+        "reason": name_of(row.judged[1]),
     }
 
 

@@ -16,15 +16,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from comparisons.bodies_drawn import draw_bodies, draw_edges, draw_names, draw_stops, joined_ends, places_at
+from comparisons.case import Comparison
 from comparisons.formats import number, scaled_unit
 from comparisons.framing import frame
 from comparisons.geometry import length, points
-from comparisons.measures import Row, load_unit
 from comparisons.pairing import Runs
-from comparisons.scales import norm
+from comparisons.quantities import load_unit, norm
 from comparisons.sheets import last_rows, shown_rows
 from comparisons.stations import station_of
-from comparisons.verdict import Comparison
+from comparisons.verdict.rows import Row
 from cprbm_scene import CircleContact, Scene
 from cprbm_scene.statement import FreeEnd
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 from comparisons.choices import Choices, Count
-from comparisons.pairing import Crew, Job, Solver, Solvers
+from comparisons.pairing import Crew, Decided, Job, Solver, Solvers
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -44,8 +44,11 @@ class Remembering(Crew):
             self.known.update(zip(new, Crew.begin(self, list(new.values()))(), strict=True))
         return [self.known[key] for key in keys]
 
-    def begin(self, jobs: list[Job]) -> Callable[[], list[Answer]]:
-        """As of any crew; nothing is done before the answers are asked for, since what is known changes till then."""
+    def begin(self, jobs: list[Job], decided: Decided | None = None) -> Callable[[], list[Answer]]:
+        """As of any crew; nothing is done before the answers are asked for, since what is known changes till then.
+
+        All jobs are solved then, whatever is ``decided``.
+        """
         return partial(self.answers, jobs)
 
     def sizes(self, solver: Solver, scene: Scene) -> tuple[int, ...]:

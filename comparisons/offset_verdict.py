@@ -4,7 +4,7 @@
 o_i     calculated ordinate of the offset point i; e_i the exact curve's at the same place
 d_i     |o_i − e_i| over |e_i| or over t, as the question says
 u_i     1.25 times the construction's own estimate of its distance from the curve, taken along the
-        axis of the ordinate and no less than a quarter of the chain's largest, over the same
+        axis of the ordinate: the chain's largest, over the same
 r_i     round-off of coordinates and offset, over the same
 ======  ==========================================================================================
 
@@ -20,13 +20,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from comparisons.case import Verdict
 from comparisons.formats import percent
-from comparisons.measures import SHARE_OF_LARGEST
 from comparisons.offset_exact import ordinates
-from comparisons.order import SAFETY
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
-from comparisons.verdict import Verdict
-from comparisons.words import Word
+from comparisons.verdict.uncertainty import SAFETY
+from comparisons.verdict.words import Word
 from cprbm_scene import OffsetClaim, OffsetQuestion
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
@@ -125,8 +124,7 @@ def _row(question: OffsetQuestion, name: str, place: int, found: Offsets, exact:
     apart = np.abs(points[:, 1 if question.axis == "y" else 0] - exact)
     tilt = np.abs(np.cos(found.tangents) if question.axis == "y" else np.sin(found.tangents))
     over = np.full(len(exact), t) if question.relative_to == "offset" else np.abs(exact)
-    stated = SAFETY * found.off_curve[place] / tilt
-    stated = np.maximum(stated, SHARE_OF_LARGEST * np.max(stated))
+    stated = SAFETY * np.max(found.off_curve[place] / tilt)
     return OffsetRow(
         name,
         len(exact),

@@ -1,19 +1,24 @@
-"""One scene to both solvers: the only module that knows them, and it imports each where it is used.
+"""The runs of a comparison: only this module imports the solvers, at the place of use.
 
-What is run for a comparison: the CPRBM at N and 2N links (in the formulation ``paper``, whose error is uneven in
-N, at N in ``paper``, and at N and 2N in ``auto``) and, where there is contact or a section has a kink, whose place
-in an element matters, at N + N/7; the finite elements at n and 2n in the theory that was chosen and in ``bending``,
-the CPRBM's own; and at n in the theory between the two, if there is one, so that the step from one theory to the next
-can be split.
+Runs of the CPRBM: N and 2N links.  The error of the formulation ``paper`` is uneven in N: there N in ``paper``, and N
+and 2N in ``auto``.  With a contact, or a kink of a section inside an element, also N + N/7.
 
-Where ``auto`` was chosen and every contact of two beams says what ``paper`` must be told, that is run at N as well.
-It shows what the contact's formulation makes of the answer and takes no part in the verdict.  Not where the ends of
-branches are asked for: with another contact a branch ends elsewhere, and answers on two branches show nothing of it.
+Runs of the finite elements: n and 2n in the chosen theory and in ``bending``, the theory of the CPRBM; n in the theory
+between the two, for the steps from theory to theory; with a contact also n + n/7 in the chosen theory.
 
-Where an exact answer is known (in ``bending`` only), it stands beside both at the stations that it covers.
+The runs at N and n come first.  Where these two have no station and no critical value in common, there is no row, no
+other run can change the word, and the other runs are cancelled.
 
-Where a drive's reaction is a probe, the CPRBM runs at N once more at two perturbed stations around every station of the
-drive (:mod:`comparisons.reactions`). The work–energy reaction follows from their energies. The verdict does not use it.
+Beside ``auto``, a run at N in ``paper`` shows the effect of the contact formulation, if the contacts of two beams state
+all that ``paper`` needs.  The verdict does not use this run.  There is none where a stage asks for the ends of
+branches: with another contact a branch ends elsewhere, and answers on two branches show nothing of the formulation.
+
+An exact answer in ``bending`` stands beside both solvers at the covered stations.  A rule on the number of pieces and
+stations of a scene says whether the exact reference is asked (:func:`exact_by_rule`).
+
+Where the reaction of a drive is a probe, the CPRBM runs at N once more at two perturbed stations around every station
+of the drive (:mod:`comparisons.reactions`).  The work–energy reaction follows from the energies.  The verdict does not
+use the reaction.
 """
 
 from __future__ import annotations
@@ -27,9 +32,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from pydantic import ValidationError
 
@@ -37,35 +43,50 @@ from comparisons.choices import KINEMATICS, Choices, Kinematics, check
 from comparisons.listening import heard_from, listen
 from comparisons.processes import AloneError, deaf, pool
 from comparisons.reactions import perturbed_scene
-from cprbm_scene import Answer, Mistake, RigidContact, Scene, SceneError, Spacing
+from cprbm_scene import Answer, Ending, Mistake, RigidContact, Scene, SceneError, Spacing
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.statement import Curve
+from cprbm_scene.statement import BodyLoad, Curve, Spline
+
+if TYPE_CHECKING:
+    from comparisons.verdict.uncertainty import Error
 
 _SAYS = logging.getLogger(__name__)
 
 Solver = Callable[[Scene, Choices], Answer]
 Prepared = Callable[[], Answer]
 Job = tuple[Solver, Scene, Choices]
+Planned = str | tuple[Kinematics, bool]
+
+Uncertainties: TypeAlias = "Mapping[tuple[str, float, str], Error]"
+"""Stated uncertainties by stage, station and probe."""
 
 COLLECTED = (50_000, 20, 100)
-"""Of a worker's collector of cycles: objects, and collections, after which it looks at the young and the older."""
+"""Thresholds of the garbage collector of a worker: new objects, and collections of the younger generations."""
 
 PAPER_BESIDE_AUTO = 160
-"""Most links per beam with which ``paper`` is run beside ``auto``: its time grows with the cube of N."""
+"""Largest number of links per beam of a run in ``paper`` beside ``auto``: the time grows with the cube of N."""
+
+
+EXACT_LIMIT = 300
+"""Largest product of the pieces and the stations of a scene for which the exact reference is asked by rule.
+
+Measured on one core: 0.03 s for each piece and station of a chain of 5 beams, 0.08 s of 40 beams, 0.1 to 0.15 s where
+contacts close.  The largest product of a built-in case with an exact answer is 160, ``gripper-driven``, in 18 s.
+"""
 
 
 def cprbm_answer(scene: Scene, choices: Choices) -> Answer:
     """The chained pseudo-rigid-body model's answer.
 
     Raises:
-        SceneError: the scene or the choices are no question that this solver can be asked.
+        SceneError: the solver refuses the scene or the choices.
     """
     return cprbm_prepared(scene, choices)()
 
 
 def cprbm_prepared(scene: Scene, choices: Choices) -> Prepared:
-    """The same with the mechanism made ready and nothing solved; called once, the result solves.
+    """A function for the CPRBM's answer, to be called once; the mechanism is assembled, and nothing is solved.
 
     Raises:
         SceneError: as :func:`cprbm_answer`.
@@ -81,13 +102,13 @@ def fea_answer(scene: Scene, choices: Choices) -> Answer:
     """The finite elements' answer.
 
     Raises:
-        SceneError: the scene or the choices are no question that this solver can be asked.
+        SceneError: the solver refuses the scene or the choices.
     """
     return fea_prepared(scene, choices)()
 
 
 def fea_prepared(scene: Scene, choices: Choices) -> Prepared:
-    """The same with the elements made ready and nothing solved; called once, the result solves.
+    """A function for the finite elements' answer, to be called once; the mesh is made, and nothing is solved.
 
     Raises:
         SceneError: as :func:`fea_answer`.
@@ -104,7 +125,7 @@ def fea_prepared(scene: Scene, choices: Choices) -> Prepared:
 
 
 def prepared(solver: Solver, scene: Scene, choices: Choices) -> Prepared:
-    """A solver made ready for a question: ours as far as they go without solving, others not at all.
+    """A function for the answer of a solver; our solvers are assembled already, and nothing is solved.
 
     Raises:
         SceneError: the solver refuses the question.
@@ -117,17 +138,44 @@ def prepared(solver: Solver, scene: Scene, choices: Choices) -> Prepared:
 
 
 def exact_answer(scene: Scene, choices: Choices) -> Answer:
-    """The exact answer in the theory ``bending``, or as much of it as is known; the choices have no part in it."""
+    """The exact answer in the theory ``bending`` at the covered stations, whatever the choices."""
     import elastica_reference
 
     return elastica_reference.answer(scene, elastica_reference.Settings())
+
+
+def exact_pieces(scene: Scene) -> int:
+    """Number of pieces of the exact equations: between kinks of sections, points of splines, loads and contacts."""
+    beams = scene.beams.values()
+    inner = [
+        len(beam.knots) - 2 + (len(beam.curve.points) - 2 if isinstance(beam.curve, Spline) else 0) for beam in beams
+    ]
+    loads = [load for load in scene.loads.values() if not isinstance(load, BodyLoad)]
+    return len(beams) + sum(inner) + len(loads) + len(scene.contacts)
+
+
+def exact_by_rule(scene: Scene, choices: Choices) -> Answer:
+    """The exact answer, or none with a sentence where pieces times stations are more than ``EXACT_LIMIT``."""
+    pieces, stations = exact_pieces(scene), sum(len(stage.stations) for stage in scene.stages)
+    if pieces * stations <= EXACT_LIMIT:
+        return exact_answer(scene, choices)
+    sentence = (
+        f"{pieces} pieces of beams at {stations} stations are beyond the rule for the exact reference (pieces times "
+        f"stations at most {EXACT_LIMIT}); the option --exact runs the reference all the same."
+    )
+    return Answer("exact", scene.name, frozendict(), Ending.NOT_COVERED, sentence, ())
+
+
+def exact_or_why(answer: Answer | None = None) -> tuple[Answer | None, str]:
+    """An exact answer with a station, or None and the reason for its absence."""
+    return (answer, "") if answer is None or answer.stations else (None, answer.sentence)
 
 
 def solid_answer(scene: Scene, choices: Choices) -> Answer:
     """The answer of the mechanism as a plane solid.
 
     Raises:
-        SceneError: the scene or the choices are no question that this solver can be asked.
+        SceneError: the solver refuses the scene or the choices.
     """
     from fea_reference import solid
 
@@ -137,7 +185,7 @@ def solid_answer(scene: Scene, choices: Choices) -> Answer:
 
 
 class Offsets(Protocol):
-    """Offset points (k, n, 2), m, at k distances, their tangents' angles (n,), how far off they may be (k, n), m."""
+    """Offset points (k, n, 2), m, at k distances, angles of the tangents (n,), errors of the points (k, n), m."""
 
     @property
     def points(self) -> Array: ...  # noqa: D102
@@ -148,7 +196,7 @@ class Offsets(Protocol):
 
 
 OffsetConstruction = Callable[[Curve, Spacing, int, Array], Offsets]
-"""Of a curve, a spacing, N and signed distances (k,), m (positive to the left)."""
+"""Arguments: a curve, a spacing, N and signed distances (k,), m, positive to the left."""
 
 
 def cprbm_offset_points(curve: Curve, spacing: Spacing, n: int, distances: Array) -> Offsets:
@@ -160,10 +208,10 @@ def cprbm_offset_points(curve: Curve, spacing: Spacing, n: int, distances: Array
 
 @dataclass(frozen=True, slots=True)
 class Solvers:
-    """The functions that are compared; others can be planted in their place.
+    """The functions of the solvers in a comparison; tests plant others.
 
-    ``exact`` stands beside them where it is given: an exact answer is that of the real beams, and no measure of what
-    is planted in the place of the solvers.  ``solid`` is asked as a third where it is given.
+    ``exact`` is the exact reference, an answer for the real beams and no measure of planted solvers; ``solid`` a third
+    solver.
     """
 
     cprbm: Solver = cprbm_answer
@@ -174,43 +222,52 @@ class Solvers:
 
 
 def with_solid(solvers: Solvers) -> Solvers:
-    """The same with the solid as a third opinion, unless there is one already."""
+    """The solvers with the solid as a third opinion."""
     return solvers if solvers.solid is not None else replace(solvers, solid=solid_answer)
 
 
-def solvers_of(planted: object) -> Solvers:
-    """What was ``planted`` in the place of the solvers, or these with the exact answer beside them."""
-    return planted if isinstance(planted, Solvers) else Solvers(exact=exact_answer)
+def solvers_of(planted: object, *, exact: bool | None = None) -> Solvers:
+    """The ``planted`` solvers, or our solvers with the exact reference.
+
+    ``exact`` says whether the exact reference is asked; with None the rule decides.
+    """
+    solvers = planted if isinstance(planted, Solvers) else Solvers(exact=exact_answer if exact else exact_by_rule)
+    return replace(solvers, exact=None) if exact is False else solvers
 
 
 def workers_for(planted: object) -> int:
-    """How many processes share the runs: what is planted stays in this one."""
+    """Number of processes for the runs; planted solvers stay in this process."""
     return 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
 
 
 @dataclass(frozen=True, slots=True)
 class Runs:
-    """All answers to one scene that a comparison rests on.
+    """All answers to one scene in a comparison; a failed run is a failed answer.
 
     Attributes:
-        kinematics: the beam theory that was chosen for the reference.
-        cprbm: at N and 2N links; the second always in the formulation ``auto``.
-        fea: by theory, from ``bending`` up to the chosen one: at n and, for these two, at 2n elements; the one between
-            them may have been left out.
-        auto: the CPRBM at N links in the formulation ``auto``, if another was chosen.
-        paper: the same in the formulation ``paper``, if ``auto`` was chosen and the other could be asked;
-            nothing rests on it.
-        beside: the CPRBM in ``auto`` at N + N/7 links, if there is contact or a section has a kink; ``ratio`` is N
-            over that number.
-        fea_beside, fea_ratio: likewise the finite elements in the chosen theory at n + n/7, if there is contact.
-        perturbed: the CPRBM at N links, answering :func:`comparisons.reactions.perturbed_scene`; nothing rests on it.
-        exact: the exact answer in ``bending``, at the stations at which one is known; None if there is no such station.
-        solid: the mechanism as a solid, if that was asked for, at n and 2n elements or on as many meshes as a tolerance
-            took, each twice as fine as the one before; nothing rests on it.
+        kinematics: the chosen beam theory of the finite elements.
+        cprbm: the CPRBM at N and 2N links, at 2N always in the formulation ``auto``; at N alone where the answers at N
+            and n have nothing in common.
+        fea: the finite elements by theory, from ``bending`` to the chosen theory: at n and 2n elements; at n alone in
+            the theory between, which may be absent.  In the chosen theory at n alone where the answers at N and n have
+            nothing in common.
+        auto: the CPRBM at N links in ``auto``, if another formulation is chosen.
+        paper: the CPRBM at N links in ``paper`` beside ``auto``; no part of the verdict.
+        beside: the CPRBM in ``auto`` at N + N/7 links, with a contact or a kink of a section.
+        ratio: N over N + N/7.
+        fea_beside: the finite elements in the chosen theory at n + n/7, with a contact.
+        fea_ratio: n over n + n/7.
+        perturbed: the CPRBM at N links at :func:`comparisons.reactions.perturbed_scene`; no part of the verdict.
+        exact: the exact answer in ``bending`` at the covered stations; None without any.
+        exact_absence: why the exact reference covers no station; empty if the reference was not asked.
+        solid: the solid at n and 2n elements, or on the meshes of a tolerance, from coarse to fine; no part of the
+            verdict.
+        settled: stated uncertainties by stage, station and probe, by name of a run with extrapolated values or further
+            grids.
     """
 
     kinematics: Kinematics
-    cprbm: tuple[Answer, Answer]
+    cprbm: tuple[Answer, ...]
     fea: Mapping[Kinematics, tuple[Answer, ...]]
     auto: Answer | None = None
     paper: Answer | None = None
@@ -220,7 +277,9 @@ class Runs:
     fea_ratio: float = 1.0
     perturbed: Answer | None = None
     exact: Answer | None = None
+    exact_absence: str = ""
     solid: tuple[Answer, ...] | None = None
+    settled: Mapping[str, Uncertainties] = frozendict()
 
     @property
     def reference(self) -> Answer:
@@ -229,13 +288,13 @@ class Runs:
 
     @property
     def formulations(self) -> tuple[Answer, Answer] | None:
-        """The CPRBM at N links in ``paper`` and in ``auto``; None where one of them was not run."""
+        """The CPRBM at N links in ``paper`` and in ``auto``; None without both runs."""
         if self.auto is not None:
             return self.cprbm[0], self.auto
         return None if self.paper is None else (self.paper, self.cprbm[0])
 
     def everything(self) -> Iterator[tuple[str, Answer]]:
-        """Every answer of a solver that the verdict rests on, with a name that says what it is."""
+        """Names and answers of all runs for the verdict."""
         families = {"cprbm": self.cprbm, **{f"fea {kinematics}": fea for kinematics, fea in self.fea.items()}}
         for name, answers in families.items():
             for level, answer in enumerate(answers):
@@ -250,54 +309,57 @@ class Runs:
 
 @dataclass(frozen=True, slots=True)
 class Crew:
-    """Processes that share the runs of one case after the other; without a pool all stays in this one."""
+    """Processes for the runs of one case after the other; without a pool all runs stay in this process."""
 
     pool: ProcessPoolExecutor | None = None
 
     def answers(self, jobs: list[Job]) -> list[Answer]:
-        """The answers to some jobs, in their order.
+        """The answers to jobs, in the order of the jobs.
 
         Raises:
-            SceneError: a solver refuses one.
+            SceneError: a solver refuses a job.
         """
         return self.begin(jobs)()
 
-    def begin(self, jobs: list[Job]) -> Callable[[], list[Answer]]:
-        """Have the processes begin with some jobs, behind those that were begun before; called, the result waits.
+    def begin(self, jobs: list[Job], decided: Decided = lambda *first: False) -> Callable[[], list[Answer]]:
+        """A function that waits for the answers to jobs, which the processes begin with now, behind earlier jobs.
 
-        What it then gives and raises is as of :meth:`answers`.  Without a pool nothing is done before.
+        The function returns and raises as :meth:`answers`.  Where the answers to the first two jobs are ``decided``, it
+        returns these two alone, and cancels the other jobs.  Without a pool the work begins with the call.
         """
         if self.pool is None:
-            return lambda: _one_by_one(jobs)
-        # The finest runs take longest, and they stand last: handed out first, they leave no worker idle.
-        with deaf():  # until they are prepared
-            futures: dict[_Pending, int] = {
-                self.pool.submit(_job, solver, scene, choices): place
-                for place, (solver, scene, choices) in reversed(list(enumerate(jobs)))
-            }
-        return lambda: _awaited(futures)
+            return lambda: _one_by_one(jobs, decided)
+        # The finest runs take longest and stand last: begun right behind the first two jobs, they leave no worker idle.
+        places = [*range(len(jobs))[:2], *reversed(range(len(jobs))[2:])]
+        with deaf():  # until the workers are prepared
+            futures: dict[_Pending, int] = {self.pool.submit(_job, *jobs[place]): place for place in places}
+        return lambda: _awaited(futures, decided)
 
 
 _Pending = Future[Answer | tuple[Mistake, ...]]
+Decided = Callable[[Answer, Answer], bool]
+"""Whether the answers to the first two jobs make the other jobs useless."""
 
 
-def _one_by_one(jobs: Sequence[Job]) -> list[Answer]:
+def _one_by_one(jobs: Sequence[Job], decided: Decided) -> list[Answer]:
     """The answers, in this process."""
     answers: list[Answer] = []
     for solver, scene, choices in jobs:
         answers.append(solver(scene, choices))
         _done(answers[-1], len(answers), len(jobs))
+        if len(answers) == 2 and decided(*answers):
+            break
     return answers
 
 
 def _done(answer: Answer, done: int, whole: int) -> None:
-    """Say that a run is done, and how many of the ``whole`` are."""
+    """Log that a run is done, with the number of runs done, of ``whole``."""
     told = answer.scene, done, whole, answer.solver, answer.ending.name, answer.seconds
     _SAYS.info("%s: run %d of %d is done: %s, %s after %.2f s", *told, extra={"done": done, "whole": whole})
 
 
-def _awaited(futures: Mapping[_Pending, int]) -> list[Answer]:
-    """The answers by their places; the first refusal ends the rest."""
+def _awaited(futures: Mapping[_Pending, int], decided: Decided) -> list[Answer]:
+    """The answers in the order of the places; the first refusal cancels the other jobs."""
     answers: dict[int, Answer] = {}
     try:
         for future in as_completed(futures):
@@ -306,6 +368,8 @@ def _awaited(futures: Mapping[_Pending, int]) -> list[Answer]:
                 raise SceneError(result)
             answers[futures[future]] = result
             _done(result, len(answers), len(futures))
+            if futures[future] < 2 and {0, 1} <= answers.keys() and decided(answers[0], answers[1]):
+                return [answers[0], answers[1]]
     finally:
         for future in futures:
             future.cancel()
@@ -317,10 +381,10 @@ ALONE = Crew()
 
 @contextmanager
 def crew_of(workers: int) -> Iterator[Crew]:
-    """A crew of so many processes, which end with the context; one worker is this process itself.
+    """A crew of worker processes, which end with the context; a crew of one worker is this process itself.
 
-    They end at once if the context is left by an error, or this process by force.  Where the system lets none work
-    beside this one, this one does all of it.
+    The workers end at once, whatever they still solve.  Where the system permits no further process, this process does
+    all the work.
     """
     if workers <= 1:
         yield ALONE
@@ -336,12 +400,9 @@ def crew_of(workers: int) -> Iterator[Crew]:
         return
     try:
         yield Crew(shared)
-    except BaseException:
-        held.close()  # what they still solve nobody waits for
-        raise
     finally:
+        held.close()  # the workers end, whatever they still solve
         shared.shutdown(cancel_futures=True)
-        held.close()
         listening.close()
 
 
@@ -353,7 +414,7 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE,
         choices: how finely, and by which variants.
         solvers: who answers.
         crew: processes to share the runs.
-        bare: whether to leave out the runs on which no word of the verdict rests.
+        bare: whether to leave out runs without a part in the verdict.
 
     Raises:
         SceneError: a solver refuses the question.
@@ -362,85 +423,100 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE,
 
 
 def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare: bool = False) -> Callable[[], Runs]:
-    """Have the crew begin with the runs of a scene; called, the result waits for them.
+    """A function that waits for the runs of a scene, which the crew begins with now.
 
-    The arguments, and what it then raises, are those of :func:`paired`.
+    Arguments and errors of the function: those of :func:`paired`.
 
     Raises:
         SceneError: the choices do not fit the scene.
     """
     check(choices, scene)
     even = replace(choices, formulation="auto")
-    extra = [] if even == choices else [(solvers.cprbm, scene, even)]
-    beside = [(solvers.cprbm, scene, even.beside())] if may_be_uneven(scene) else []
-    driven = None if bare else perturbed_scene(scene)
-    round_each = [] if driven is None else [(solvers.cprbm, driven, choices)]
-    jobs = [(solvers.cprbm, scene, choices), (solvers.cprbm, scene, even.finer()), *extra, *beside, *round_each]
-    first = len(jobs)
-    places: list[tuple[Kinematics, int]] = []
-    for kinematics in KINEMATICS[: KINEMATICS.index(choices.kinematics) + 1]:
-        between = kinematics not in ("bending", choices.kinematics)
-        if bare and between:
-            continue
-        variant = choices.within(kinematics)
-        levels = (variant,) if between else (variant, variant.finer())
-        for level, settings in enumerate(levels):
-            places.append((kinematics, level))
-            jobs.append((solvers.fea, scene, settings))
-    if scene.contacts:
-        jobs.append((solvers.fea, scene, choices.beside()))
-    behind = len(jobs)
-    if solvers.exact is not None:
-        jobs.append((solvers.exact, scene, choices))
-    third = len(jobs)
-    if solvers.solid is not None:
-        jobs += [(solvers.solid, scene, choices), (solvers.solid, scene, choices.finer())]
-    pending = crew.begin(jobs)
+    jobs = _planned(scene, choices, solvers, bare=bare)
+    pending = crew.begin(list(jobs.values()), partial(_nothing_in_common, scene))
 
     def ended() -> Runs:
-        answers = pending()
-        exact = answers[behind] if solvers.exact is not None else None
+        found = dict(zip(jobs, pending(), strict=False))  # of decided runs the first two alone
         fea: dict[Kinematics, tuple[Answer, ...]] = {}
-        for (kinematics, _), answer in zip(places, answers[first : first + len(places)], strict=True):
-            fea[kinematics] = (*fea.get(kinematics, ()), answer)
+        for kinematics in KINEMATICS:
+            levels = (found.get((kinematics, finer)) for finer in (False, True))
+            if answers := tuple(answer for answer in levels if answer is not None):
+                fea[kinematics] = answers
+        exact, exact_absence = exact_or_why(found.get("exact"))
         ratio, fea_ratio = even.ratios_beside()
         return Runs(
             choices.kinematics,
-            (answers[0], answers[1]),
+            tuple(found[name] for name in ("cprbm", "cprbm finer") if name in found),
             frozendict(fea),
-            auto=answers[2] if extra else None,
-            paper=None if extra or bare else in_paper(scene, choices, solvers),
-            beside=answers[2 + len(extra)] if beside else None,
+            auto=found.get("auto"),
+            paper=None if bare or "auto" in jobs or len(found) < len(jobs) else in_paper(scene, choices, solvers),
+            beside=found.get("beside"),
             ratio=ratio,
-            fea_beside=answers[behind - 1] if scene.contacts else None,
+            fea_beside=found.get("fea beside"),
             fea_ratio=fea_ratio,
-            perturbed=answers[first - 1] if round_each else None,
-            exact=exact if exact is not None and exact.stations else None,
-            solid=(answers[third], answers[third + 1]) if solvers.solid is not None else None,
+            perturbed=found.get("perturbed"),
+            exact=exact,
+            exact_absence=exact_absence,
+            solid=(found["solid"], found["solid finer"]) if "solid" in found else None,
         )
 
     return ended
 
 
-def known_exactly(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew) -> Answer | None:
-    """The exact answer, as in :class:`Runs`.
+def _planned(scene: Scene, choices: Choices, solvers: Solvers, *, bare: bool) -> dict[Planned, Job]:
+    """The runs of a comparison by name; of the finite elements at n and 2n by theory and whether at 2n."""
+    even, chosen = replace(choices, formulation="auto"), choices.kinematics
+    jobs: dict[Planned, Job] = {
+        "cprbm": (solvers.cprbm, scene, choices),
+        (chosen, False): (solvers.fea, scene, choices),
+        "cprbm finer": (solvers.cprbm, scene, even.finer()),
+    }
+    if even != choices:
+        jobs["auto"] = (solvers.cprbm, scene, even)
+    if may_be_uneven(scene):
+        jobs["beside"] = (solvers.cprbm, scene, even.beside())
+    driven = None if bare else perturbed_scene(scene)
+    if driven is not None:
+        jobs["perturbed"] = (solvers.cprbm, driven, choices)
+    for kinematics in KINEMATICS[: KINEMATICS.index(chosen) + 1]:
+        variant, between = choices.within(kinematics), kinematics not in ("bending", chosen)
+        if not (bare and between):
+            jobs[kinematics, False] = (solvers.fea, scene, variant)
+        if not between:
+            jobs[kinematics, True] = (solvers.fea, scene, variant.finer())
+    if scene.contacts:
+        jobs["fea beside"] = (solvers.fea, scene, choices.beside())
+    if solvers.exact is not None:
+        jobs["exact"] = (solvers.exact, scene, choices)
+    if solvers.solid is not None:
+        jobs["solid"] = (solvers.solid, scene, choices)
+        jobs["solid finer"] = (solvers.solid, scene, choices.finer())
+    return jobs
+
+
+def _nothing_in_common(scene: Scene, cprbm: Answer, fea: Answer) -> bool:
+    """Whether two answers have no station of the scene in common, and neither has a critical value."""
+    asked = {(stage.name, value) for stage in scene.stages for value in stage.stations}
+    reached = [{(station.stage, station.value) for station in answer.stations} for answer in (cprbm, fea)]
+    return not (asked & reached[0] & reached[1]) and not cprbm.critical and not fea.critical
+
+
+def known_exactly(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew) -> tuple[Answer | None, str]:
+    """The exact answer and the reason of its absence, as in :class:`Runs`.
 
     Raises:
         SceneError: the question is refused.
     """
-    if solvers.exact is None:
-        return None
-    (answer,) = crew.answers([(solvers.exact, scene, choices)])
-    return answer if answer.stations else None
+    return exact_or_why(*crew.answers([] if solvers.exact is None else [(solvers.exact, scene, choices)]))
 
 
 def may_be_uneven(scene: Scene) -> bool:
-    """Whether the CPRBM's error may depend on where joints fall: at a contact, or at a kink of a section."""
+    """Whether the CPRBM's error may depend on the places of joints, beside a contact or a kink of a section."""
     return bool(scene.contacts) or any(len(beam.knots) > 2 for beam in scene.beams.values())
 
 
 def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
-    """The CPRBM at N in the formulation ``paper``; None where that cannot be asked, takes long or shows nothing."""
+    """The CPRBM at N in ``paper``; None where the run is impossible, takes long or shows nothing."""
     finest = choices.links if isinstance(choices.links, int) else max(choices.links.values())
     contacts = scene.contacts.values()
     told = all(isinstance(contact, RigidContact) or contact.paper is not None for contact in contacts)
@@ -449,12 +525,12 @@ def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
         return None
     try:
         return solvers.cprbm(scene, replace(choices, formulation="paper"))
-    except SceneError:  # at this number of links it lacks something, and nothing that was asked for depends on it
+    except SceneError:  # too few links for the polynomial; no requested value depends on the run
         return None
 
 
 def _job(solver: Solver, scene: Scene, choices: Choices) -> Answer | tuple[Mistake, ...]:
-    """A worker's job; mistakes travel as plain records, since an exception is rebuilt from its text alone."""
+    """The answer, or the mistakes as plain records, since pickle rebuilds an exception from the text alone."""
     try:
         return solver(scene, choices)
     except SceneError as error:
@@ -462,11 +538,10 @@ def _job(solver: Solver, scene: Scene, choices: Choices) -> Answer | tuple[Mista
 
 
 def _prepared_worker(listening: Connection, heard: int) -> None:
-    """An interrupt ends a worker at once and without a word: the main process says what happened.
+    """Prepare a worker: interrupts end it without a message, log records reach the main process from level ``heard``.
 
-    What it says is ``heard`` from the same level on as there.
-    It ends as soon as the other end of ``listening`` is closed, which nobody but the main process holds.
-    Its collector of cycles looks less often, and never at what is loaded: records of a march are many and make none.
+    The worker ends as soon as the main process, the only owner, closes the other end of ``listening``.  The garbage
+    collector runs less often and skips loaded modules: the records of a load path are many and make no cycles.
     """
     listen(heard)
     gc.freeze()
@@ -476,7 +551,7 @@ def _prepared_worker(listening: Connection, heard: int) -> None:
 
 
 def _end_with(listening: Connection) -> None:
-    """End this process when there is nobody to listen to any more."""
+    """End this process as soon as the main process has closed the pipe."""
     with suppress(EOFError, OSError):
         listening.recv_bytes()
     os._exit(1)
@@ -484,7 +559,7 @@ def _end_with(listening: Connection) -> None:
 
 @contextmanager
 def _named(key: str) -> Iterator[None]:
-    """Turn a solver's refusal of its settings into mistakes whose keys the user has typed."""
+    """Turn a refusal of settings into mistakes with the keys of the command line."""
     try:
         yield
     except ValidationError as error:

@@ -2,31 +2,35 @@
 
 from __future__ import annotations
 
+from comparisons.case import Comparison
 from comparisons.formats import along, number, percent, scaled_unit
-from comparisons.measures import Row, load_unit
+from comparisons.quantities import load_unit
 from comparisons.sheet import Sheet
-from comparisons.verdict import Comparison
+from comparisons.steps import contact_model
+from comparisons.verdict.rows import Row
 from cprbm_scene import Answer, Scene
 
 MANY_TIMES = 10.0
 
 
 def of_paper(compared: Comparison) -> Sheet:
-    """By how much the CPRBM's values in ``paper`` are off those in ``auto`` at the same N, over all stations."""
-    measured = [row for row in compared.rows if row.contact_model is not None]
-    by_probe: dict[str, list[Row]] = {}
-    for row in measured:
-        by_probe.setdefault(row.probe.name, []).append(row)
-    last = (measured[-1].stage, measured[-1].station) if measured else ("", 0.0)
+    """Distances of the CPRBM's values in ``paper`` from those in ``auto`` at the same N, over all stations."""
+    by_probe: dict[str, list[tuple[Row, float]]] = {}
+    last = ("", 0.0)
+    for row in compared.rows:
+        model = contact_model(compared.runs, row)
+        if model is not None:
+            by_probe.setdefault(row.probe.name, []).append((row, model))
+            last = row.where
     body = []
-    for name, rows in by_probe.items():
-        worst = max(rows, key=lambda row: _share(row) or 0.0)
-        there = next((_told(row) for row in rows if (row.stage, row.station) == last), "–")
-        body.append((name, _told(worst), _place(compared.scene, worst.stage, worst.station), there))
+    for name, measured in by_probe.items():
+        row, model = max(measured, key=lambda pair: pair[0].fraction(pair[1]) or 0.0)
+        there = next((_shown(*pair) for pair in measured if pair[0].where == last), "–")
+        body.append((name, _shown(row, model), _place(compared.scene, *row.where), there))
     paper = compared.runs.paper if compared.runs.formulations is None else compared.runs.formulations[0]
     return Sheet(
         "The formulation paper beside auto",
-        ("probe", "off by at most", "at", f"at {_place(compared.scene, *last)}" if measured else "at the last"),
+        ("probe", "off by at most", "at", f"at {_place(compared.scene, *last)}" if by_probe else "at the last"),
         tuple(body),
         "Distances of the CPRBM's values at the same N; they take no part in the verdict. Fractions as above, and "
         "where those are tenfold and more the distance itself."
@@ -34,18 +38,13 @@ def of_paper(compared: Comparison) -> Sheet:
     )
 
 
-def _share(row: Row) -> float | None:
-    return None if row.contact_model is None else row.fraction(row.contact_model)
-
-
-def _told(row: Row) -> str:
-    """A fraction, or what it is of where that is next to nothing beside it."""
-    share = _share(row)
+def _shown(row: Row, model: float) -> str:
+    """A distance as a fraction, or with its unit where the fraction is large."""
+    share = row.fraction(model)
     if share is None or share <= MANY_TIMES:
         return percent(share)
-    assert row.contact_model is not None
-    factor, unit = scaled_unit(row.unit, row.contact_model)
-    return f"{number(row.contact_model / factor)} {unit}"
+    factor, unit = scaled_unit(row.unit, model)
+    return f"{number(model / factor)} {unit}"
 
 
 def _place(scene: Scene, name: str, station: float) -> str:

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from comparisons.branches import begins_at
+from comparisons.case import Comparison
 from comparisons.figures import BLUE, GREY, RED, Picture, along_axis, canvas, picture
 from comparisons.formats import number, scaled_unit
-from comparisons.measures import UNITS, load_unit
+from comparisons.quantities import UNITS, load_unit
 from comparisons.reactions import ENERGY, multiplier, reaction_probe
-from comparisons.verdict import Comparison
+from comparisons.stages import begins_at
 from cprbm_scene import Answer, Critical, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.freedoms import unit
 from cprbm_scene.statement import DisplacementDrive, Force, Moment, RotationDrive

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+from comparisons.case import Comparison
 from comparisons.formats import number, percent, scaled_unit
-from comparisons.reactions import MESH_ALLOWANCE, PERTURBATION, Absence, WorkEnergyReaction
+from comparisons.reactions import MESH_ALLOWANCE, PERTURBATION, WorkEnergyReaction, is_long
 from comparisons.sheet import Sheet
-from comparisons.verdict import Comparison
+from comparisons.thinning import kept
+from cprbm_scene import Scene
 
 _HEADERS = ("station", "multiplier", "work–energy", "from it", "FEA", "multiplier from it", "no value because")
 
@@ -17,7 +19,7 @@ def of_reactions(compared: Comparison) -> tuple[Sheet, ...]:
     """The table of every moved drive, with a row for every perturbed station."""
     run = compared.runs.perturbed
     ended = "" if run is None or run.completed else f" The perturbed run ended early: {run.ending.value}."
-    return tuple(_sheet(drive, found, ended) for drive, found in by_drive(compared.reactions).items())
+    return tuple(_sheet(compared.scene, drive, found, ended) for drive, found in by_drive(compared.reactions).items())
 
 
 def by_drive(found: Sequence[WorkEnergyReaction]) -> dict[str, tuple[WorkEnergyReaction, ...]]:
@@ -44,8 +46,11 @@ def summary(found: Sequence[WorkEnergyReaction]) -> str:
     return said + "".join(f" No value at {count} stations: {reason.value}." for reason, count in absent.items())
 
 
-def _sheet(drive: str, found: Sequence[WorkEnergyReaction], ended: str) -> Sheet:
-    """The table of one drive."""
+def _sheet(scene: Scene, drive: str, found: Sequence[WorkEnergyReaction], ended: str) -> Sheet:
+    """The table of one drive, of long stages with the shown stations alone."""
+    shown = {
+        (stage.name, value) for stage in scene.stages for value in (kept(stage) if is_long(stage) else stage.stations)
+    }
     factor, unit = scaled_unit(found[0].unit, max(abs(reaction.multiplier) for reaction in found))
     body = tuple(
         (
@@ -58,7 +63,7 @@ def _sheet(drive: str, found: Sequence[WorkEnergyReaction], ended: str) -> Sheet
             _reason(reaction),
         )
         for reaction in found
-        if reaction.absence is not Absence.NOT_PERTURBED
+        if (reaction.stage, reaction.station) in shown
     )
     return Sheet(f"Reaction at the drive {drive}, {unit}", _HEADERS, body, summary(found) + ended)
 

@@ -16,7 +16,8 @@ n_j         unit directions of the drives of one point
 
 **Perturbed scene.** The CPRBM solves the scene once more, at d₁ and d₂ in place of every station d of a drive. A stage
 then goes on to its own last station, where the next stage begins. Equilibria without friction do not depend on the
-direction of motion, so that d₁ may lie before the d₂ of the last station.
+direction of motion, so that d₁ may lie before the d₂ of the last station.  A stage of many even stations needs no
+further run: d₁ and d₂ are then its own neighbouring stations.
 
 **Derivative.** An equilibrium at d makes the potential energy Π(q) stationary under the constraint c(q) = d:
 ∂Π/∂q = F ∂c/∂q.  With U(d) = Π(q(d)), dU/dd = ∂Π/∂q · dq/dd = F ∂c/∂q · dq/dd = F.  The central difference is
@@ -44,7 +45,7 @@ from itertools import chain
 
 import numpy as np
 
-from comparisons.scales import VANISHING
+from comparisons.quantities import VANISHING
 from comparisons.stations import station_of
 from comparisons.thinning import kept
 from cprbm_scene import Answer, Drive, Probe, Scene, Stage, StationAnswer
@@ -71,8 +72,11 @@ a margin for an F that is small beside the other forces.
 MOST_PERTURBED = 40
 """Stations of a stage, the count of the paper's driven gripper, up to which every station is perturbed.
 
-A longer stage is perturbed at the stations it shows. The audit compares energy and work at all of them.
+In a longer stage the neighbouring stations serve, where the energy is a probe of the scene and the steps are equal.
 """
+
+EVEN = 1e-6
+"""Largest difference of two neighbouring steps that are equal, a share of the step."""
 
 ENERGY = Probe(of="scene", quantity="potential_energy")
 
@@ -83,7 +87,7 @@ _STATE = ("reaction", "reaction_moment", "moment")
 class Absence(Enum):
     """Why a station has no work–energy reaction; the value states the reason in tables."""
 
-    NOT_PERTURBED = "not perturbed in a long stage"
+    NOT_PERTURBED = "no even neighbours in a long stage"
     NOT_REACHED = "perturbed stations not reached"
     BRANCH = "change of branch"
     CRITICAL_POINT = "critical point passed"
@@ -175,16 +179,18 @@ def reaction_probe(drive: Drive) -> Probe:
 
 
 def perturbed_scene(scene: Scene) -> Scene | None:
-    """The scene at d − h and d + h in place of a drive's stations; None without a drive that has a reaction probe.
+    """The scene at d − h and d + h in place of a drive's stations; None where no stage needs further stations.
 
-    Stages of loads and of other drives keep their stations.
+    Stages of loads and of other drives keep their stations, and long stages the stations that tables show.
     """
-    if not any(_has_reaction(scene, stage) for stage in scene.stages):
+    if not any(_has_reaction(scene, stage) and not is_long(stage) for stage in scene.stages):
         return None
     stages = []
     for stage in scene.stages:
         stations = stage.stations
-        if _has_reaction(scene, stage):
+        if is_long(stage):
+            stations = kept(stage)
+        elif _has_reaction(scene, stage):
             pairs = ((d - h, d + h) for d, h in _steps(stage).items())
             stations = (*chain.from_iterable(pairs), stage.stations[-1])
         stages.append(stage.model_copy(update={"stations": stations}))
@@ -192,14 +198,14 @@ def perturbed_scene(scene: Scene) -> Scene | None:
     return scene.model_copy(update={"stages": tuple(stages), "probes": probes, "claims": ()})
 
 
-def reactions(scene: Scene, cprbm: Answer, fea: Answer, perturbed: Answer) -> tuple[WorkEnergyReaction, ...]:
+def reactions(scene: Scene, cprbm: Answer, fea: Answer, perturbed: Answer | None) -> tuple[WorkEnergyReaction, ...]:
     """The reaction of every drive with a reaction probe, at every station of the stages that move the drive.
 
     Args:
         scene: the question.
         cprbm: a whole answer of the CPRBM.
         fea: a whole answer of the finite elements.
-        perturbed: the CPRBM's answer to :func:`perturbed_scene`; stations may be missing.
+        perturbed: the CPRBM's answer to :func:`perturbed_scene`; stations may be missing, or all of it.
 
     Raises:
         KeyError: ``cprbm`` or ``fea`` lacks a station or a probe.
@@ -233,23 +239,25 @@ def reactions(scene: Scene, cprbm: Answer, fea: Answer, perturbed: Answer) -> tu
     return tuple(found)
 
 
-def smooth_intervals(scene: Scene, stage: Stage, cprbm: Answer, perturbed: Answer) -> tuple[Interval, ...]:
+def smooth_intervals(scene: Scene, stage: Stage, cprbm: Answer, perturbed: Answer | None) -> tuple[Interval, ...]:
     """The interval around every station of a stage; an interval with an event states the reason against R."""
-    passed = [
-        point.end.value for answer in (cprbm, perturbed) for point in answer.gone_over if point.end.stage == stage.name
-    ]
+    beside = cprbm if is_long(stage) else perturbed
+    answers = [answer for answer in (cprbm, beside) if answer is not None]
+    passed = [point.end.value for answer in answers for point in answer.gone_over if point.end.stage == stage.name]
     steps = _steps(stage)
     found = []
     for d in stage.stations:
+        if d not in steps or beside is None or (is_long(stage) and ENERGY.name not in cprbm.stations[0].values):
+            found.append(Interval((), absence=Absence.NOT_PERTURBED))
+            continue
+        h = steps[d]
         try:
-            h = steps[d]
             states = tuple(
                 station_of(answer, stage.name, value)
-                for answer, value in ((perturbed, d - h), (cprbm, d), (perturbed, d + h))
+                for answer, value in ((beside, d - h), (cprbm, d), (beside, d + h))
             )
         except KeyError:
-            reason = Absence.NOT_REACHED if d in steps else Absence.NOT_PERTURBED
-            found.append(Interval((), absence=reason))
+            found.append(Interval((), absence=Absence.NOT_REACHED))
             continue
         active = [_active(scene, state) for state in states]
         changes = tuple(sorted(frozenset.union(*active) - frozenset.intersection(*active)))
@@ -289,10 +297,19 @@ def _has_reaction(scene: Scene, stage: Stage) -> bool:
 
 
 def _steps(stage: Stage) -> dict[float, float]:
-    """h by d, for the stations of a stage that are perturbed."""
-    chosen = stage.stations if len(stage.stations) <= MOST_PERTURBED else kept(stage)
+    """h by d; of a long stage at the stations between two equal steps."""
+    if is_long(stage):
+        between = zip(stage.stations, stage.stations[1:], stage.stations[2:], strict=False)
+        return {
+            d: abs(after - d) for before, d, after in between if abs(after - 2.0 * d + before) <= EVEN * abs(after - d)
+        }
     largest = max(map(abs, stage.stations))
-    return {d: PERTURBATION * (abs(d) or largest) for d in chosen}
+    return {d: PERTURBATION * (abs(d) or largest) for d in stage.stations}
+
+
+def is_long(stage: Stage) -> bool:
+    """Whether a stage's own neighbouring stations serve as perturbed stations."""
+    return len(stage.stations) > MOST_PERTURBED
 
 
 def _active(scene: Scene, station: StationAnswer) -> frozenset[str]:

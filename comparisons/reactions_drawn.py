@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from comparisons.case import Comparison
 from comparisons.figures import BLUE, GREY, RED, Picture, along_axis, canvas, picture
 from comparisons.formats import scaled_unit
-from comparisons.measures import LOAD_UNITS
+from comparisons.quantities import LOAD_UNITS
 from comparisons.reaction_sheets import by_drive
 from comparisons.reactions import MESH_ALLOWANCE, WorkEnergyReaction
-from comparisons.verdict import Comparison
 from cprbm_scene import Scene
 
 if TYPE_CHECKING:

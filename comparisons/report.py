@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from comparisons import archive, documents, figures, offset_drawn, offset_pages, paths_drawn, reactions_drawn, sheets
+from comparisons.case import Comparison, Verdict
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.rendering import Embedded, embedded, rendered
 from comparisons.sheet import Sheet
-from comparisons.verdict import Comparison, Verdict
 from comparisons.writing import write
 from cprbm_scene import Question
 

@@ -8,24 +8,25 @@ from enum import Enum
 
 from comparisons.audit import Audit
 from comparisons.branch_sheets import of_branches, of_criticals, of_ends
-from comparisons.branches import Place
-from comparisons.calibration import FAR, JUDGED, Held, every, held, tally
+from comparisons.case import Comparison
 from comparisons.claims import as_claimed, standings
 from comparisons.documents import worst
 from comparisons.formats import along, number, percent, scaled_unit, vector
 from comparisons.geometry import bentness
-from comparisons.measures import Row, Steps, load_unit, unit_of
 from comparisons.paper_sheets import of_paper
+from comparisons.quantities import load_unit, norm, unit_of
 from comparisons.reaction_sheets import of_reactions
-from comparisons.scales import norm
 from comparisons.sheet import Sheet
 from comparisons.stations import station_of
+from comparisons.steps import Steps, contact_model, largest_difference, steps_of
 from comparisons.third import of_thirds
 from comparisons.third import sentence as beside_the_solid
-from comparisons.tolerances.extrapolation import told
 from comparisons.tolerances.search import Tolerance
-from comparisons.verdict import Comparison
-from comparisons.words import Word
+from comparisons.tolerances.settled import told
+from comparisons.verdict.calibration import EXACT_FACTOR, SOLVERS, ErrorRatio, error_ratios, tally, true_errors
+from comparisons.verdict.rows import Row
+from comparisons.verdict.station_events import Place
+from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Answer, Scene, StationAnswer
 
 MANY = 40
@@ -128,14 +129,16 @@ def explanation(compared: Comparison) -> tuple[str, ...]:
     sentences = []
     for standing in standings(compared.scene, compared.rows):
         claim = standing.claim
-        if not isinstance(standing.worst, Row) or claim.value is not None or standing.worst.steps is None:
+        if not isinstance(standing.worst, Row) or claim.value is not None:
             continue
         row = as_claimed(standing.worst)
-        assert row.steps is not None
+        steps = steps_of(compared.runs, row)
+        if steps is None:
+            continue
         sentences.append(
             f"{row.probe.name} at {row.station:g}: our difference of {_of(row, row.difference)} is the "
-            f"finite elements' own step of theory, {_of(row, row.steps.stretch)} from bending to stretch and "
-            f"{_of(row, row.steps.shear)} from stretch to shear, and {_within_one_theory(compared, row, row.steps)}; "
+            f"finite elements' own step of theory, {_of(row, steps.stretch)} from bending to stretch and "
+            f"{_of(row, steps.shear)} from stretch to shear, and {_within_one_theory(compared, row, steps)}; "
             f"the source's figure of {percent(claim.bound)} is not ours to approach."
         )
     return tuple(filter(None, (*sentences, beside_the_solid(compared))))
@@ -150,14 +153,16 @@ def _within_one_theory(compared: Comparison, row: Row, steps: Steps) -> str:
             f"from paper to auto, for which together the runs state {stated}"
         )
     said = f"{own} between the two methods within one theory, for which the two discretisations state {stated}"
-    if row.contact_model is None:
+    model = contact_model(compared.runs, row)
+    if model is None:
         return said
-    return f"{said}; the contact model of paper would put the CPRBM {_of(row, row.contact_model)} away"
+    return f"{said}; the contact model of paper would put the CPRBM {_of(row, model)} away"
 
 
 def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
     runs = compared.runs
     known = any(row.exact is not None for row in rows)
+    last = not rows or rows[-1] is compared.rows[-1]
     body = []
     for row in rows:
         size = max(norm(row.probe.quantity, row.cprbm), norm(row.probe.quantity, row.fea))
@@ -171,7 +176,7 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
                 *(("–" if row.exact is None else vector(row.exact, factor),) if known else ()),
                 _of(row, row.difference),
                 *(
-                    (_of(row, row.bounds.cprbm), _of(row, row.bounds.fea), _of(row, row.bounds.theory))
+                    (_of(row, row.bounds.cprbm), _of(row, row.bounds.fea), _in_bending(row, row.bounds.theory))
                     if row.bounds
                     else ("–", "–", "–")
                 ),
@@ -196,26 +201,28 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         ),
         tuple(body),
         f"FEA: theory {runs.kinematics}. Fractions of the FEA's value, or of the probe's largest value where "
-        "that may vanish; uncertainties from further discretisations of each solver.",
+        "that may vanish; uncertainties from further discretisations of each solver."
+        + (f" No exact values: {runs.exact_absence}" if runs.exact_absence and last else ""),
     )
 
 
 def _verdicts(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
-    words = dict(zip([id(row) for row in compared.rows], compared.verdict.words, strict=True)) if rows else {}
+    verdict = compared.verdict
+    judged = {
+        (row.where, row.probe.name): (word, reason)
+        for row, word, reason in zip(compared.rows, verdict.words, verdict.reasons, strict=True)
+    }
     body = []
     for row in rows:
-        word = words[id(row)]
         body.append(
             (
                 row.probe.name,
                 _of(row, row.difference),
                 _of(row, row.bounds.total) if row.bounds else "–",
-                _of(row, row.same_theory),
-                _of(row, row.bounds.same_theory) if row.bounds else "–",
+                _in_bending(row, row.same_theory),
+                _in_bending(row, row.bounds.same_theory) if row.bounds else "–",
                 _of(row, row.bounds.round_off) if row.bounds else "–",
-                (row.place.value if row.place is not Place.COMPARED else "takes no part")
-                if word is None
-                else word.value,
+                _judgement(row, *judged[row.where, row.probe.name]),
             )
         )
     return Sheet(
@@ -226,18 +233,23 @@ def _verdicts(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
     )
 
 
-def _said(row: Row, word: Word | None) -> str:
-    """What a row says, or why it says nothing."""
-    if word is not None:
-        return word.value
-    return "takes no part" if row.place is Place.COMPARED else row.place.value
+def _in_bending(row: Row, value: float) -> str:
+    """A fraction that needs the finite elements in ``bending``; a dash where that run lacks the value."""
+    return "–" if row.bounds is None or row.bounds.bending is None else _of(row, value)
+
+
+def _judgement(row: Row, word: Word | None, reason: Reason | None) -> str:
+    """Word and reason of a row, or why the row takes no part."""
+    if word is None:
+        return "takes no part" if row.place is Place.COMPARED else row.place.value
+    return word.value if reason is None else f"{word.value} ({reason.value})"
 
 
 def _true_errors(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
     """True errors of both in ``bending``, each beside what is stated of it."""
     body = []
     for row in rows:
-        found = tuple(every(row))
+        found = tuple(true_errors(row))
         if found:
             cells = ((_of(row, each.true), _of(row, each.stated), number(each.ratio), each.word) for each in found)
             body.append((row.probe.name, *(cell for four in cells for cell in four)))
@@ -245,15 +257,15 @@ def _true_errors(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         "True errors in bending, beside the exact answer",
         ("probe", *(f"{head} {name}" for name in ("CPRBM", "FEA") for head in ("error", "stated", "ratio", "says"))),
         tuple(body),
-        f"{_over_all(held(compared.rows))} A ratio is the true error over the stated one with round-off: above 1 it is "
-        f"beyond, above {FAR:g} far beyond, and then the row differs.",
+        f"{_over_all(error_ratios(compared.rows))} A ratio is the true error over the stated one with round-off: above "
+        f"1 it is beyond, above {EXACT_FACTOR:g} far beyond, and then the row differs.",
     )
 
 
-def _over_all(found: tuple[Held, ...]) -> str:
+def _over_all(found: tuple[ErrorRatio, ...]) -> str:
     """How many of the rows of all stations have true errors within the stated ones, in a sentence."""
     said = []
-    for solver, name in zip(JUDGED, ("CPRBM", "FEA"), strict=True):
+    for solver, name in zip(SOLVERS, ("CPRBM", "FEA"), strict=True):
         mine = tally(found, solver)
         over = "" if mine.over is None else f", stated over true {number(mine.over)} in the median"
         said.append(f"{name} within the stated error in {mine.within} of {mine.rows} rows{over}")
@@ -296,7 +308,7 @@ def _stresses(scene: Scene, rows: tuple[Row, ...]) -> Sheet:
                 unit,
                 vector(row.cprbm, factor),
                 vector(row.fea, factor),
-                "–" if row.largest is None else _of(row, row.largest),
+                _of(row, largest_difference(row)),
                 _of(row, row.difference),
                 percent(bentness(beam) / 3.0),
             )
@@ -313,20 +325,22 @@ def _stresses(scene: Scene, rows: tuple[Row, ...]) -> Sheet:
 def _steps(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
     runs = compared.runs
     in_paper = runs.auto is not None
-    shown = any(row.contact_model is not None for row in rows)
+    models = [contact_model(runs, row) for row in rows]
+    shown = any(model is not None for model in models)
     body = []
-    for row in rows:
-        if row.steps is None:
+    for row, model in zip(rows, models, strict=True):
+        steps = steps_of(runs, row)
+        if steps is None:
             continue
-        contact = row.steps.contact if in_paper else math.nan if row.contact_model is None else row.contact_model
+        contact = steps.contact if in_paper else math.nan if model is None else model
         body.append(
             (
                 row.probe.name,
                 _of(row, row.difference),
                 *((_of(row, contact),) if shown else ()),
-                _of(row, row.steps.own),
-                _of(row, row.steps.stretch),
-                _of(row, row.steps.shear),
+                _of(row, steps.own),
+                _of(row, steps.stretch),
+                _of(row, steps.shear),
             )
         )
     note = "Components along the difference; each line adds up."
@@ -377,7 +391,7 @@ def _certificates(compared: Comparison) -> Sheet:
     body.append(("audit", *(_audited(one) for one in audits)))
     body.append(
         (
-            "moments by the shape less those by statics",
+            "stated moments less those of all that acts beyond",
             *("–" if one is None or not one.stations else number(one.scaled) for one in audits),
         )
     )

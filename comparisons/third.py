@@ -1,21 +1,23 @@
 """The third opinion: what both beam theories miss together, each held against the mechanism as a solid.
 
-The solid's value x is extrapolated from its meshes, and uncertain by u (:mod:`comparisons.extrapolated_solid`).  The
-distances of the beam theories from x are their errors, as far as u and their own uncertainties allow.  Nothing of
+The solid's value x is extrapolated from its meshes, and u is its stated uncertainty, the largest over the probe's
+stations in the stage (:mod:`comparisons.solid_limits`).  The distances of the beam theories from x are their errors, as
+far as u and their own uncertainties allow.  Nothing of
 the verdict rests on them: a beam theory that is as far from the solid as it must be is not wrong.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from comparisons.extrapolated_solid import at_row, orders_of
+from comparisons.case import Comparison
 from comparisons.formats import percent, scaled_unit, vector
-from comparisons.measures import Row
-from comparisons.scales import norm
+from comparisons.quantities import norm
 from comparisons.sheet import Sheet
+from comparisons.solid_limits import solid_limit
 from comparisons.stations import station_of
-from comparisons.verdict import Comparison
+from comparisons.verdict.rows import Row
+from comparisons.verdict.uncertainty import largest
 from cprbm_scene.answer import Array, Flags
 
 
@@ -41,24 +43,24 @@ def thirds_of(compared: Comparison) -> tuple[Third, ...]:
     if runs.solid is None or not all(answer.completed for answer in runs.solid):
         return ()
     found = []
-    orders = orders_of(scene, runs.solid)
     for row in compared.rows:
-        if row.bounds is None:
+        if row.bounds is None or row.bounds.bending is None:
             continue
         bending, chosen = (
             station_of(answer, row.stage, row.station) for answer in (runs.fea["bending"][0], runs.reference)
         )
-        told = at_row(scene, row, runs.solid, orders, (chosen,))
-        if told is None or not told[2].any():
+        limited = solid_limit(scene, row, runs.solid, (chosen,))
+        if limited is None or not limited[1].any():
             continue
-        x, off, counts = told
+        (x, u), counts = (limited[0].value, limited[0].uncertainty), limited[1]
 
         def size(difference: Array, row: Row = row, counts: Flags = counts) -> float:
             return norm(row.probe.quantity, difference[counts])
 
         v_b = bending.values[row.probe.name]
-        found.append(Third(row, x, size(off), size(row.cprbm - x), size(v_b - x), size(row.fea - x)))
-    return tuple(found)
+        found.append(Third(row, x, size(u), size(row.cprbm - x), size(v_b - x), size(row.fea - x)))
+    widest = largest(((one.row.probe.name, one.row.stage), one.uncertainty) for one in found)
+    return tuple(replace(one, uncertainty=widest[one.row.probe.name, one.row.stage]) for one in found)
 
 
 def of_thirds(compared: Comparison) -> Sheet:
@@ -104,9 +106,6 @@ def sentence(compared: Comparison) -> str:
     for answer in runs.solid:
         if not answer.completed:
             return f"The solid says nothing: {answer.ending.value}. {answer.sentence}"
-    found = compared.audits.get("solid")
-    if found is not None and found.complaints:
-        return f"The solid is not to be believed: its audit fails {found.complaints[0]}."
     moved = [one for one in thirds_of(compared) if one.row.probe.quantity in ("displacement", "rotation")]
     if not moved:
         return "The solid has no displacement or rotation to hold the beam theories against."

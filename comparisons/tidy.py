@@ -7,7 +7,7 @@ import io
 from collections.abc import Iterator
 from typing import TypedDict
 
-from comparisons.measures import COMPONENTS, arc_lengths, unit_of
+from comparisons.quantities import COMPONENTS, arc_lengths, unit_of
 from cprbm_scene import Answer, Probe, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from cprbm import answer_sheet
 from cprbm.assembling import brought, formulated, freed, released
 from cprbm.certifying import certify
 from cprbm.closing import Closings, Stood
@@ -34,7 +35,6 @@ from cprbm.rate import rate, strayed
 from cprbm.refining import all_zones, carried_over, carried_state, fits, fitted, long_ones
 from cprbm.remarks import Remarks
 from cprbm.settings import Settings
-from cprbm.statics import statics
 from cprbm.steadied import Turn, steadied
 from cprbm.zones import Zone
 from cprbm_scene import Certificate, Critical, Ending, Event, GoneOver, Loss, Scene, Stage, StationAnswer
@@ -324,15 +324,19 @@ class March:
         # what is open on the march's mesh may be closed on this one
         self._note_closings(stage.name, stage.steps, point, value)
         self.remarks.look(mechanism, point, f"{stage.name} {value:.6g}")
+        places, forces = touching(mechanism, point), answer_sheet.point_forces(self.scene, mechanism, point)
         return StationAnswer(
             stage=stage.name,
             value=value,
             values=probed(self.scene, mechanism, point, self.closed_at),
             shapes=shapes(mechanism, point),
-            touching=touching(mechanism, point),
+            touching=places,
             certificate=replace(certificate, iterations=spent),
             branch=len(self.critical),
-            statics=statics(self.scene, mechanism, point),
+            beams=answer_sheet.beam_states(mechanism, point),
+            forces=forces,
+            contacts=answer_sheet.contacts(self.scene, mechanism, forces, places),
+            bodies=answer_sheet.body_motions(self.scene, mechanism, point),
         )
 
     def _gone_on(self, stage: Stage, value: float) -> tuple[Mechanism, Point, Certificate] | None:

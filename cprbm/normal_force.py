@@ -27,20 +27,24 @@ from cprbm_scene.answer import Array
 
 def normal_force(mechanism: Mechanism, point: Point, chain: Chain, points: int) -> Array:
     """N (points,) at equal arc-length steps, in units of force."""
-    model = mechanism.problem.model
     s = np.linspace(0.0, chain.s[-1], points)
-    psi = smooth.smooth_line(chain, model.unit_length, point.state, point.at).at(s).psi
-    force = np.zeros((points, 2))
+    psi = smooth.smooth_line(chain, mechanism.problem.model.unit_length, point.state, point.at).at(s).psi
+    force = force_beyond(mechanism, point, chain, s)
+    return np.asarray(force[:, 0] * np.cos(psi) + force[:, 1] * np.sin(psi))
+
+
+def force_beyond(mechanism: Mechanism, point: Point, chain: Chain, s: Array) -> Array:
+    """Force of the part beyond arc lengths ``s`` (k,) on the part before, -F, (k, 2), in units of force."""
+    model, force = mechanism.problem.model, np.zeros((len(s), 2))
     for places, forces in _forces(mechanism, point, chain):
         force += (places[None, :] > s[:, None]) @ forces
     for load, value in point.work.on_beams:
         if load.distributed and model.chains[load.chain] is chain:
             force += value * spread_from(load, s)[:, None] * load.density
-    # the last end's force acts beyond all places
+    # the force at the end acts beyond all places
     last = chain.joints.stop - 1
     fx, fy = closure_forces(model, mechanism.problem.closure, point.mu)
-    force -= (fx[last], fy[last])
-    return np.asarray(force[:, 0] * np.cos(psi) + force[:, 1] * np.sin(psi))
+    return np.asarray(force - (fx[last], fy[last]))
 
 
 def _forces(mechanism: Mechanism, point: Point, chain: Chain) -> list[tuple[Array, Array]]:

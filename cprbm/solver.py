@@ -9,6 +9,7 @@ from cprbm.march import March
 from cprbm.refining import coarser
 from cprbm.settings import Settings
 from cprbm_scene import Answer, Ending, Scene
+from cprbm_scene.contact_states import openings
 from cprbm_scene.threads import one_thread
 
 
@@ -42,7 +43,7 @@ class Prepared:
             ending=ending,
             sentence=sentence,
             stations=tuple(march.reached),
-            events=tuple(march.events),
+            events=(*march.events, *openings(self.scene, march.reached)),
             critical=tuple(march.critical),
             gone_over=tuple(march.gone_over),
             seconds=self.seconds + time.perf_counter() - began,

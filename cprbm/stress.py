@@ -45,10 +45,16 @@ NEAREST = 4  # springs that a polynomial goes through
 
 def bending_stress(mechanism: Mechanism, point: Point, chain: Chain, points: int) -> Array:
     """σ (points,), Pa, at equal arc-length steps; beyond the outer springs the nearest are continued."""
+    s = np.linspace(0.0, chain.s[-1], points)
+    curvature = bending_moment(mechanism, point, chain, s) / chain.section.rigidity_at(s)
+    return np.asarray(0.5 * chain.youngs_modulus * chain.section.thickness_at(s) * curvature)
+
+
+def bending_moment(mechanism: Mechanism, point: Point, chain: Chain, s: Array) -> Array:
+    """M at arc lengths ``s`` (k,), without units; beyond the outer springs the nearest are continued."""
     moments = spring_moments(mechanism.problem.model, point.state)[chain.first_link : chain.first_link + chain.n]
     at, jumps = _kinks(mechanism, point, chain)
     forces, distributed = _loads(mechanism, point, chain)
-    s = np.linspace(0.0, chain.s[-1], points)
     springs, known = _kinked(at, jumps, chain.s[1:-1]), _kinked(at, jumps, s)
     if not mechanism.boundaries:  # forces of a fitted boundary act on joints
         springs += _evened(chain, at, jumps)
@@ -61,9 +67,7 @@ def bending_stress(mechanism: Mechanism, point: Point, chain: Chain, points: int
         even = np.clip((chain.borders[1:] + chain.borders[:-1] - 2.0 * q) / chain.sizes, -1.0, 1.0)
         springs -= 0.5 * M * even
         known -= 0.5 * M * np.sign(s - q)
-    moment = _joined(chain, moments - springs, _parted(mechanism, chain), s) + known
-    curvature = moment / chain.section.rigidity_at(s)
-    return np.asarray(0.5 * chain.youngs_modulus * chain.section.thickness_at(s) * curvature)
+    return _joined(chain, moments - springs, _parted(mechanism, chain), s) + known
 
 
 def _loads(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[tuple[Array, Array], tuple[Array, Array]]:

@@ -33,10 +33,10 @@ moment             (1,)    magnitude of the moment by which a stop holds, N·m; 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Literal
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -106,87 +106,130 @@ class Shape:
 
 
 @dataclass(frozen=True, slots=True)
-class Inside:
-    """A beam as its solver sees it: what its bending moments and its smooth line follow from, and no more.
+class BeamState:
+    """Shape and internal forces of one beam at n ascending places; SI.
 
-    Of ``links`` they begin at the beam's first place and end in the middle of each element, where they are joined by
-    springs, and at its last place; ``angles`` are theirs, one more than elements, and ``pulls`` empty.  Of ``elements``
-    the shape's places are their nodes, ``angles`` those of the sections there, and ``pulls`` the axial force in each;
-    beside an end sections may lean by less than the shear force over the shear stiffness, by tanh²(s/(√2 a)) of that.
+    At a point force or moment the values are the limit from the side of the beam's end.  At the first and the last
+    place they are limits from inside the beam.  With the arc length s, dM/ds = -Q where nothing but forces acts.
 
     Attributes:
-        made_of: ``links`` or ``elements``.
-        borders: arc lengths at which elements begin and end, (n+1,), m.
-        angles: rad, counter-clockwise, (n+1,).
-        pulls: N, positive in tension, (n,) or (0,).
-        upright: a of the start and of the end, m; zero where there is no such length.
+        s: undeformed arc lengths, (n,), m; the first is 0, the last the beam's length.
+        x, y: positions of the neutral line, (n,), m.
+        angle: tangent angle of the deformed neutral line, (n,), rad, continuous along the beam.
+        section_angle: angle of the section's normal, (n,), rad; equal to ``angle`` without shear.
+        N: normal force along the tangent, (n,), N, positive in tension.
+        Q: shear force, (n,), N: the force of the part beyond, along the left normal of the tangent.
+        M: bending moment, (n,), N·m: the moment of the part beyond, counter-clockwise, with the sign of the probe
+            ``bending_stress``.
+        borders: arc lengths at which elements begin and end, (m+1,), m.
     """
 
-    made_of: Literal["links", "elements"]
-    borders: Array
-    angles: Array
-    pulls: Array
-    upright: tuple[float, float] = (0.0, 0.0)
-
-
-@dataclass(frozen=True, slots=True)
-class Area:
-    """A beam as a solid sees it: where the nodes of its elements lie, all of second order and in rows and columns.
-
-    Attributes:
-        along: arc lengths of the nodes' sections, (2n+1,), m; every other one is where elements meet.
-        across: places across, 1 on the left edge and −1 on the right one, ascending (2m+1,).
-        x, y: where the nodes are, m (2n+1, 2m+1).
-    """
-
-    along: Array
-    across: Array
+    s: Array
     x: Array
     y: Array
+    angle: Array
+    section_angle: Array
+    N: Array
+    Q: Array
+    M: Array
+    borders: Array
 
-    @property
-    def borders(self) -> Array:
-        """Arc lengths at which elements begin and end, (n+1,), m."""
-        return self.along[::2]
+
+class PointForce(NamedTuple):
+    """One force on one beam or body: a row of :class:`PointForces`.
+
+    Attributes:
+        source: name of the cause: the point that a beam's end is joined to, the contact, stop, drive, pin or sliding
+            body, or the point that is a pivot.
+        target: name of the beam or body that the force acts on.
+        s: arc length on a beam, m; nan on a body.
+        place: of contacts on a beam, the place on the neutral line, (2,), m.
+        force: (2,), N.
+        moment: about ``place``, counter-clockwise, N·m.
+    """
+
+    source: str
+    target: str
+    s: float
+    place: Array
+    force: Array
+    moment: float
 
 
 @dataclass(frozen=True, slots=True)
-class Statics:
-    """What acts at a station besides the scene's loads, so that others can sum it up anew; SI.
+class PointForces:
+    """All forces of joints, contacts, stops, slides, pivots, drives and pins on beams and moving bodies, as arrays.
 
-    Every force of a joint, a contact, a stop, a slide, a pivot, a drive or a pin between bodies stands there once for
-    each beam and body that it acts on; the ground's share is left out.  k is how many there are.
-
-    Attributes:
-        by: what exerts each: name of the point that a beam's end is joined to, of the contact, stop, drive, pin or
-            sliding body, or of the point that is a pivot.
-        on: name of the beam or body that it acts on.
-        s: arc lengths of the places on beams, m; of those on bodies nan, (k,).
-        places: where, m (k, 2): of contacts on the beam's neutral line, through which the force's line goes; of those
-            on an area half its thickness along the force from the edge that is pressed.
-        forces: N (k, 2).
-        moments: about the places, counter-clockwise, N·m (k,).
-        bodies: of every body that moves the displacement of its first point, m, and its rotation, rad, (3,).
-        inside: of every beam.
+    A force stands once for the beam or body that it acts on; the ground's share and the scene's loads are left out.
+    The fields are those of :class:`PointForce`, of k forces: (k,), ``place`` and ``force`` (k, 2).
     """
 
-    by: tuple[str, ...]
-    on: tuple[str, ...]
-    s: Array
+    source: tuple[str, ...] = ()
+    target: tuple[str, ...] = ()
+    s: Array = field(default_factory=lambda: frozen_array([]))
+    place: Array = field(default_factory=lambda: frozen_array(np.zeros((0, 2))))
+    force: Array = field(default_factory=lambda: frozen_array(np.zeros((0, 2))))
+    moment: Array = field(default_factory=lambda: frozen_array([]))
+
+    @classmethod
+    def collected(
+        cls, rows: Iterable[PointForce], length: float, force: float, origin: tuple[float, float] = (0.0, 0.0)
+    ) -> PointForces:
+        """The forces of ``rows``, in units of ``length`` (m) and ``force`` (N), with places relative to ``origin``."""
+        columns = tuple(zip(*rows, strict=True))
+        if not columns:
+            return cls()
+        source, target, s, place, forces, moment = columns
+        return cls(
+            source,
+            target,
+            frozen_array(np.array(s) * length),
+            frozen_array(np.array(place) * length + origin),
+            frozen_array(np.array(forces) * force),
+            frozen_array(np.array(moment) * (force * length)),
+        )
+
+    def __iter__(self) -> Iterator[PointForce]:
+        """One force after the other."""
+        return map(PointForce, self.source, self.target, self.s, self.place, self.force, self.moment)
+
+    def chosen(self, source: str, target: str) -> Flags:
+        """Which forces (k,) a ``source`` exerts on a ``target``."""
+        pairs = zip(self.source, self.target, strict=True)
+        return np.fromiter((pair == (source, target) for pair in pairs), dtype=bool, count=len(self.source))
+
+
+@dataclass(frozen=True, slots=True)
+class ContactState:
+    """State of one contact at a station.
+
+    Attributes:
+        active: whether the contact presses by more than the floor in :mod:`cprbm_scene.contact_states`.
+        places: positions where the beams or edges touch, (k, 2), m; also of a contact that touches without force.
+        indeterminate: whether equilibrium leaves the contact's force open; None where the solver does not know.
+    """
+
+    active: bool
     places: Array
-    forces: Array
-    moments: Array
-    bodies: Mapping[str, Array]
-    inside: Mapping[str, Inside | Area]
+    indeterminate: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class StationAnswer:
-    """What was asked at one station: ``values`` by probe name, the shapes, and the certificate.
+    """Probe values, shapes, statics and certificate at one station.
 
-    ``value`` is the stepped load's or drive's; ``touching`` holds, per closed contact, the places (k, 2) in metres
-    where the beams touch; ``branch`` is the number of branches that have ended before, each at a critical point;
-    ``statics`` what acts, of solvers that say so.
+    Attributes:
+        stage: name of the stage.
+        value: of the stepped load or drive, SI.
+        values: by probe name.
+        shapes: deformed neutral lines by beam name.
+        touching: by the name of a closed contact the places where the beams touch, (k, 2), m.
+        certificate: of this station.
+        branch: number of critical points passed before; stations of different numbers lie on different branches.
+        beams: internal forces by beam name; empty where the solver does not state them.
+        forces: of joints, contacts and all else besides the loads.
+        contacts: by name the state of every contact of the scene, inactive contacts included.
+        bodies: of every moving body the displacement of the first point, m, and the rotation, rad, (3,).
     """
 
     stage: str
@@ -196,17 +239,25 @@ class StationAnswer:
     touching: Mapping[str, Array]
     certificate: Certificate
     branch: int = 0
-    statics: Statics | None = None
+    beams: Mapping[str, BeamState] = field(default_factory=dict)
+    forces: PointForces = field(default_factory=PointForces)
+    contacts: Mapping[str, ContactState] = field(default_factory=dict)
+    bodies: Mapping[str, Array] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """A contact that closed: between two stations, at ``value`` of the load or drive that ``stage`` steps."""
+    """Closing or opening of a contact, at ``value`` of the load or drive that ``stage`` steps.
+
+    ``kind`` is ``closes`` or ``opens``.  An opening that is known to lie between two stations has an ``interval``, the
+    ascending values of the stepped load or drive, and their mean as its value.
+    """
 
     stage: str
     contact: str
     kind: str
     value: float
+    interval: tuple[float, float] | None = None
 
 
 class Loss(Enum):
@@ -266,11 +317,15 @@ class GoneOver:
 class Answer:
     """A solver's whole answer to a scene.
 
-    ``stations`` are those reached with a certificate that holds, in order; ``sentence`` says more about the
-    ending; ``settings`` are the solver's numerical choices as plain values.  ``events`` are contacts that closed
-    between stations, ``critical`` the ends of branches that were met, ``gone_over`` those that a stage which asks for
-    none was gone on over, and which do not count in the stations' ``branch``; ``seconds`` what all of it took, and
-    ``notes`` what the solver has to say besides.
+    Attributes:
+        solver: name of the solver; scene: name of the scene.
+        settings: the solver's numerical choices as plain values.
+        ending: how the solve ended; sentence: details of the ending.
+        stations: reached stations with a certificate that holds, in order.
+        events: closings and openings of contacts between stations.
+        critical: ends of branches.
+        gone_over: critical points passed in stages that ask for none; the ``branch`` of a station does not count them.
+        seconds: wall time of the whole solve; notes: remarks of the solver.
     """
 
     solver: str

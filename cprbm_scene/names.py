@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from cprbm_scene.mistakes import Mistake, unknown_name
 from cprbm_scene.record import Of, Record
-from cprbm_scene.statement import Scene
+from cprbm_scene.statement import RigidContact, Scene
 
 RESERVED = "scene"
 """Name of the scene itself in a probe."""
@@ -58,6 +58,10 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
         "body": scene.bodies,
         "beam": scene.beams,
         "load or drive": (*scene.loads, *scene.drives),
+        "beam or contact with a rigid edge": [
+            *scene.beams,
+            *(name for name, contact in scene.contacts.items() if isinstance(contact, RigidContact)),
+        ],
     }
     for key, record in records(scene):
         for field, info in type(record).model_fields.items():
@@ -67,10 +71,12 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
                         yield unknown_name(f"{key}.{field}{part}", name, kind, known[kind])
 
 
-def _named(value: str | tuple[str, ...] | Mapping[str, object]) -> list[tuple[str, str]]:
+def _named(value: object) -> Iterator[tuple[str, str]]:
     """Names in the value of a field, with places below the field's key."""
-    if isinstance(value, str):
-        return [("", value)]
-    if isinstance(value, Mapping):
-        return [(f".{name}", name) for name in value]
-    return [(f"[{i}]", name) for i, name in enumerate(value)]
+    match value:
+        case str():
+            yield "", value
+        case Mapping():
+            yield from ((f".{name}", name) for name in value)
+        case tuple():
+            yield from ((f"[{i}]{part}", name) for i, each in enumerate(value) for part, name in _named(each))

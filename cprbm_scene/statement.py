@@ -9,7 +9,7 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Protocol, TypeVar
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
@@ -61,9 +61,10 @@ from cprbm_scene.contact_records import (
 )
 from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
 from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake
 from cprbm_scene.parameters import Parameter, Tolerance, register
 from cprbm_scene.question_records import CRITICAL, STRESSES, UNITS, Claim, Probe, Quantity, Stage
-from cprbm_scene.record import Name, Named, Record, Text, Title
+from cprbm_scene.record import Name, Named, Of, Record, Text, Title
 from cprbm_scene.units import Point, PositiveShare, Reading, Units
 
 __all__ = [
@@ -140,7 +141,8 @@ class Scene(Record):
     """The problem statement: mechanism, loading, requested quantities.
 
     Names of points, bodies, beams, contacts, stops, pins, loads and drives are unique across the scene.
-    ``verdict_limit`` is the largest total uncertainty, a fraction of a probe's scale, for the
+    ``may_cross`` lists pairs that may pass through each other without a contact: two beams, or a beam and a contact
+    with a rigid edge.  ``verdict_limit`` is the largest total uncertainty, a fraction of a probe's scale, for the
     verdict AGREE; a probe may have another limit.  ``units`` are those of a file; a scene from a file has SI units.
     """
 
@@ -158,12 +160,19 @@ class Scene(Record):
     stops: Named[Stop] = Field(default_factory=frozendict)
     pins: Named[BodyPin] = Field(default_factory=frozendict)
     assembly: Assembly | None = None
+    may_cross: Annotated[tuple[tuple[Name, Name], ...], Of("beam or contact with a rigid edge")] = ()
     stages: Annotated[tuple[Stage, ...], Field(min_length=1)]
     probes: Annotated[tuple[Probe, ...], Field(min_length=1)]
     claims: tuple[Claim, ...] = ()
     verdict_limit: PositiveShare = 0.015
     file: str = ""
     _source: Source | None = PrivateAttr(default=None)
+
+    def rules(self) -> Iterator[Mistake]:
+        """Pairs of the same name."""
+        for i, pair in enumerate(self.may_cross):
+            if pair[0] == pair[1]:
+                yield Mistake(f"may_cross[{i}]", f"{pair[0]!r} twice", "two different names")
 
     @field_validator("units", "parameters", "loads", "drives", "stages", "probes")
     @classmethod

@@ -32,8 +32,8 @@ from comparisons.figures import BLUE, GREY, RED, Picture, along_axis, canvas, pi
 from comparisons.formats import number, scaled_unit
 from comparisons.framing import frame
 from comparisons.geometry import length, points
-from comparisons.measures import COMPONENTS, arc_lengths, load_unit, unit_of
 from comparisons.offset_verdict import compared_offset
+from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
 from comparisons.stations import station_of
 from comparisons.writing import write
 from cprbm_scene import Answer, CircleContact, OffsetQuestion, Scene, Stage, StationAnswer

@@ -23,17 +23,24 @@ _NOTHING = (np.empty(0), np.empty((2, 0)), np.empty((2, 0)))
 
 def normal_force(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
     """N at ``fractions`` (k,) of the arc length, without units, positive in tension."""
+    zeta = fractions * (beam.elements.stop - beam.elements.start)
+    tangent = model.line(beam, system.z).at(zeta)[1]
+    force = section_force(model, system, beam, fractions)
+    return np.asarray((force * tangent).sum(axis=0) / np.hypot(*tangent))
+
+
+def section_force(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
+    """Force of the part beyond ``fractions`` (k,) of the arc length on the part before, (2, k), without units."""
     line, zeta = model.line(beam, system.z), fractions * (beam.elements.stop - beam.elements.start)
     ends, place, _, force = _cut(model, system, beam)
     e, _ = line.locate(zeta)
     owner, _ = line.locate(place)
     before = (owner[None, :] == e[:, None]) & (place[None, :] < zeta[:, None])
-    pull = -ends[:2, e] - force @ before.T
+    beyond = -ends[:2, e] - force @ before.T
     for load in system.loads:
         if load.part.beam == model.beams.index(beam):
-            pull -= force_before(load, line, zeta)
-    tangent = line.at(zeta)[1]
-    return np.asarray((pull * tangent).sum(axis=0) / np.hypot(*tangent))
+            beyond -= force_before(load, line, zeta)
+    return np.asarray(beyond)
 
 
 def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:

@@ -9,9 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm_scene.answer import Answer, Ending, Event, StationAnswer
+from cprbm_scene.contact_states import openings
 from cprbm_scene.statement import Scene, Stage
 from cprbm_scene.threads import one_thread
 from cprbm_scene.told import station_reached
+from fea_reference import answer_sheet
 from fea_reference.assembly import assemble_ends
 from fea_reference.certificates import certify
 from fea_reference.contacts import contacts
@@ -19,7 +21,6 @@ from fea_reference.march import March, StoppedError, begin
 from fea_reference.model import build
 from fea_reference.probes import probed, shapes, touching
 from fea_reference.settings import Settings
-from fea_reference.statics import statics
 from fea_reference.travel import Course, reach
 
 _SAYS = logging.getLogger(__name__)
@@ -78,7 +79,7 @@ class Prepared:
             ending=ending,
             sentence=sentence,
             stations=tuple(stations),
-            events=tuple(events),
+            events=(*events, *openings(scene, stations)),
             critical=tuple(march.critical),
             gone_over=tuple(end.record for end in march.left),
             seconds=self.seconds + time.perf_counter() - began,
@@ -150,15 +151,19 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float) -> Stat
             Ending.NOT_CERTIFIED if minimum else Ending.NOT_A_MINIMUM,
             f"at {stage.steps} = {station:g}: " + "; ".join(certificate.failures),
         )
+    places, forces = touching(march), answer_sheet.point_forces(scene, march)
     return StationAnswer(
         stage=stage.name,
         value=station,
         values={probe.name: probed(scene, march, probe) for probe in scene.probes},
         shapes=shapes(march),
-        touching=touching(march),
+        touching=places,
         certificate=certificate,
         branch=len(march.critical),
-        statics=statics(scene, march),
+        beams=answer_sheet.beam_states(march),
+        forces=forces,
+        contacts=answer_sheet.contacts(scene, march, forces, places),
+        bodies=answer_sheet.body_motions(march),
     )
 
 

@@ -1,10 +1,9 @@
-"""The audit of answers: recomputed from scene and answer alone, by statics, with nothing of any solver.
+"""The audit of answers by scene and answer alone: statics, section law, joints, contacts, energy path, probes.
 
-A solver's own certificate says that its equations are solved; this says that what it hands out is in equilibrium, that
-nothing passes through anything, that contacts push where beams touch, that the numbers asked are those of the state,
-that the energy along the path is the work, and that the state is a minimum.
+A solver's certificate says that the solver's equations hold.  The audit says that the stated forces are in equilibrium
+and belong to the stated shape, whatever the solver.
 """
 
-from comparisons.audit.report import Audit, audit, audited
+from comparisons.audit.report import Audit, audit
 
-__all__ = ["Audit", "audit", "audited"]
+__all__ = ["Audit", "audit"]

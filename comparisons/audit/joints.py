@@ -1,4 +1,4 @@
-"""Whether beams are where their joints hold them, and bodies where slides, pivots, drives and pins do."""
+"""Joints of an answer: ends at their points, welds at their angles, guides, pivots, pins and drives."""
 
 from __future__ import annotations
 
@@ -6,53 +6,51 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from comparisons.audit.seen import Seen
+from comparisons.audit.state import StationState, unit
 from cprbm_scene.statement import DisplacementDrive, FreeEnd, SlidingBody, TurningBody, WeldedEnd
 
-APART = 1e-8  # of the longest beam, rad
+CLOSED = 1e-8
+"""Largest error of a joint, over the longest beam, or rad."""
+
+DRAWN = 1e-6
+"""Largest distance of a drawn shape from the stated places, over the longest beam: rounding of arc lengths."""
 
 
-def held(seen: Seen) -> Iterator[str]:
-    """What is not where it should be."""
-    scene, close = seen.scene, APART * seen.longest
-    for name, beam in seen.beams.items():
-        acting = seen.acting[name]
-        off = beam.misplaced(acting.s[(acting.s > 0.0) & (acting.s < beam.rest.length)])
-        if not off <= max(100.0 * close, 1e-6 * beam.rest.length):
-            yield f"the shape of {name} is {off:.2g} m from the line that its angles make, or stretched by that"
-        for end, (place, turned) in zip((beam.rest.beam.start, beam.rest.beam.end), beam.ends, strict=True):
-            if isinstance(end, FreeEnd):
-                continue
-            if not abs(place - seen.point(end.point)) <= close:
-                yield f"{name} is {abs(place - seen.point(end.point)):.2g} m away from {end.point}"
-            against = turned - seen.motion(scene.body_of(end.point))[2]
-            against -= 2.0 * np.pi * np.round(against / (2.0 * np.pi))
-            if isinstance(end, WeldedEnd) and not abs(against) <= APART:
-                yield f"{name} is turned by {against:.2g} rad against its weld at {end.point}"
+def joints(state: StationState) -> Iterator[str]:
+    """Every joint, guide or drive that is off by more than CLOSED."""
+    for joint, off, unit_ in _errors(state):
+        if not abs(off) <= CLOSED * (state.longest if unit_ == "m" else 1.0):
+            yield f"{joint} is {abs(off):.2g} {unit_} off"
+    for name, beam in state.beams.items():
+        shape = state.station.shapes[name]
+        x, y = (np.interp(beam.state.s, shape.s, drawn) for drawn in (shape.x, shape.y))
+        off = np.abs(x + 1j * y - beam.places).max()
+        if not off <= DRAWN * state.longest:
+            yield f"the shape of {name} is {off:.2g} m off the stated places"
+
+
+def _errors(state: StationState) -> Iterator[tuple[str, float, str]]:
+    """Joints, their errors, and the units."""
+    scene = state.scene
+    for name, beam in state.beams.items():
+        for end, i in ((beam.beam.start, 0), (beam.beam.end, -1)):
+            if not isinstance(end, FreeEnd):
+                yield f"the end of {name} at {end.point}", abs(beam.places[i] - state.point(end.point)), "m"
+            if isinstance(end, WeldedEnd):
+                off = np.angle(np.exp(1j * (beam.turned[i] - state.rotation(scene.body_of(end.point)))))
+                yield f"the weld of {name} at {end.point}", float(off), "rad"
     for name, body in scene.bodies.items():
-        _, moved, phi = seen.motion(name)
         if isinstance(body, SlidingBody):
-            along = complex(*body.along) / abs(complex(*body.along))
-            if body.pin is not None:
-                moved = seen.point(body.pin) - complex(*scene.place_of(body.pin))
-            elif not abs(phi) <= APART:
-                yield f"{name} slides and is turned by {phi:.2g} rad"
-            if not abs((moved * np.conj(along)).imag) <= close:
-                yield f"{name} is {abs((moved * np.conj(along)).imag):.2g} m off its slide"
+            moved = state.moved(body.pin or next(iter(body.points)))
+            yield f"the slide of {name}", (moved * np.conj(unit(body.along))).imag, "m"
+            yield f"the slide of {name}", state.rotation(name) if body.pin is None else 0.0, "rad"
         elif isinstance(body, TurningBody):
-            off = abs(seen.point(body.about) - complex(*scene.place_of(body.about)))
-            if not off <= close:
-                yield f"the pivot {body.about} has moved by {off:.2g} m"
+            yield f"the pivot {body.about}", abs(state.moved(body.about)), "m"
     for name, pin in scene.pins.items():
-        one, other = (seen.point(point) for point in pin.points)
-        if not abs(one - other) <= close:
-            yield f"the points of the pin {name} are {abs(one - other):.2g} m apart"
+        yield f"the pin {name}", abs(state.point(pin.points[0]) - state.point(pin.points[1])), "m"
     for name, drive in scene.drives.items():
         if isinstance(drive, DisplacementDrive):
-            along = complex(*drive.direction) / abs(complex(*drive.direction))
-            moved = seen.point(drive.point) - complex(*scene.place_of(drive.point))
-            gone, allowed = float((moved * np.conj(along)).real), close
+            moved = (state.moved(drive.point) * np.conj(unit(drive.direction))).real
+            yield f"the drive {name}", moved - state.values[name], "m"
         else:
-            gone, allowed = seen.motion(drive.body)[2], APART
-        if not abs(gone - seen.values[name]) <= allowed:
-            yield f"the drive {name} has gone {gone:.6g} where {seen.values[name]:.6g} is prescribed"
+            yield f"the drive {name}", state.rotation(drive.body) - state.values[name], "rad"

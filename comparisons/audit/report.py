@@ -1,75 +1,66 @@
-"""The audit of an answer: what does not hold, and how well the rest does."""
+"""The audit of an answer: complaints, remarks, and the largest unbalance."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
-from comparisons.audit.asked import probed
-from comparisons.audit.balance import at_nodes, cuts, sums, unbalance
-from comparisons.audit.edges import turned_inside_out
-from comparisons.audit.gaps import contacts, strangers
-from comparisons.audit.joints import held
-from comparisons.audit.path import balance
-from comparisons.audit.rest import rests_of
-from comparisons.audit.second import saddles, smallest_curvature
-from comparisons.audit.seen import Seen, seen_of
+import numpy as np
+
+from comparisons.audit.balance import cut_errors, cuts, sums
+from comparisons.audit.contacts import contacts
+from comparisons.audit.crossings import crossing_sentence, crossings
+from comparisons.audit.joints import joints
+from comparisons.audit.path import path
+from comparisons.audit.probes import probes
+from comparisons.audit.section_law import section_law
+from comparisons.audit.state import StationState, states_of
 from cprbm_scene import Answer, Scene
-
-LOOKED_AT = 5  # stations whose second variation is looked at, the last among them
 
 
 @dataclass(frozen=True, slots=True)
 class Audit:
-    """What an auditor finds in an answer who knows the scene and the answer and no solver.
+    """Findings of the audit of one answer.
 
     Attributes:
-        complaints: a sentence for everything that does not hold; empty if all does.
-        remarks: what the scene allows and a reader should know.
-        stations: how many were audited.
-        unbalance: largest moment at a cut which the shape does not bear, N·m, where nothing acts near the cut.
-        scaled: the same over the largest moment.
-        curvature: smallest of the energy on the feasible directions, over the largest E·I over the square of the
-            longest beam, at those stations where it was looked at; None where that is not known here.
+        complaints: one sentence for every law of statics or geometry that the answer breaks; empty for a right answer.
+        crossings: one sentence for every undeclared crossing of beams and edges.
+        stations: number of audited stations; 0 of an answer that states no internal forces.
+        unbalance: largest difference of a stated moment from the moment of all that acts beyond, N·m, between the ends
+            of a beam; near a contact force the lever within an element counts.
+        scaled: the same over the largest moment at the station.
     """
 
     complaints: tuple[str, ...]
-    remarks: tuple[str, ...]
+    crossings: tuple[str, ...]
     stations: int
     unbalance: float
     scaled: float
-    curvature: float | None
-
-
-def audited(scene: Scene, answer: Answer) -> tuple[str, ...]:
-    """What does not hold in an answer, in sentences; empty if all does, or if it does not say what acts."""
-    return audit(scene, answer).complaints
 
 
 def audit(scene: Scene, answer: Answer) -> Audit:
-    """Look at every station of an answer."""
-    stations = list(seen_of(scene, answer, rests_of(scene)))
-    complaints: list[str] = []
-    remarks: list[str] = []
-    worst, scaled = 0.0, 0.0
-    for seen in stations:
-        where = f"at {seen.station.stage} {seen.station.value:g}"
-        complaints += [f"{where} {what}" for what in _at_station(seen)]
-        remarks += [f"{where} {what}" for what in strangers(seen)]
-        found = unbalance(seen)
-        worst, scaled = max(worst, found[0]), max(scaled, found[1])
-    curvatures = []
-    for seen in stations[:: -max(1, -(-len(stations) // LOOKED_AT))]:
-        curvature = smallest_curvature(seen)
-        complaints += [f"at {seen.station.stage} {seen.station.value:g} {what}" for what in saddles(seen, curvature)]
-        if curvature is not None:
-            curvatures.append(curvature)
-    complaints += balance(answer, stations)
-    return Audit(
-        tuple(complaints), tuple(remarks), len(stations), worst, scaled, min(curvatures) if curvatures else None
-    )
+    """Findings of the audit of ``answer`` by the ``scene`` and the answer alone, with nothing of any solver.
+
+    An answer without internal forces of beams is not audited.
+    """
+    states = list(states_of(scene, answer))
+    complaints, worst, scaled = [], 0.0, 0.0
+    for state in states:
+        where = f"at {state.station.stage} {state.station.value:g}"
+        complaints += [f"{where} {complaint}" for complaint in _at_station(state)]
+        errors = [float(cut_errors(state, name)[1][0][1:-1].max()) for name in state.beams]
+        worst, scaled = max(worst, *errors), max(scaled, max(errors) / state.largest[1])
+    complaints += path(answer, states)
+    crossing = tuple(crossing_sentence(scene, pair) for pair in crossings(scene, answer))
+    return Audit(tuple(complaints), crossing, len(states), worst, scaled)
 
 
-def _at_station(seen: Seen) -> Iterator[str]:
-    for look in (held, turned_inside_out, sums, cuts, at_nodes, contacts, probed):
-        yield from look(seen)
+def _at_station(state: StationState) -> Iterator[str]:
+    """Complaints at one station; a state with a number that is not finite is not audited further."""
+    numbers = [getattr(beam, field.name) for beam in state.station.beams.values() for field in fields(beam)]
+    numbers += [state.station.forces.force.ravel(), state.station.forces.moment]
+    if not np.isfinite(np.concatenate(numbers)).all():
+        yield "states a number that is not finite"
+    else:
+        for check in (joints, sums, cuts, section_law, contacts, probes):
+            yield from check(state)

@@ -11,7 +11,8 @@ U           the same of the reference's own uncertainty; zero where it is exact
 ==========  ==============================================================================================
 
 The reference is the exact answer where there is one, or else the limit by Richardson's extrapolation of the CPRBM in
-``auto``, from N = 160, 320 and 640, with the uncertainty of :mod:`comparisons.converging.limits`.  An error that is not
+``auto``, from N = 160, 320 and 640, with the uncertainty of
+:mod:`comparisons.verdict.uncertainty`.  An error that is not
 clearly larger than U says nothing.
 """
 
@@ -24,15 +25,14 @@ import numpy as np
 
 from comparisons.bench.question import MEASURES, Measure, measure_of
 from comparisons.choices import Choices
-from comparisons.converging.limits import limit
 from comparisons.pairing import Solvers
-from comparisons.scales import SMALLEST_EVENT, natural_scale
+from comparisons.verdict.scales import NATURAL_SHARE, natural_value
+from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Scene, SceneError
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
 
 FINE = (160, 320, 640)
-ORDER = 2.0
 SMALL = 1e-3
 
 
@@ -65,7 +65,7 @@ def reference(scene: Scene, solvers: Solvers) -> Reference:
     for probe in scene.probes:
         found = [answer.stations[-1].values[probe.name] for answer in answers]
         if len({one.shape for one in found}) == 1 and found[0].size:
-            limited = limit(FINE, np.array(found), ORDER)
+            limited = limit(FINE, np.array(found))
             values[probe.name], uncertainty[probe.name] = limited.value, limited.uncertainty
     by = f"the CPRBM's limit (auto, N = {', '.join(map(str, FINE))})"
     return Reference(by, frozendict(values), frozendict(uncertainty))
@@ -95,7 +95,7 @@ def _worst(scene: Scene, known: Reference, apart: Mapping[str, float]) -> Mappin
     for probe in scene.probes:
         measure = measure_of(scene, probe)
         if measure is not None and probe.name in apart:
-            natural = natural_scale(scene, probe.quantity, scene.stages[-1], contact=probe.of)
-            scale = max(sizes[probe.name], SMALL * largest[probe.quantity], SMALLEST_EVENT * natural)
+            natural = natural_value(scene, probe.quantity, scene.stages[-1], contact=probe.of)
+            scale = max(sizes[probe.name], SMALL * largest[probe.quantity], NATURAL_SHARE * natural)
             found[measure] = max(found.get(measure, 0.0), apart[probe.name] / scale)
     return frozendict({measure: found[measure] for measure in MEASURES if measure in found})

@@ -19,7 +19,7 @@ Each part is its component along v_c − v_f, with its sign: the parts sum to th
 zero makes the difference smaller.  Of a stress they are taken where the difference is largest.  Where there is no
 difference at all, parts that cancel are told along v_f.
 
-The limits in N and n are :func:`comparisons.convergence.limit`'s, of the order that :mod:`comparisons.order` assumes.
+The limits in N and n are those of :mod:`comparisons.verdict.uncertainty`.
 What the penalty does is proportional to p once p is small: v_0 is extrapolated from p/4 and p/16, and v(p) beside
 that line says whether p is small as well.  Where it lies farther off than half of what the line says of p, no law is
 seen: v_0 is then the value at p/16, and what the line says of that a matter of uncertainty.  In every theory L_t is
@@ -29,25 +29,26 @@ On a circle the elements' length decides how deep a beam presses, whatever p: th
 
 Where ``auto`` was chosen, the distance of ``paper`` at N is told beside the parts and belongs to no sum.  Nor does what
 both solvers leave out of a stress alike, :mod:`comparisons.budgets.curved_beam`, nor L_f less the value of the solid
-(:mod:`comparisons.extrapolated_solid`): what the beam theories miss together, by which the sum would go on.
+(:mod:`comparisons.solid_limits`): what the beam theories miss together, by which the sum would go on.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from itertools import pairwise
 
 import numpy as np
 
 from comparisons.budgets.curved_beam import inner_edge_factor
 from comparisons.budgets.runs import DEEPER, ELEMENTS, LEVELS, TIGHTNESS, BudgetRuns
-from comparisons.converging.limits import limit
-from comparisons.extrapolated_solid import at_row, orders_of
 from comparisons.geometry import bentness_on, length
-from comparisons.measures import Row, bare_row, components, direction, probe_scales
-from comparisons.order import order_of
-from comparisons.scales import norm
-from comparisons.spots import clear_of_spots
+from comparisons.quantities import direction, norm
+from comparisons.solid_limits import solid_limit
 from comparisons.stations import station_of
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.rows import Row, bare_row
+from comparisons.verdict.scales import probe_scales
+from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Answer, Probe, Scene, Stage
 from cprbm_scene.answer import Array, Flags
 
@@ -144,16 +145,15 @@ def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: f
     row = bare_row(scene, (runs.cprbm, runs.reference), probe, stage, value, scale)
     counts = np.ones(row.cprbm.shape, dtype=bool)
     if row.arc_length is not None:
-        counts = clear_of_spots(scene, probe.of, row.arc_length, stations)
+        counts = away_from_point_forces(scene, probe.of, row.arc_length, stations)
         if not counts.any():
             return None
 
     def v(answer: Answer) -> Array:
         return station_of(answer, stage.name, value).values[probe.name][counts]
 
-    order = order_of(scene, probe)
     v_c, v_a, v_f = v(runs.cprbm), v(runs.auto[0]), v(runs.reference)
-    L_c = limit(LEVELS, np.array([v(answer) for answer in runs.auto]), order)
+    L_c = limit(LEVELS, np.array([v(answer) for answer in runs.auto]))
     tighter = np.array([v(answer) for answer in runs.penalty[1:]])
     v_0 = limit(TIGHTNESS[1:], tighter, 1.0).value
     delta = tighter[-1] - v_0
@@ -162,11 +162,13 @@ def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: f
     if off_line > LINEAR * norm(probe.quantity, TIGHTNESS[-1] * delta):
         v_0, delta, in_doubt = tighter[-1], in_doubt, np.abs(delta)
     left = np.outer(DEEPER, delta)
-    L = [limit(ELEMENTS, np.array([v(each) for each in answers]) - left, order) for answers in runs.fea.values()]
+    L = [limit(ELEMENTS, np.array([v(each) for each in answers]) - left) for answers in runs.fea.values()]
     d = v_c - v_f
     along = direction(probe.quantity, d if d.any() else v_f)
     ladder = [v_c, v_a, L_c.value, *(each.value for each in L), v_0, v_f]
-    contact, links, rest, *theory, elements, penalty = components(ladder, along)
+    contact, links, rest, *theory, elements, penalty = (
+        float(np.dot(one - other, along)) for one, other in pairwise(ladder)
+    )
     stretch, shear = theory + [0.0] * (2 - len(theory))
     paper = _in_paper(runs, row)
     K = _inner_edge(scene, row)
@@ -203,13 +205,14 @@ def _missed(
     """Components of L_f less the solid's value, and of what this is uncertain by; None where there is none."""
     if runs.solid is None or not all(answer.completed for answer in runs.solid):
         return None
-    told = at_row(scene, row, runs.solid, orders_of(scene, runs.solid))
-    if told is None:
+    limited = solid_limit(scene, row, runs.solid)
+    if limited is None:
         return None
-    x, off, clear = told
+    found, clear = limited
     if not clear[counts][np.abs(along) > 0.0].all():  # the solid's contacts may end elsewhere
         return None
-    return float(np.dot(limit_of_beams - x[counts], along)), float(np.abs(np.dot(off[counts], along)))
+    off = limit_of_beams - found.value[counts]
+    return float(np.dot(off, along)), float(np.dot(found.uncertainty[counts], np.abs(along)))
 
 
 def _inner_edge(scene: Scene, row: Row) -> Array | None:

@@ -28,9 +28,10 @@ from scipy.optimize import brentq
 from comparisons.budgets.parts import Budget
 from comparisons.budgets.runs import BudgetRuns
 from comparisons.claims import claim_difference, claim_of
-from comparisons.measures import Row
-from comparisons.scales import denominator, norm
+from comparisons.quantities import norm
 from comparisons.stations import station_of
+from comparisons.verdict.rows import Row
+from comparisons.verdict.scales import denominator
 from cprbm_scene import Answer, Claim, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
@@ -124,7 +125,7 @@ def _difference(row: Row, fea: Array) -> float:
             row,
             fea=fea,
             difference=norm(row.probe.quantity, row.cprbm - fea),
-            denominator=denominator(row.probe, fea, row.scale),
+            denominator=denominator(row.probe, norm(row.probe.quantity, fea), row.scale),
         )
     )
     if found is None:

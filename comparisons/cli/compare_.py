@@ -11,13 +11,13 @@ import click
 
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
-from comparisons.cli.options import folder, numerical, one_of_both, opinions, output, parameters
+from comparisons.cli.options import exactness, folder, numerical, one_of_both, opinions, output, parameters
 
 if TYPE_CHECKING:
+    from comparisons.case import Comparison
     from comparisons.documents import Plain
     from comparisons.offset_verdict import OffsetComparison
     from comparisons.tolerances.search import Tolerance
-    from comparisons.verdict import Comparison
 
 
 @click.command("compare")
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 @click.option("--solver", "asking_solid", callback=opinions, default="cprbm,fea", show_default=True, metavar="SOLVERS",
               help="Who answers: 'cprbm,fea', or 'cprbm,fea,solid' for a third opinion.")  # fmt: skip
 @numerical
+@exactness
 @output
 @folder("Folder of the report; 'report' for 'compare all', else none unless given.")
 @click.pass_obj
@@ -40,12 +41,14 @@ def command(
     penetration: float,
     across: int,
     tol: float | None,
+    exact: bool | None,  # noqa: FBT001 - click hands it over by name
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click hands it over by name
     out: Path | None,
 ) -> int:
     """Answer scenes with both solvers and say whether they agree."""
     from comparisons import offset_pages, report, sheets
+    from comparisons.case import compare
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
     from comparisons.cli.asking import questions
@@ -53,11 +56,10 @@ def command(
     from comparisons.pairing import Runs, begin, crew_of, solvers_of, with_solid, workers_for
     from comparisons.resuming import resumed
     from comparisons.tolerances.tolerated import paired_within
-    from comparisons.verdict import compared
     from cprbm_scene import OffsetQuestion, Scene
 
     one_of_both(tol)
-    taking_part = with_solid(solvers_of(planted)) if asking_solid else solvers_of(planted)
+    taking_part = with_solid(solvers_of(planted, exact=exact)) if asking_solid else solvers_of(planted, exact=exact)
     scenes = questions(asked)
     choices = Choices(links, formulation, elements, kinematics, penetration, across)
     for scene in scenes:
@@ -94,7 +96,7 @@ def command(
                     assert tol is not None
                     with showing.current(shown=not quiet) as say:
                         runs, found = paired_within(scene, choices, tol, solvers, crew, say)
-                comparison = replace(compared(scene, runs), tolerances=found)
+                comparison = replace(compare(scene, runs), tolerances=found)
             finished.append(comparison)
             if out is not None:
                 chapters = (*chapters, report.added(out, comparison))
@@ -129,7 +131,7 @@ def exit_code(finished: Sequence[Comparison | OffsetComparison]) -> int:
 
     An uncertainty that is not within the tolerance asked is as undecided as a verdict can be.
     """
-    from comparisons.words import Word
+    from comparisons.verdict.words import Word
 
     verdicts = [comparison.verdict for comparison in finished]
     if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):

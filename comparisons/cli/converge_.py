@@ -10,7 +10,7 @@ import click
 
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
-from comparisons.cli.options import family_sizes, folder, opinions, output, parameters, variants
+from comparisons.cli.options import exactness, family_sizes, folder, opinions, output, parameters, variants
 
 if TYPE_CHECKING:
     from comparisons.converging.report import Told
@@ -34,6 +34,7 @@ NOT_COMPLETED = 1
     help="Links and elements per beam, two or more.",
 )
 @variants
+@exactness
 @output
 @folder("Folder of the page, the numbers and the figures; 'convergence' for 'converge all', else none unless given.")
 @click.pass_obj
@@ -44,6 +45,7 @@ def command(
     sizes: tuple[int, ...],
     formulation: Literal["auto", "paper"],
     kinematics: Kinematics,
+    exact: bool | None,  # noqa: FBT001 - click hands it over by name
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click hands it over by name
     out: Path | None,
@@ -61,7 +63,7 @@ def command(
     if out is None and "all" in asked:
         out = Path("convergence")
     showing.room_for(json_file, out)
-    taking_part = with_solid(solvers_of(planted)) if asking_solid else solvers_of(planted)
+    taking_part = with_solid(solvers_of(planted, exact=exact)) if asking_solid else solvers_of(planted, exact=exact)
     choices = Choices(formulation=formulation, kinematics=kinematics)
     printing = str(json_file) != "-"
     finished: list[Told] = []

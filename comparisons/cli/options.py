@@ -179,6 +179,13 @@ def numerical(command: Decorated) -> Decorated:
     return sized(variants(command))
 
 
+def exactness(command: Decorated) -> Decorated:
+    """``--exact`` and ``--no-exact``; None where neither is given."""
+    return click.option("--exact/--no-exact", "exact", default=None,
+                        help="Ask the exact reference in bending, or leave it out; without either a rule on the "
+                        "number of pieces and stations of the scene says so.")(command)  # fmt: skip
+
+
 def sized(command: Decorated) -> Decorated:
     """``-n`` and ``--elements``."""
     standard = Choices()

@@ -10,7 +10,7 @@ import click
 
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
-from comparisons.cli.options import family_sizes, folder, output, parameters, sized, variants
+from comparisons.cli.options import exactness, family_sizes, folder, output, parameters, sized, variants
 
 if TYPE_CHECKING:
     from comparisons.pairing import Runs
@@ -29,6 +29,7 @@ PARTS = ("convergence", "times")
 @click.option("--without", multiple=True, type=click.Choice(PARTS),
               help="Leave out a longer part; may be repeated. 'convergence': error against N and the error budget. "
               "'times': run time against error, and the paper's Table 1.")  # fmt: skip
+@exactness
 @output
 @folder("Folder of the report; 'full-report' unless given.")
 @click.pass_obj
@@ -41,6 +42,7 @@ def command(
     kinematics: Kinematics,
     sizes: tuple[int, ...],
     without: tuple[str, ...],
+    exact: bool | None,  # noqa: FBT001 - click hands it over by name
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click hands it over by name
     out: Path | None,
@@ -69,9 +71,10 @@ def command(
     showing.room_for(json_file, out)
     parts = Wanted(choices, () if "convergence" in without else sizes, times="times" not in without)
     made_on = machine.made_on()
+    made_of = f"{parts!r}, exact={exact}"  # chapters of other parts are made anew
     chapters: dict[str, Chapter] = {}
     for question in wanted:
-        there = put.kept(out, question, repr(parts))
+        there = put.kept(out, question, made_of)
         if there is not None:
             chapters[question.name] = there
     with_table = parts.times and has_table(wanted)
@@ -83,7 +86,7 @@ def command(
     def so_far() -> list[Chapter]:
         return [chapters[name] for name in ordered if name in chapters]
 
-    solvers = solvers_of(planted)
+    solvers = solvers_of(planted, exact=exact)
     with resumed(out, solvers, ordered) as whole, crew_of(workers_for(planted)) as crew:
 
         def begun(place: int) -> Callable[[], Runs] | None:
@@ -97,7 +100,7 @@ def command(
             found = gathered(question, pending, parts, whole.solvers, solvers, crew)
             # the next case is solved while this one is drawn, and not while run times are measured
             pending = begun(place + 1)
-            chapters[question.name] = put.added(out, question, repr(parts), found)
+            chapters[question.name] = put.added(out, question, made_of, found)
             put.put_page(out, so_far(), further, made_on)
         if with_table and not further:
             further = (put.added_table(out, table(solvers, made_on), made_on),)

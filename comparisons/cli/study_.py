@@ -59,7 +59,7 @@ def calibration(
     from comparisons.resuming import resumed
     from comparisons.studies import calibration as study
     from comparisons.studies.calibration_told import told
-    from comparisons.words import Word
+    from comparisons.verdict.words import Word
 
     showing.room_for(json_file, out)
     show = Shown(json_file, out, quiet)

@@ -11,13 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from comparisons.branches import span_of
 from comparisons.converging.families import Series
-from comparisons.converging.limits import Limit, limit, orders
-from comparisons.criticals import mechanism
-from comparisons.measures import load_unit
-from comparisons.order import OWN, USUAL
-from comparisons.reach import ends_at_critical
+from comparisons.quantities import load_unit
+from comparisons.stages import span_of
+from comparisons.verdict.completeness import ends_at_critical
+from comparisons.verdict.events import mechanism
+from comparisons.verdict.uncertainty import OWN, Limit, limit, orders
 from cprbm_scene import Answer, Critical, Scene, Stage
 
 
@@ -90,10 +89,7 @@ def _family(scene: Scene, series: Series, stage: Stage, place: int, here: dict[i
     used = tuple(ns[first:])
     values = np.array([here[n].value for n in used])
     floor = max((here[n].uncertainty for n in used), default=0.0)
-    found = None
-    if len(used) > 1:
-        order = OWN[series.method] if len(used) > 2 else min(OWN[series.method], USUAL)
-        found = limit(used, values, order, floor)
+    found = limit(used, values, OWN[series.method], floor) if len(used) > 1 else None
     why = "one size alone counts" if found is None else found.why
     if found is None and first:
         why = f"at N = {ns[first - 1]} there is none by this mechanism"

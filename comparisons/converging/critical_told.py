@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from comparisons.converging.critical import CriticalFamily
 from comparisons.documents import Plain, plain
 from comparisons.formats import number
-from comparisons.per_branch import distance, value_and_unit
+from comparisons.sentences import distance, load
 from comparisons.sheet import Sheet
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
@@ -53,7 +53,7 @@ def sheet_of(title: str, sizes: Sequence[int], families: Sequence[CriticalFamily
             family.mechanism,
             *(number(family.critical[n].value, 6) if n in family.critical else "–" for n in sizes),
             "–" if family.found is None else number(family.found.order),
-            "–" if family.found is None else value_and_unit(float(family.found.value[0]), family.unit),
+            "–" if family.found is None else load(float(family.found.value[0]), family.unit),
             "–" if family.found is None else distance(float(family.found.uncertainty[0]), family.unit),
         )
         for family in families

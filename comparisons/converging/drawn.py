@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.converging.families import Convergence, Family
 from comparisons.figures import GREY, LOOKS, Picture, canvas, picture
-from comparisons.order import OWN
+from comparisons.verdict.uncertainty import OWN
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -90,12 +90,12 @@ def _draw(axes: Axes, family: Family, place: int) -> None:
     axes.plot(list(true), list(true.values()), "x", color=colour, markersize=6.5)
 
 
-def _triangle(axes: Axes, sizes: Sequence[int], order: int) -> None:
+def _triangle(axes: Axes, sizes: Sequence[int], order: float) -> None:
     """The slope of an order, low at the left, where no error is."""
     left, right = sizes[0], sizes[1]
     low = 3.0 * axes.get_ylim()[0]
     high = low * (right / left) ** order
     axes.plot([left, right, left, left], [high, low, low, high], color=GREY, linewidth=1.0)
     axes.annotate(
-        str(order), (left, (low * high) ** 0.5), textcoords="offset points", xytext=(4, -4), color=GREY, fontsize=9.0
+        f"{order:g}", (left, (low * high) ** 0.5), textcoords="offset points", xytext=(4, -4), color=GREY, fontsize=9.0
     )

@@ -8,8 +8,8 @@ elements' own, the penetration is P (40/N)⁴, P the standard one: at twice the 
 run to its finer one.  That error is then a part of the same law and does not bend it, however large it is beside the
 elements'.  It leaves a fortieth of the thickness at N = 10 (a twentieth is the most that is left to any N) and at
 N = 160 a few ten-millionths.  Below that round-off in the positions becomes a share of the penetration, and the
-penetration falls with the square of N only: enough for the order that :mod:`comparisons.converging.limits` tries
-beside the fourth, so that what is left shows in the limit's uncertainty.
+penetration falls with the square of N only: enough for the order 2 that
+:mod:`comparisons.verdict.uncertainty` assumes where the values do not show the fourth.
 
 Of a probe at a station a size counts if its run gave a whole answer, is on the branch of the finest size there, and the
 contact (or the stop) that the probe speaks of is as closed as at the finest size; of the sizes that do not, the coarser
@@ -26,14 +26,14 @@ from typing import Literal
 import numpy as np
 
 from comparisons.choices import Choices, Kinematics
-from comparisons.converging.limits import COMMON, Limit, limit, observed, orders
-from comparisons.measures import COMPONENTS, OPEN_AT_ZERO, arc_lengths, probe_scales, round_offs, unit_of
-from comparisons.order import OWN, order_of
-from comparisons.pairing import Crew, Job, Solvers
-from comparisons.scales import norm
-from comparisons.soundness import complaints
-from comparisons.spots import clear_of_spots
+from comparisons.pairing import Crew, Job, Solvers, exact_or_why
+from comparisons.quantities import COMPONENTS, OPEN_AT_ZERO, arc_lengths, norm, unit_of
 from comparisons.stations import station_of
+from comparisons.verdict.completeness import problems
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.rows import ROUND_OFF
+from comparisons.verdict.scales import probe_scales
+from comparisons.verdict.uncertainty import OWN, STANDARD, Limit, limit, observed, orders
 from cprbm_scene import Answer, Probe, Scene, Stage
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES
@@ -158,13 +158,14 @@ class Convergence:
     """A scene at all sizes.
 
     ``families`` stand in the order of stages, stations and probes, and for each the CPRBM's, the finite elements' in
-    ``bending`` and those in the chosen theory.
+    ``bending`` and those in the chosen theory.  ``exact_absence`` says why the exact reference covers no station.
     """
 
     scene: Scene
     sizes: tuple[int, ...]
     series: tuple[Series, ...]
     families: tuple[Family, ...]
+    exact_absence: str = ""
 
     @property
     def completed(self) -> bool:
@@ -174,7 +175,7 @@ class Convergence:
 
 def at(choices: Choices, n: int) -> Choices:
     """The choices of the family's member of size N."""
-    share = (STANDARD_AT / min(n, STIFF_AT)) ** OWN["fea"] * (STIFF_AT / max(n, STIFF_AT)) ** COMMON
+    share = (STANDARD_AT / min(n, STIFF_AT)) ** OWN["fea"] * (STIFF_AT / max(n, STIFF_AT)) ** STANDARD
     return replace(choices, links=n, elements=n, penetration=min(LOOSEST, choices.penetration * share))
 
 
@@ -205,16 +206,16 @@ def converged(
             jobs["fea", theory, n] = (solvers.fea, scene, at(choices, n).within(theory))
     known = [] if solvers.exact is None else [(solvers.exact, scene, choices)]
     found = crew.answers([*jobs.values(), *known])
-    exact = found.pop() if known else None
+    exact, exact_absence = exact_or_why(found.pop() if known else None)
     answers: dict[tuple[Method, str], dict[int, Answer]] = {}
     for (method, variant, n), answer in zip(jobs, found, strict=True):
         answers.setdefault((method, variant), {})[n] = answer
     series = [Series(*which, own, _complaints(scene, own)) for which, own in answers.items()]
-    return Convergence(scene, tuple(sizes), tuple(series), _families(scene, series, exact))
+    return Convergence(scene, tuple(sizes), tuple(series), _families(scene, series, exact), exact_absence)
 
 
 def _complaints(scene: Scene, answers: Mapping[int, Answer]) -> dict[int, str]:
-    found = {n: complaints(scene, answer) for n, answer in answers.items()}
+    found = {n: problems(scene, answer) for n, answer in answers.items()}
     return {n: "; ".join(what) for n, what in found.items() if what}
 
 
@@ -225,11 +226,6 @@ def _families(scene: Scene, series: Sequence[Series], exact: Answer | None) -> t
         return ()
     sizes = sorted({n for one in present for n in one.whole})
     finest = tuple(one.whole[max(one.whole)] for one in present)
-    floors = {
-        (id(one), probe.name): round_offs(scene, probe, tuple(one.whole.values()), (best,))
-        for one, best in zip(present, finest, strict=True)
-        for probe in scene.probes
-    }
     scales = probe_scales(scene, finest)
     return tuple(
         _family(
@@ -239,7 +235,7 @@ def _families(scene: Scene, series: Sequence[Series], exact: Answer | None) -> t
             stage,
             value,
             places,
-            floors[id(one), probe.name][stage.name, value],
+            ROUND_OFF * scales[stage.name, probe.name],
             scales[stage.name, probe.name],
             exact,
         )
@@ -265,7 +261,7 @@ def _places(
         return slice(None)
     stations = tuple(station_of(answer, stage.name, value) for answer in finest)
     largest = np.max([np.abs(station.values[probe.name]) for station in stations], axis=0)
-    clear = clear_of_spots(scene, probe.of, arc_lengths(scene, probe), stations)
+    clear = away_from_point_forces(scene, probe.of, arc_lengths(scene, probe), stations)
     kinks = scene.beams[probe.of].knots[1:-1]
     away = np.abs(np.linspace(0.0, 1.0, probe.points)[:, None] - kinks)
     clear = clear & np.all(away > _BESIDE_A_KINK / sizes[-3:][0], axis=1)
@@ -300,8 +296,7 @@ def _family(
     used = () if last.size == 0 else tuple(ns[first:])
     found = None
     if len(used) > 1:
-        order = OWN[series.method] if len(used) > 2 else min(OWN[series.method], order_of(scene, probe))
-        found = limit(used, np.array([values[n] for n in used]), order, 0.0 if is_open else floor)
+        found = limit(used, np.array([values[n] for n in used]), OWN[series.method], 0.0 if is_open else floor)
     why = "" if found is None else found.why
     if is_open:
         why = "the contact is open"

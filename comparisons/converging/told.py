@@ -144,7 +144,8 @@ def _limits(found: Convergence) -> Sheet:
         ),
         tuple(body),
         "FEA in bending, the CPRBM's own theory. Limits by Richardson's extrapolation; fractions of the probe's "
-        "largest value in the stage. Of a stress one place is followed.",
+        "largest value in the stage. Of a stress one place is followed."
+        + (f" No exact values: {found.exact_absence}" if found.exact_absence else ""),
     )
 
 

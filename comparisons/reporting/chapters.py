@@ -9,6 +9,7 @@ from comparisons import offset_pages, sheets
 from comparisons.bench import drawn as bench_drawn
 from comparisons.bench import told as bench_told
 from comparisons.bench.running import Benchmark
+from comparisons.case import Comparison
 from comparisons.converging.report import Told
 from comparisons.documents import plain
 from comparisons.figures import Picture
@@ -19,7 +20,6 @@ from comparisons.reporting.stepping import Stepper, stepper
 from comparisons.sheet import Sheet
 from comparisons.sheets import Subject
 from comparisons.studies.told import Told as Study
-from comparisons.verdict import Comparison
 from cprbm_scene import Answer, Question
 
 

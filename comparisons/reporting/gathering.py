@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from comparisons import cases, paths_drawn, report
 from comparisons.bench import brief
 from comparisons.bench.running import Benchmark
+from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
 from comparisons.converging.report import Told
 from comparisons.converging.telling import all_told
@@ -17,7 +18,6 @@ from comparisons.pairing import Crew, Runs, Solvers, paired
 from comparisons.reporting.chapters import Found
 from comparisons.studies import table1, table1_told
 from comparisons.studies.told import Told as Study
-from comparisons.verdict import Comparison, compared
 from cprbm_scene import OffsetQuestion, Question, SceneError
 
 
@@ -62,7 +62,7 @@ def gathered(
         found = compared_offset(question, solvers.offset)
     else:
         runs = paired(question, wanted.choices, solvers, crew) if pending is None else pending()
-        found = compared(question, runs)
+        found = compare(question, runs)
     told, unconverged = _converged(question, wanted, solvers, crew)
     measured, untimed = _timed(question, wanted, timed, solvers)
     return Found(found, _drawn(found), told, unconverged, measured, untimed)

@@ -14,15 +14,14 @@ from typing import Literal
 
 import numpy as np
 
+from comparisons.case import Comparison
 from comparisons.cells import signed
 from comparisons.figures import along_axis
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.geometry import length, points
-from comparisons.measures import load_unit, unit_of
+from comparisons.quantities import load_unit, norm, unit_of
 from comparisons.reporting.outlines import Frame, arrows, band, circle, dots, frame, line, turned
-from comparisons.scales import norm
 from comparisons.stations import station_of
-from comparisons.verdict import Comparison
 from comparisons.viewing.moved import Motion
 from cprbm_scene import Beam, CircleContact, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array
@@ -265,17 +264,13 @@ def _ends(seen: Frame, each: _Arrow, largest: float) -> tuple[Array, Array]:
 
 def _arrows(scene: Scene, stage: Stage, station: StationAnswer) -> Iterator[_Arrow]:
     """Contacts on their first beam, the drives, and the scene's loads."""
-    statics = station.statics
-    if statics is not None:
-        first = {name: contact.beams[0] for name, contact in scene.contacts.items()}
-        for by, on, place, force, moment in zip(
-            statics.by, statics.on, statics.places, statics.forces, statics.moments, strict=True
-        ):
-            if first.get(by) == on:
-                yield _Arrow("push", place, force)
-            elif by in scene.drives:
-                turns = not isinstance(scene.drives[by], DisplacementDrive)
-                yield _Arrow("load", place, force, float(moment) if turns else 0.0)
+    first = {name: contact.beams[0] for name, contact in scene.contacts.items()}
+    for acting in station.forces:
+        if first.get(acting.source) == acting.target:
+            yield _Arrow("push", acting.place, acting.force)
+        elif acting.source in scene.drives:
+            turns = not isinstance(scene.drives[acting.source], DisplacementDrive)
+            yield _Arrow("load", acting.place, acting.force, float(acting.moment) if turns else 0.0)
     for name, load in scene.loads.items():
         value = _value(scene, name, stage, station.value)
         if value == 0.0:
@@ -313,9 +308,9 @@ def _at(scene: Scene, name: str, station: StationAnswer) -> Array:
 
 def _carried(body: Body, places: Array, name: str, station: StationAnswer) -> Array:
     """Where a body has carried ``places`` (k, 2), m; where a station does not say they are as drawn."""
-    if station.statics is None or name not in station.statics.bodies:
+    if name not in station.bodies:
         return places
-    x, y, angle = station.statics.bodies[name]
+    x, y, angle = station.bodies[name]
     return Motion(np.array(next(iter(body.points.values()))), np.array([x, y]), angle).carried(places)
 
 

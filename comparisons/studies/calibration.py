@@ -9,11 +9,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from comparisons import cases
-from comparisons.calibration import JUDGED, Held, Judged, Tally, held, tally
+from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
 from comparisons.pairing import ALONE, Crew, Solvers, exact_answer, paired
-from comparisons.soundness import sound_part
-from comparisons.verdict import Verdict, compared
+from comparisons.verdict.calibration import SOLVERS, ErrorRatio, Solver, Tally, error_ratios, tally
+from comparisons.verdict.completeness import complete_part
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -28,9 +28,9 @@ class Trial:
     case: str
     choices: Choices
     verdict: Verdict
-    held: tuple[Held, ...]
+    held: tuple[ErrorRatio, ...]
 
-    def size(self, solver: Judged) -> int:
+    def size(self, solver: Solver) -> int:
         """Links or elements per beam."""
         count = self.choices.links if solver == "cprbm" else self.choices.elements
         assert isinstance(count, int)
@@ -64,7 +64,7 @@ class Calibration:
 def tallies(trials: tuple[Trial, ...]) -> tuple[Tally, ...]:
     """What some trials say of each solver."""
     found = [each for trial in trials for each in trial.held]
-    return tuple(tally(found, solver) for solver in JUDGED)
+    return tuple(tally(found, solver) for solver in SOLVERS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,7 @@ def with_piece(found: Calibration, piece: Piece, solvers: Solvers, crew: Crew = 
     """
     scene = piece.scene
     whole = (solvers.exact or exact_answer)(scene, Choices(kinematics="bending"))
-    exact = sound_part(scene, whole)
+    exact = complete_part(scene, whole)
     asked = sum(len(stage.stations) for stage in scene.stages)
     known = len(exact.stations)
     trials = [tried(scene, links, elements, exact, solvers, crew) for links, elements in piece.sizes if known]
@@ -108,5 +108,5 @@ def tried(scene: Scene, links: int, elements: int, exact: Answer, solvers: Solve
     """
     choices = Choices(links=links, elements=elements, kinematics="bending")
     runs = paired(scene, choices, replace(solvers, exact=None), crew)
-    comparison = compared(scene, replace(runs, exact=exact))
-    return Trial(scene.name, choices, comparison.verdict, held(comparison.rows))
+    comparison = compare(scene, replace(runs, exact=exact))
+    return Trial(scene.name, choices, comparison.verdict, error_ratios(comparison.rows))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from comparisons.calibration import JUDGED, MOST_OVER
 from comparisons.figures import GREY, Picture, canvas, picture
 from comparisons.studies.calibration import Calibration
+from comparisons.verdict.calibration import LARGEST_MEDIAN, SOLVERS
 
 _COLOURS = ("#1f5fa8", "#c8321e", "#2c8a4b", "#a05fb4", "#c98a12", "#3aa6a6", "#555555")
 _TITLES = {"cprbm": "CPRBM", "fea": "FEA in bending"}
@@ -18,7 +18,7 @@ def stated_against_true(found: Calibration) -> Picture:
         panels = figure.subplots(1, 2, sharex=True, sharey=True)
         both = [(each.true / each.row.scale, each.stated / each.row.scale) for t in found.trials for each in t.held]
         low, high = 0.5 * float(np.min(both)), 2.0 * float(np.max(both))
-        for axes, solver in zip(panels, JUDGED, strict=True):
+        for axes, solver in zip(panels, SOLVERS, strict=True):
             for place, name in enumerate(found.cases):
                 mine = [each for t in found.of_case(name) for each in t.held if each.solver == solver]
                 axes.plot(
@@ -28,10 +28,10 @@ def stated_against_true(found: Calibration) -> Picture:
                     color=_COLOURS[place % len(_COLOURS)],
                     markersize=2.5,
                     alpha=0.6,
-                    label=name if solver == JUDGED[0] else None,
+                    label=name if solver == SOLVERS[0] else None,
                 )
             axes.plot([low, high], [low, high], "-", color="black", linewidth=1.0)
-            axes.plot([low, high], [MOST_OVER * low, MOST_OVER * high], "--", color=GREY, linewidth=1.0)
+            axes.plot([low, high], [LARGEST_MEDIAN * low, LARGEST_MEDIAN * high], "--", color=GREY, linewidth=1.0)
             axes.set_xscale("log")
             axes.set_yscale("log")
             axes.set_xlim(low, high)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from comparisons.calibration import JUDGED, MOST_OVER, SHARE_WITHIN, Held, Tally
 from comparisons.documents import Plain
 from comparisons.formats import number, percent
 from comparisons.sheet import Sheet
 from comparisons.studies.calibration import Calibration, Trial, tallies
 from comparisons.studies.calibration_drawn import stated_against_true
 from comparisons.studies.told import Told
-from comparisons.words import Word
+from comparisons.verdict.calibration import LARGEST_MEDIAN, SHARE_WITHIN, SOLVERS, ErrorRatio, Tally
+from comparisons.verdict.words import Word
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA in bending"}
 
@@ -37,7 +37,7 @@ def _words(found: Calibration) -> tuple[str, ...]:
     if found.trials:
         sentences.append(
             f"The house's rule: the true error lies within the stated one in at least {percent(SHARE_WITHIN)} of the "
-            f"rows, and stated over true is at most {MOST_OVER:g} in the median. "
+            f"rows, and stated over true is at most {LARGEST_MEDIAN:g} in the median. "
             + (f"It is broken by the {', by the '.join(broken)}." if broken else "It is kept by both on every case.")
         )
     sentences += [
@@ -57,7 +57,7 @@ def _tallies(found: Calibration) -> Sheet:
     body = []
     for case in found.cases:
         trials = found.of_case(case)
-        for place, solver in enumerate(JUDGED):
+        for place, solver in enumerate(SOLVERS):
             for trial in trials:
                 body.append((case, _NAMES[solver], str(trial.size(solver)), *_figures(tallies((trial,))[place])))
             body.append((case, _NAMES[solver], "all", *_figures(tallies(trials)[place])))
@@ -143,7 +143,7 @@ def _trial(trial: Trial) -> Plain:
     }
 
 
-def _held(each: Held) -> Plain:
+def _held(each: ErrorRatio) -> Plain:
     return {
         "probe": each.row.probe.name,
         "stage": each.row.stage,

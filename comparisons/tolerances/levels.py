@@ -10,16 +10,17 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
-from comparisons.branches import Place
 from comparisons.choices import Choices, Kinematics
-from comparisons.measures import Row, rows_of
 from comparisons.memory import Remembering
-from comparisons.order import order_of
 from comparisons.pairing import Runs, Solver, may_be_uneven
-from comparisons.soundness import complaints
-from comparisons.tolerances.extrapolation import Sizes, settled, uneven
 from comparisons.tolerances.search import FIRST, Estimate, Stated
+from comparisons.tolerances.settled import Settled, settled
+from comparisons.verdict.completeness import problems
+from comparisons.verdict.rows import Row, rows_of
+from comparisons.verdict.station_events import Place
+from comparisons.verdict.uncertainty import STANDARD
 from cprbm_scene import Answer, Scene
+from cprbm_scene.frozendict import frozendict
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,19 +78,17 @@ class SceneLevels:
         """The answer at ``n``."""
         return self._answers([self.choices(theory, n)])[0]
 
-    def pair(self, theory: Kinematics, n: int, probes: Collection[str]) -> tuple[Answer, Answer]:
-        """What n/2, n and 2n settle with these probes extrapolated, and the answer to hold it against."""
-        return settled(self.scene, self._sizes(n), self._three(theory, n), probes)
+    def pair(self, theory: Kinematics, n: int, probes: Collection[str]) -> Settled:
+        """The values settled on n/2, n and 2n, with these probes extrapolated."""
+        answers = dict(zip(self._sizes(n), self._three(theory, n), strict=True))
+        beside = self.beside_it(n)
+        if beside is not None and not problems(self.scene, beside):
+            answers[round(n / self.ratio(n))] = beside
+        return settled(self.scene, answers, probes)
 
-    def uneven(self, theory: Kinematics, n: int, pair: tuple[Answer, Answer], probes: Collection[str]) -> Answer | None:
-        """What that pair is to be held against as well; None where the error is even."""
-        if not self._uneven:
-            return None
-        chosen = self.choices(theory, n)
-        (beside,) = self._answers([chosen.beside()])
-        if complaints(self.scene, beside):
-            return beside
-        return uneven(self.scene, self._three(theory, n), beside, chosen.ratios_beside()[0], pair, probes)
+    def beside_it(self, n: int) -> Answer | None:
+        """The answer at n + n/7; None where the error is even."""
+        return self._answers([self.choices("bending", n).beside()])[0] if self._uneven else None
 
     def ratio(self, n: int) -> float:
         """n over the links beside them."""
@@ -129,14 +128,19 @@ class SceneLevels:
             trouble
             for theory in self.theories
             for answer in self._three(theory, n)
-            for trouble in complaints(self.scene, answer)
+            for trouble in problems(self.scene, answer)
         ]
         if troubles:
             return Estimate((), troubles[0])
         found = []
         for theory in self.theories:
             pair = self.pair(theory, n, probes)
-            runs = replace(self._runs(*pair), beside=self.uneven(theory, n, pair, probes), ratio=self.ratio(n))
+            runs = replace(
+                self._runs(pair.answer, pair.coarse),
+                beside=self.beside_it(n),
+                ratio=self.ratio(n),
+                settled=frozendict({"cprbm": pair.uncertainties}),
+            )
             found.append(stated(self.scene, runs, theory))
         return _joined(found)
 
@@ -149,7 +153,7 @@ class SceneLevels:
         first, coarse, fine = (self.answer(theory, size) for size in self._sizes(n))
         return first, coarse, fine
 
-    def _sizes(self, n: int) -> Sizes:
+    def _sizes(self, n: int) -> tuple[int, int, int]:
         return n // 2, n, 2 * n
 
     def _answers(self, wanted: list[Choices]) -> list[Answer]:
@@ -159,21 +163,20 @@ class SceneLevels:
 def stated(scene: Scene, runs: Runs, variant: str) -> Estimate:
     """What is stated of every row that has a value, of the first solver in ``runs``."""
     for _, answer in runs.everything():
-        found = complaints(scene, answer)
+        found = problems(scene, answer)
         if found:
             return Estimate((), found[0])
     rows = []
     for row in rows_of(scene, runs):
         fraction = _fraction(row, runs)
         if fraction is not None:
-            order = order_of(scene, row.probe)
-            rows.append(Stated(variant, row.probe.name, row.stage, row.station, fraction, order))
+            rows.append(Stated(variant, row.probe.name, row.stage, row.station, fraction, STANDARD))
     return Estimate(tuple(rows))
 
 
 def _fraction(row: Row, runs: Runs) -> float | None:
     """f; None without a value or where a branch ends; infinite where there is one at one size and not at another."""
-    if row.place in (Place.NEAR, Place.BETWEEN):
+    if row.place is Place.BETWEEN:
         return None
     if row.bounds is not None:
         return row.fraction(row.bounds.cprbm)
@@ -184,8 +187,7 @@ def _fraction(row: Row, runs: Runs) -> float | None:
         for station in answer.stations
         if (station.stage, station.value) == (row.stage, row.station)
     ]
-    one_branch = row.place not in (Place.APART, Place.UNSETTLED)
-    return None if one_branch and len({value.shape for value in values}) == 1 else math.inf
+    return None if len({value.shape for value in values}) == 1 else math.inf
 
 
 def _joined(estimates: list[Estimate]) -> Estimate:

@@ -6,7 +6,7 @@ symbol   meaning
 N        links or elements per beam
 τ        the tolerance, a fraction
 f        stated uncertainty of a row (a probe at a station) over what its differences are divided by
-p        the order of convergence that the row's estimate assumes
+p        the order of convergence that both solvers have at least, 2
 q        the order that f shows between two N, between p and 4 (the highest order of either solver)
 g        by how much N must grow for f to be τ in every row: max (f/τ)^(1/q)
 M        safety factor of a predicted N, so that the N that is predicted passes
@@ -65,7 +65,7 @@ class Stated:
     stage: str
     station: float
     fraction: float
-    order: int
+    order: float
 
     @property
     def row(self) -> tuple[str, str, str, float]:
@@ -123,7 +123,7 @@ class Estimate:
 def _growth(row: Stated, tolerance: float, before: float | None, ratio: float) -> float:
     if row.fraction <= tolerance:
         return 1.0
-    q = float(row.order)
+    q = row.order
     if before is not None and math.isfinite(before) and math.isfinite(row.fraction):
         q = min(max(q, math.log(before / row.fraction) / math.log(ratio)), HIGHEST_ORDER) if before > 0.0 else q
     return float((row.fraction / tolerance) ** (1.0 / q))

@@ -4,11 +4,11 @@
 symbol   meaning
 =======  =====================================================================================================
 τ        the tolerance, a fraction
-f        stated uncertainty of a row: u of :mod:`comparisons.extrapolated_solid` over what its differences are shown by
+f        stated uncertainty of a row: U of :mod:`comparisons.solid_limits` over the denominator of its differences
 =======  =====================================================================================================
 
-The first two meshes state f by the order that theory promises, every further one by the order that is seen.  So the
-answer is that of all meshes that were solved, extrapolated, and none of them is solved in vain.  A mesh on which the
+Two meshes state f of order 2, three and more of the order that they show.  The answer is extrapolated from the finest
+meshes that were solved, and no mesh is solved in vain.  A mesh on which the
 solid does not arrive counts for nothing, and the next one is begun with.
 
 The search ends unmet where the next mesh would be finer than :data:`LARGEST`, or where no probe that is not within τ
@@ -26,17 +26,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.extrapolated_solid import FASTEST, at_row, orders_of
-from comparisons.measures import Row, rows_of
 from comparisons.memory import Remembering
 from comparisons.pairing import Runs, Solver
-from comparisons.scales import norm
-from comparisons.soundness import complaints
+from comparisons.quantities import norm
+from comparisons.solid_limits import solid_limit
 from comparisons.stations import station_of
-from comparisons.tolerances.extrapolation import told
 from comparisons.tolerances.search import Estimate, Stated, Tolerance
+from comparisons.tolerances.settled import told
+from comparisons.verdict.completeness import problems
+from comparisons.verdict.rows import Row, rows_of
+from comparisons.verdict.uncertainty import OWN, STANDARD, largest
 from cprbm_scene import Answer, Scene
-from cprbm_scene.answer import frozen_array
+from cprbm_scene.answer import PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict
 
 FIRST = (20, 1)
@@ -82,7 +83,7 @@ def meshed(
     while True:
         solved.append(along)
         (answer,) = memory.answers([(solver, scene, replace(choices, elements=along, across=across))])
-        trouble = complaints(scene, answer)
+        trouble = problems(scene, answer)
         answers = () if trouble else (*answers, answer)
         if len(answers) > 1:
             estimate = stated(scene, answers, rows)
@@ -113,7 +114,7 @@ def _ended(estimate: Estimate, along: int, tolerance: float) -> str:
     """Why a search ends unmet, and what it has met; empty if it goes on."""
     worst = estimate.worst_of_probes()
     unmet = [fraction for fraction in worst.values() if fraction > tolerance]
-    fall = (LARGEST / along) ** FASTEST
+    fall = (LARGEST / along) ** OWN["solid"]
     if 2 * along > LARGEST:
         why = f"no mesh of more than {LARGEST} elements along a beam is solved"
     elif not estimate.trouble and all(tolerance * fall < fraction < math.inf for fraction in unmet):
@@ -125,23 +126,22 @@ def _ended(estimate: Estimate, along: int, tolerance: float) -> str:
 
 
 def stated(scene: Scene, answers: Sequence[Answer], rows: Sequence[Row] | None = None) -> Estimate:
-    """What is stated of every row that has a value on the finest of two meshes or more."""
-    orders = orders_of(scene, answers)
-    found = []
+    """The stated uncertainty of every row that has a value on the finest of two meshes or more."""
+    found, nothing = [], []
     for row in _own_rows(scene, answers[-1]) if rows is None else rows:
-        order = orders[row.stage, row.probe.name]
-        at_this = at_row(scene, row, answers, orders)
-        if at_this is None:
+        limited = solid_limit(scene, row, answers)
+        if limited is None:
             if _comes_and_goes(row, answers):
-                found.append(Stated("", row.probe.name, row.stage, row.station, math.inf, int(order)))
-            continue
-        _, off, counts = at_this
-        if not counts.any():
-            continue
-        fraction = row.fraction(norm(row.probe.quantity, off[counts]))
-        if fraction is not None:
-            found.append(Stated("", row.probe.name, row.stage, row.station, fraction, int(order)))
-    return Estimate(tuple(found))
+                nothing.append(Stated("", row.probe.name, row.stage, row.station, math.inf, STANDARD))
+        elif limited[1].any():
+            found.append((row, limited[0].assumed, norm(row.probe.quantity, limited[0].uncertainty[limited[1]])))
+    widest = largest(((row.probe.name, row.stage), u) for row, _, u in found)
+    known = [
+        Stated("", row.probe.name, row.stage, row.station, fraction, order)
+        for row, order, _ in found
+        if (fraction := row.fraction(widest[row.probe.name, row.stage])) is not None
+    ]
+    return Estimate((*nothing, *known))
 
 
 def _comes_and_goes(row: Row, answers: Sequence[Answer]) -> bool:
@@ -163,15 +163,19 @@ def settled(scene: Scene, answers: Sequence[Answer]) -> Answer:
     """
     if len(answers) < 2:
         return answers[-1]
-    orders = orders_of(scene, answers)
     values = {(station.stage, station.value): dict(station.values) for station in answers[-1].stations}
     for row in _own_rows(scene, answers[-1]):
-        found = at_row(scene, row, answers, orders)
-        crossed = found is not None and row.probe.quantity == "ends" and np.any(np.diff(found[0]) < 0.0)
-        if found is not None and not crossed:
-            values[row.stage, row.station][row.probe.name] = frozen_array(found[0])
+        found = solid_limit(scene, row, answers)
+        if found is None or (row.probe.quantity == "ends" and np.any(np.diff(found[0].value) < 0.0)):
+            continue
+        values[row.stage, row.station][row.probe.name] = frozen_array(found[0].value)
     stations = [
-        replace(station, values=frozendict(values[station.stage, station.value]), statics=None)
+        replace(
+            station,
+            values=frozendict(values[station.stage, station.value]),
+            beams={},
+            forces=PointForces(),
+        )
         for station in answers[-1].stations
     ]
     sizes = tuple(int(str(answer.settings["elements"])) for answer in answers[-2:])

@@ -7,20 +7,21 @@ comparison.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
 from comparisons.bench.timing import LARGEST, Method
 from comparisons.choices import KINEMATICS, Choices, Kinematics
-from comparisons.measures import rows_of
 from comparisons.memory import Remembering
-from comparisons.pairing import Crew, Runs, Solvers, known_exactly, paired, with_solid
+from comparisons.pairing import Crew, Runs, Solvers, Uncertainties, known_exactly, paired, with_solid
 from comparisons.reactions import perturbed_scene
-from comparisons.soundness import complaints
 from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.search import Found, Tolerance, search
+from comparisons.tolerances.settled import Settled
 from comparisons.tolerances.solids import meshed, settled
+from comparisons.verdict.completeness import problems
+from comparisons.verdict.rows import rows_of
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -35,16 +36,13 @@ class _Reached:
     levels: SceneLevels
     found: Found
 
-    def pair(self, theory: Kinematics) -> tuple[Answer, Answer]:
-        """The answer and the one that it is held against."""
-        n = self.found.n
-        if self.found.settled:
-            return self.levels.pair(theory, n, self.found.estimate.extrapolated)
-        return self.levels.answer(theory, n), self.levels.answer(theory, 2 * n)
+    def settled(self, theory: Kinematics) -> Settled:
+        """The values settled on n/2, n and 2n."""
+        return self.levels.pair(theory, self.found.n, self.found.estimate.extrapolated)
 
     def value(self, theory: Kinematics) -> Answer:
         """The answer."""
-        return self.pair(theory)[0] if self.found.settled else self.levels.answer(theory, self.found.n)
+        return self.settled(theory).answer if self.found.settled else self.levels.answer(theory, self.found.n)
 
 
 def solved(
@@ -93,7 +91,7 @@ def paired_within(
     runs, reached = _both_within(scene, choices, tolerance, replace(solvers, solid=None), memory)
     if solvers.solid is None:
         return runs, reached
-    whole = not any(complaints(scene, answer) for _, answer in runs.everything())
+    whole = not any(problems(scene, answer) for _, answer in runs.everything())
     rows = rows_of(scene, runs) if whole else None
     third = meshed(scene, solvers.solid, choices, tolerance, memory, rows)
     return replace(runs, solid=third.answers), (*reached, third.reached)
@@ -107,20 +105,25 @@ def _both_within(
     cprbm = _reached(scene, "cprbm", choices, ("bending",), tolerance, memory, fea.value(choices.kinematics))
     told = _told(cprbm, "cprbm", tolerance), _told(fea, "fea", tolerance)
     if cprbm.found.settled:
-        driven, n, pair = perturbed_scene(scene), cprbm.found.n, cprbm.pair("bending")
+        driven, n, pair = perturbed_scene(scene), cprbm.found.n, cprbm.settled("bending")
+        families, uncertainties = _families(fea, choices.kinematics)
+        exact, exact_absence = known_exactly(scene, choices, solvers, memory)
         return Runs(
             choices.kinematics,
-            pair,
-            _families(fea, choices.kinematics),
-            beside=cprbm.levels.uneven("bending", n, pair, cprbm.found.estimate.extrapolated),
+            (pair.answer, pair.coarse),
+            families,
+            beside=cprbm.levels.beside_it(n),
             ratio=cprbm.levels.ratio(n),
             perturbed=None if driven is None else _perturbed(cprbm, driven),
-            exact=known_exactly(scene, choices, solvers, memory),
+            exact=exact,
+            exact_absence=exact_absence,
+            settled=frozendict({"cprbm": pair.uncertainties, **uncertainties}),
         ), told
     elements = fea.levels.choices(choices.kinematics, fea.found.n)
     runs = paired(scene, replace(elements, links=cprbm.found.n, formulation=choices.formulation), solvers, memory)
     if fea.found.settled:
-        runs = replace(runs, fea=_families(fea, choices.kinematics), fea_beside=None)
+        families, uncertainties = _families(fea, choices.kinematics)
+        runs = replace(runs, fea=families, fea_beside=None, settled=frozendict(uncertainties))
     return runs, told
 
 
@@ -142,14 +145,23 @@ def _reached(
     return _Reached(levels, found)
 
 
-def _families(fea: _Reached, chosen: Kinematics) -> frozendict[Kinematics, tuple[Answer, ...]]:
-    """The finite elements' answers by theory: with what they are held against, or in a theory between alone."""
-    return frozendict(
-        {
-            kinematics: fea.pair(kinematics) if kinematics in fea.levels.theories else (_between(fea, kinematics),)
-            for kinematics in KINEMATICS[: KINEMATICS.index(chosen) + 1]
-        }
-    )
+def _families(
+    fea: _Reached, chosen: Kinematics
+) -> tuple[Mapping[Kinematics, tuple[Answer, ...]], dict[str, Uncertainties]]:
+    """The finite elements' answers by theory, in a theory between alone, and the uncertainties of settled ones."""
+    families: dict[Kinematics, tuple[Answer, ...]] = {}
+    uncertainties: dict[str, Uncertainties] = {}
+    for kinematics in KINEMATICS[: KINEMATICS.index(chosen) + 1]:
+        if kinematics not in fea.levels.theories:
+            families[kinematics] = (_between(fea, kinematics),)
+        elif fea.found.settled:
+            pair = fea.settled(kinematics)
+            families[kinematics] = pair.answer, pair.coarse
+            uncertainties[f"fea {kinematics}"] = pair.uncertainties
+        else:
+            n = fea.found.n
+            families[kinematics] = fea.levels.answer(kinematics, n), fea.levels.answer(kinematics, 2 * n)
+    return frozendict(families), uncertainties
 
 
 def _between(fea: _Reached, kinematics: Kinematics) -> Answer:

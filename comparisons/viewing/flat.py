@@ -12,7 +12,7 @@ import numpy as np
 from comparisons.bodies_drawn import draw_bodies, draw_stops
 from comparisons.figures import along_axis, canvas
 from comparisons.formats import number
-from comparisons.measures import load_unit
+from comparisons.quantities import load_unit
 from comparisons.viewing.frames import (
     ARROW,
     COLOURS,

@@ -78,8 +78,8 @@ def _motion(scene: Scene, station: StationAnswer, places: Places, name: str) -> 
     first = np.array(next(iter(body.points.values())))
     if isinstance(body, FixedBody):
         return Motion(first, np.zeros(2), 0.0)
-    if station.statics is not None:
-        x, y, angle = station.statics.bodies[name]
+    if name in station.bodies:
+        x, y, angle = station.bodies[name]
         return Motion(first, np.array([x, y]), float(angle))
     known = next((point for point in body.points if point in places), None)
     turned = 0.0 if isinstance(body, SlidingBody) and not body.turns else rotation(scene, name, places)

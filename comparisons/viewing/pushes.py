@@ -40,22 +40,20 @@ def pushes_at(scene: Scene, station: StationAnswer) -> list[Push]:
 
 
 def _pushes(scene: Scene, station: StationAnswer) -> Iterator[Push]:
-    statics = station.statics
-    if statics is None:
-        return
-    size = np.hypot(statics.forces[:, 0], statics.forces[:, 1])
+    forces = station.forces
+    size, source, target = np.hypot(*forces.force.T), np.array(forces.source), np.array(forces.target)
     for name, contact in scene.contacts.items():
-        acting = np.array([by == name for by in statics.by], dtype=bool) & (size > 0.0)
-        for on in dict.fromkeys(on for on, acts in zip(statics.on, acting, strict=True) if acts):
-            mine = np.flatnonzero(acting & np.array([each == on for each in statics.on], dtype=bool))
-            places, forces = statics.places[mine], statics.forces[mine]
-            if contact.thick and on in scene.beams:  # they are told on the neutral line
+        acting = (source == name) & (size > 0.0)
+        for on in dict.fromkeys(target[acting].tolist()):
+            mine = np.flatnonzero(acting & (target == on))
+            places, pressing = forces.place[mine], forces.force[mine]
+            if contact.thick and on in scene.beams:  # the answer states places on the neutral line
                 beam, line = scene.beams[on], station.shapes[on]
-                t = beam.thickness_at(statics.s[mine] / line.s[-1])
-                places = places - 0.5 * t[:, None] * forces / size[mine, None]
+                t = beam.thickness_at(forces.s[mine] / line.s[-1])
+                places = places - 0.5 * t[:, None] * pressing / size[mine, None]
             parts = [np.arange(len(mine))]
             if isinstance(contact, SelfContact) and len(mine) > 1:  # of two places of one beam
-                along = np.argsort(statics.s[mine], kind="stable")
-                parts = np.split(along, [int(np.argmax(np.diff(statics.s[mine][along]))) + 1])
+                along = np.argsort(forces.s[mine], kind="stable")
+                parts = np.split(along, [int(np.argmax(np.diff(forces.s[mine][along]))) + 1])
             for part in parts:
-                yield Push(name, on, places[part], forces[part])
+                yield Push(name, on, places[part], pressing[part])

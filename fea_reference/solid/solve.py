@@ -7,9 +7,11 @@ import time
 from dataclasses import dataclass
 
 from cprbm_scene.answer import Answer, Ending, Event, StationAnswer
+from cprbm_scene.contact_states import openings
 from cprbm_scene.statement import Scene, Stage
 from cprbm_scene.threads import one_thread
 from cprbm_scene.told import station_reached
+from fea_reference.solid import answer_sheet
 from fea_reference.solid.assembly import assemble_ends
 from fea_reference.solid.certificates import certify
 from fea_reference.solid.march import March, StoppedError, begin, leave_stage, reach
@@ -19,7 +21,6 @@ from fea_reference.solid.pairs import pairs_of
 from fea_reference.solid.probes import probed, shapes, touching
 from fea_reference.solid.refusals import refuse
 from fea_reference.solid.settings import Settings
-from fea_reference.solid.statics import statics
 
 _SAYS = logging.getLogger(__name__)
 
@@ -81,7 +82,7 @@ class Prepared:
             ending=ending,
             sentence=sentence,
             stations=tuple(stations),
-            events=tuple(events),
+            events=(*events, *openings(scene, stations)),
             seconds=self.seconds + time.perf_counter() - began,
             notes=(*self.notes, *tested),
         )
@@ -128,12 +129,15 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float) -> Stat
             Ending.NOT_CERTIFIED if minimum else Ending.NOT_A_MINIMUM,
             f"at {stage.steps} = {station:g}: " + "; ".join(certificate.failures),
         )
+    places, forces = touching(march), answer_sheet.point_forces(scene, march)
     return StationAnswer(
         stage=stage.name,
         value=station,
         values={probe.name: probed(scene, march, probe) for probe in scene.probes},
         shapes=shapes(march),
-        touching=touching(march),
+        touching=places,
         certificate=certificate,
-        statics=statics(scene, march),
+        forces=forces,
+        contacts=answer_sheet.contacts(scene, march, forces, places),
+        bodies=answer_sheet.body_motions(scene, march),
     )

@@ -22,9 +22,9 @@ import comparisons
 import cprbm
 import fea_reference
 from comparisons import documents
+from comparisons.case import Comparison
 from comparisons.choices import Choices
-from comparisons.criticals import mechanism
-from comparisons.verdict import Comparison
+from comparisons.verdict.events import mechanism
 from cprbm_scene import Answer, Critical, Scene, SceneError
 from tests.baseline.runs import Run, Theory, open_scene
 from tests.baseline.scales import natural_scales

@@ -15,6 +15,6 @@ def right():
     """Two solvers that agree: 0.2 % and 0.05 % of error, half a per cent of theory."""
     # an import at the head would mark every test of the folder as dependent on internals
     from comparisons.pairing import Solvers
-    from tests.comparisons.made_up import MadeUp
+    from tests.verdict.made_up import MadeUp
 
     return Solvers(cprbm=MadeUp("cprbm", 2e-3), fea=MadeUp("fea", -5e-4))

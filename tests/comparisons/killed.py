@@ -17,7 +17,7 @@ from pathlib import Path
 from comparisons import report
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.made_up import MadeUp
 
 QUESTION = """
 name = "{name}"

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from comparisons import archive, documents
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, paired
-from comparisons.verdict import compared
 
 
 def there_and_back(answer):
@@ -43,4 +43,4 @@ def test_a_verdict_needs_no_second_solve(hinge, right):
         (there_and_back(runs.cprbm[0]), there_and_back(runs.cprbm[1])),
         {theory: tuple(there_and_back(one) for one in fea) for theory, fea in runs.fea.items()},
     )
-    assert compared(hinge, back).verdict == compared(hinge, runs).verdict
+    assert compare(hinge, back).verdict == compare(hinge, runs).verdict

@@ -17,7 +17,7 @@ from comparisons.memory import Remembering
 from comparisons.pairing import Solvers
 from cprbm_scene import Ending, Material, Stage
 from cprbm_scene.frozendict import frozendict
-from tests.comparisons.made_up import THEORY, MadeUp
+from tests.verdict.made_up import THEORY, MadeUp
 
 LOAD = 0.067
 """Before the contact closes: there the rotation is 0.9 times the load, and 1 plus every error."""

@@ -6,11 +6,11 @@ from dataclasses import replace
 import pytest
 
 from comparisons import documents, sheets
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.claims import claim_difference, claim_met, claim_of, standings
-from comparisons.measures import Row
 from comparisons.pairing import paired
-from comparisons.verdict import compared
+from comparisons.verdict.rows import Row
 from cprbm_scene import Claim, Probe
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.checks import mistakes_in
@@ -32,7 +32,7 @@ EVERYWHERE = Claim(probe="BD.rotation", bound=0.005, text="rotation within 0.5 %
 
 
 def test_a_claim_without_a_station_stands_at_every_row_of_its_probe(hinge, right):
-    comparison = compared(claiming(hinge, EVERYWHERE), paired(hinge, Choices(), right))
+    comparison = compare(claiming(hinge, EVERYWHERE), paired(hinge, Choices(), right))
     found = documents.comparison(comparison)["rows"]
     mine = [each for each in found if each["probe"] == "BD.rotation"]
     assert len(mine) == 10
@@ -44,7 +44,7 @@ def test_a_claim_without_a_station_stands_at_every_row_of_its_probe(hinge, right
 
 
 def test_it_has_one_line_with_the_worst_station_and_how_often_it_is_met(hinge, right):
-    comparison = compared(claiming(hinge, EVERYWHERE), paired(hinge, Choices(), right))
+    comparison = compare(claiming(hinge, EVERYWHERE), paired(hinge, Choices(), right))
     fractions = {row.station: claim_difference(row) for row in comparison.rows if row.probe.name == "BD.rotation"}
     worst = max(fractions, key=fractions.get)
     met = sum(fraction <= 0.005 for fraction in fractions.values())
@@ -110,7 +110,7 @@ def test_a_row_without_a_difference_meets_nothing(hinge):
 
 def test_the_sentence_and_the_table_say_the_same_number(hinge, right):
     scene = claiming(hinge, Claim(probe="contact.force", station=0.335, bound=0.01))
-    comparison = compared(scene, paired(hinge, Choices(), right))
+    comparison = compare(scene, paired(hinge, Choices(), right))
     sheet = next(sheet for sheet in sheets.of_comparison(comparison) if sheet.title == "Claims of the source")
     (sentence,) = sheets.explanation(comparison)
     assert f"our difference of {sheet.rows[0][2]} " in sentence

@@ -6,18 +6,18 @@ import math
 import pytest
 
 from comparisons import documents
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict import compared
 from cprbm_scene import Certificate
-from tests.comparisons.made_up import CERTIFICATE, MadeUp
+from tests.verdict.made_up import CERTIFICATE, MadeUp
 
 NUMBER = (int, float)
 
 
 @pytest.fixture
 def case(hinge, right):
-    data = documents.comparison(compared(hinge, paired(hinge, Choices(), right)))
+    data = documents.comparison(compare(hinge, paired(hinge, Choices(), right)))
     return json.loads(documents.text(data), parse_constant=lambda constant: pytest.fail(constant))
 
 
@@ -74,7 +74,7 @@ def test_fractions_are_of_the_denominator(case):
 
 def test_a_case_that_did_not_complete_has_no_rows_and_still_its_solvers(hinge, right):
     early = Solvers(MadeUp("cprbm", 0.0, until=0), right.fea)
-    data = documents.comparison(compared(hinge, paired(hinge, Choices(), early)))
+    data = documents.comparison(compare(hinge, paired(hinge, Choices(), early)))
     assert data["verdict"] == "UNDECIDED"
     assert data["rows"] == []
     assert data["solvers"]["cprbm"]["certificate"] is None

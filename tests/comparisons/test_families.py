@@ -15,7 +15,7 @@ from comparisons.pairing import ALONE, Solvers
 from cprbm_scene import Ending
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.made_up import MadeUp
 
 SIZES = (10, 20, 40, 80)
 LAST = 0.67

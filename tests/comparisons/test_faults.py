@@ -16,7 +16,7 @@ from comparisons import report, writing
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
 from tests.comparisons.killed import NAMES, QUESTION
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.made_up import MadeUp
 
 ROOT = Path(__file__).parents[2]
 KILLS = 40

@@ -7,7 +7,7 @@ import pytest
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
 from tests.comparisons.browser import WANTED, browser, found
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.made_up import MadeUp
 
 WIDTHS = (1280, 1024, 900, 768, 390)
 

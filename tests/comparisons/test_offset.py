@@ -13,7 +13,7 @@ from comparisons.cli.main import run
 from comparisons.offset_exact import offset_curve, ordinates
 from comparisons.offset_verdict import compared_offset
 from comparisons.pairing import Solvers, cprbm_offset_points
-from comparisons.words import Word
+from comparisons.verdict.words import Word
 from cprbm_scene import Arc, OffsetQuestion, SceneError
 from cprbm_scene.reading import offset_from
 

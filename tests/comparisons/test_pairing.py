@@ -2,14 +2,33 @@
 
 import subprocess
 import sys
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 
-from comparisons import cases
+from comparisons import cases, sheets
+from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.pairing import ALONE, Solvers, begin, cprbm_answer, crew_of, fea_answer, paired
-from cprbm_scene import Mistake, SceneError
-from tests.comparisons.made_up import MadeUp
+from comparisons.pairing import (
+    ALONE,
+    EXACT_LIMIT,
+    Solvers,
+    begin,
+    cprbm_answer,
+    crew_of,
+    exact_answer,
+    exact_by_rule,
+    exact_pieces,
+    fea_answer,
+    paired,
+    solvers_of,
+)
+from comparisons.verdict.words import Word
+from cprbm_scene import Critical, Ending, Loss, Mistake, SceneError
+from tests.verdict.made_up import MadeUp
 
 
 def test_every_run_is_asked_for_once(hinge, right):
@@ -32,13 +51,99 @@ def test_every_run_is_asked_for_once(hinge, right):
     assert [
         (choices.kinematics, choices.elements, choices.penetration) for name, choices in asked if name == "fea"
     ] == [
+        ("shear", 80, 1e-4),
         ("bending", 80, 1e-4),
         ("bending", 160, 6.25e-6),
         ("stretch", 80, 1e-4),
-        ("shear", 80, 1e-4),
         ("shear", 160, 6.25e-6),
         ("shear", 91, pytest.approx(1e-4 * (80 / 91) ** 4)),
     ]
+
+
+@dataclass(frozen=True)
+class Noted:
+    """A solver without stations; finer runs take a minute without a critical value. Calls leave files in a folder."""
+
+    solver: str
+    folder: Path
+    critical: tuple = ()
+
+    def __call__(self, scene, choices):
+        count = choices.links if self.solver == "cprbm" else choices.elements
+        (self.folder / f"{self.solver}-{choices.kinematics}-{choices.formulation}-{count}").touch()
+        if count > (40 if self.solver == "cprbm" else 80) and not self.critical:
+            time.sleep(60.0)
+        answer = MadeUp(self.solver, 0.0, until=0)(scene, choices)
+        return replace(answer, ending=Ending.STEP_TOO_SMALL, critical=self.critical)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_without_a_common_station_no_other_run_is_waited_for(hinge, tmp_path, workers):
+    solvers = Solvers(Noted("cprbm", tmp_path), Noted("fea", tmp_path), exact=exact_by_rule)
+    began = time.perf_counter()
+    with crew_of(workers) as crew:
+        runs = paired(hinge, Choices(), solvers, crew)
+    assert time.perf_counter() - began < 30.0
+    assert [name for name, _ in runs.everything()] == ["cprbm", "fea shear"]
+    assert runs.paper is runs.exact is None
+    asked = {path.name for path in tmp_path.iterdir()}
+    assert {"cprbm-shear-auto-40", "fea-shear-auto-80"} <= asked
+    if workers == 1:
+        assert len(asked) == 2
+    verdict = compare(hinge, runs).verdict
+    assert verdict.word is Word.UNDECIDED
+    assert "it ended early" in verdict.because
+
+
+def test_a_critical_value_keeps_all_runs(hinge, tmp_path):
+    critical = (Critical("load", 0.1, 1e-6, Loss.FOLD, "", 0.0, 0.0, 1.0, None),)
+    solvers = Solvers(Noted("cprbm", tmp_path, critical), Noted("fea", tmp_path, critical))
+    assert len(list(paired(hinge, Choices(), solvers).everything())) == 9
+
+
+def test_a_helper_run_that_fails_stays_among_the_runs(hinge, right):
+    def coarse(scene, choices):
+        answer = right.cprbm(scene, choices)
+        return answer if choices.links == 40 else replace(answer, ending=Ending.STEP_TOO_SMALL, stations=())
+
+    runs = dict(paired(hinge, Choices(), Solvers(coarse, right.fea)).everything())
+    assert runs["cprbm finer"].ending is Ending.STEP_TOO_SMALL
+    assert len(runs) == 9
+
+
+@pytest.mark.parametrize(("case", "pieces"), [("hinge", 3), ("stack", 6), ("wrapped", 2), ("tapered", 6)])
+def test_pieces_of_the_exact_equations(case, pieces):
+    """Beams and contacts of these cases; the section of the tapered beam has kinks at five places between the ends."""
+    assert exact_pieces(cases.opened(case)) == pieces
+
+
+def test_built_in_cases_are_within_the_rule_for_the_exact_reference():
+    covered = ("gripper", "gripper-driven", "hinge", "platform", "stack", "tapered", "wrapped")
+    products = [
+        exact_pieces(scene) * sum(len(stage.stations) for stage in scene.stages) for scene in map(cases.opened, covered)
+    ]
+    assert max(products) == 160  # gripper-driven: two beams and two contacts at 40 stations
+    assert max(products) <= EXACT_LIMIT
+
+
+def test_a_scene_beyond_the_rule_has_no_exact_values_and_says_so(hinge, right):
+    stage = hinge.stages[0]
+    long = hinge.model_copy(
+        update={"stages": (stage.model_copy(update={"stations": tuple(np.linspace(0.01, 0.6, 101))}),)}
+    )
+    runs = paired(long, Choices(), replace(right, exact=exact_by_rule))
+    assert runs.exact is None
+    assert runs.exact_absence.startswith("3 pieces of beams at 101 stations are beyond the rule")
+    assert "--exact" in runs.exact_absence
+    notes = [sheet.note for sheet in sheets.of_comparison(compare(long, runs))]
+    assert sum(f"No exact values: {runs.exact_absence}" in note for note in notes) == 1
+
+
+def test_what_is_asked_of_the_exact_reference():
+    assert [solvers_of(None, exact=asked).exact for asked in (None, True, False)] == [exact_by_rule, exact_answer, None]
+    planted = Solvers(exact=exact_by_rule)
+    assert solvers_of(planted) is solvers_of(planted, exact=True) is planted
+    assert solvers_of(planted, exact=False).exact is None
 
 
 def test_both_formulations_are_there_whichever_was_chosen(hinge):

@@ -7,12 +7,12 @@ import pytest
 
 from comparisons import cases, figures, paths_drawn, reactions_drawn
 from comparisons.bodies_drawn import draw_stops, places_at
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.framing import frame
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict import compared
 from cprbm_scene import Stage
-from tests.comparisons.jumping import Jumping
+from tests.verdict.jumping import Jumping
 
 
 def case(every):
@@ -27,7 +27,7 @@ def case(every):
 @pytest.fixture(scope="module")
 def comparison():
     scene = case(10)
-    return compared(scene, paired(scene, Choices(), Solvers(Jumping("cprbm"), Jumping("fea"))))
+    return compare(scene, paired(scene, Choices(), Solvers(Jumping("cprbm"), Jumping("fea"))))
 
 
 def test_a_drive_that_goes_back_and_forth_has_its_path(comparison):
@@ -45,13 +45,13 @@ def test_the_stations_to_show_are_drawn_beside_the_last(comparison):
 
 
 def test_what_is_stepped_once_and_never_jumps_has_no_path(hinge, right):
-    assert paths_drawn.of_comparison(compared(hinge, paired(hinge, Choices(), right))) == ()
+    assert paths_drawn.of_comparison(compare(hinge, paired(hinge, Choices(), right))) == ()
 
 
 def test_a_load_that_goes_back_has_the_path_of_its_body(hinge, right):
     back = Stage(name="back", steps="M", stations=(0.3, 0.1))
     scene = hinge.model_copy(update={"stages": (*hinge.stages, back)})
-    (path,) = paths_drawn.of_comparison(compared(scene, paired(scene, Choices(), right)))
+    (path,) = paths_drawn.of_comparison(compare(scene, paired(scene, Choices(), right)))
     assert path.caption.startswith("Rotation of BD")
 
 
@@ -90,7 +90,7 @@ def test_one_station_alone_is_no_curve(hinge, right):
     def of(*stations):
         stage = hinge.stages[0].model_copy(update={"stations": stations, "shown": stations[-1:]})
         scene = hinge.model_copy(update={"stages": (stage,), "claims": ()})
-        return compared(scene, paired(scene, Choices(), right))
+        return compare(scene, paired(scene, Choices(), right))
 
     assert paths_drawn.of_every_way(of(0.3)) == ()
     assert [each.name for each in paths_drawn.of_every_way(of(0.3, 0.6))] == ["path-M"]

@@ -13,6 +13,7 @@ import pytest
 
 from comparisons import cases, documents, reactions_drawn, sheets
 from comparisons import reactions as module
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.reaction_sheets import summary
@@ -25,15 +26,14 @@ from comparisons.reactions import (
     perturbed_scene,
     reactions,
 )
-from comparisons.verdict import compared
 from cprbm_scene import Ending, Stage
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.freedoms import unit
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import DisplacementDrive
-from tests.comparisons.jumping import Jumping
-from tests.comparisons.made_up import MadeUp
 from tests.together.driven import GAP, gripper_like, punched, snapping
+from tests.verdict.jumping import Jumping
+from tests.verdict.made_up import MadeUp
 
 K, STOP = 70.0, 900.0  # N/m
 STOP_AT = 0.006  # m
@@ -86,13 +86,14 @@ def driven(*stages, **shown):
 
 
 def comparison_of(scene, cprbm=None):
-    return compared(scene, paired(scene, Choices(), Solvers(cprbm or Spring(), Spring("fea", share=1.01))))
+    return compare(scene, paired(scene, Choices(), Solvers(cprbm or Spring(), Spring("fea", share=1.01))))
 
 
 def of_one_solver(scene, solver, choices=COARSE):
     """The reactions with the CPRBM's answer also in the place of the finite elements'."""
     answer = solver(scene, choices)
-    return reactions(scene, answer, answer, solver(perturbed_scene(scene), choices))
+    asked = perturbed_scene(scene)
+    return reactions(scene, answer, answer, None if asked is None else solver(asked, choices))
 
 
 # The perturbed scene
@@ -121,25 +122,23 @@ def test_without_a_reaction_probe_of_a_moved_drive_there_is_no_perturbed_scene(h
     fewer = push.model_copy(update={"probes": tuple(probe for probe in push.probes if probe.name != "M.reaction")})
     for scene in (hinge, driven(("pull", (0.5,))), driven(("push", (0.0,))), fewer):
         assert perturbed_scene(scene) is None
-    comparison = compared(hinge, paired(hinge, Choices(), right))
+    comparison = compare(hinge, paired(hinge, Choices(), right))
     assert comparison.reactions == ()
     assert documents.comparison(comparison)["work_energy"] == []
     assert reactions_drawn.of_comparison(comparison) == ()
 
 
-def test_a_stage_of_many_stations_is_perturbed_at_the_stations_it_shows():
-    """Up to the limit at all: one station more, and three rows of 41 have a value."""
+def test_the_neighbouring_stations_of_a_long_stage_give_the_derivative_without_a_further_run():
+    """The energy of a linear spring is a parabola: the central difference over any even step is the force itself."""
     stations = tuple(1e-4 * place for place in range(1, MOST_PERTURBED + 2))
-    few, many = (
-        driven(("push", stations[:count]), shown=(stations[4], stations[9]))
-        for count in (MOST_PERTURBED, MOST_PERTURBED + 1)
-    )
+    few, many, uneven = (driven(("push", values)) for values in (stations[:-1], stations, (0.5e-4, *stations[1:])))
     assert len(perturbed_scene(few).stages[0].stations) == 2 * MOST_PERTURBED + 1
-    comparison = comparison_of(many)
-    known = [at.station for at in comparison.reactions if at.absence is not Absence.NOT_PERTURBED]
-    assert known == [stations[4], stations[9], stations[-1]]
-    assert len(comparison.reactions) == len(stations)
-    assert f"No value at {len(stations) - 3} stations: not perturbed in a long stage." in summary(comparison.reactions)
+    assert perturbed_scene(many) is None
+    found = comparison_of(many).reactions
+    assert [at.absence for at in found] == [Absence.NOT_PERTURBED, *[None] * (len(stations) - 2), Absence.NOT_PERTURBED]
+    assert all(abs(at.difference) <= at.allowed for at in found[1:-1])
+    assert "No value at 2 stations: no even neighbours in a long stage." in summary(found)
+    assert comparison_of(uneven).reactions[1].absence is Absence.NOT_PERTURBED
 
 
 # The central difference and its errors
@@ -289,7 +288,7 @@ def jumping(**planted):
     )
     scene = scene.model_copy(update={"stages": stages, "claims": ()})
     solvers = Solvers(Jumping("cprbm", **planted), Jumping("fea", **planted))
-    return compared(scene, paired(scene, Choices(), solvers))
+    return compare(scene, paired(scene, Choices(), solvers))
 
 
 def test_no_difference_is_taken_across_a_jump():
@@ -346,7 +345,7 @@ def test_an_energy_that_is_no_number_leaves_no_value():
     first = runs.perturbed.stations[0]
     spoilt = replace(first, values={**first.values, "scene.potential_energy": frozen_array([np.nan])})
     perturbed = replace(runs.perturbed, stations=(spoilt, *runs.perturbed.stations[1:]))
-    found = compared(comparison.scene, replace(runs, perturbed=perturbed)).reactions
+    found = compare(comparison.scene, replace(runs, perturbed=perturbed)).reactions
     assert [at.absence for at in found] == [Absence.NOT_REACHED, None]
 
 
@@ -373,7 +372,7 @@ def test_json_table_and_figure_show_it():
 
 def test_the_verdict_does_not_use_it():
     comparison = comparison_of(driven(("push", (0.002, 0.004))))
-    without = compared(comparison.scene, replace(comparison.runs, perturbed=None))
+    without = compare(comparison.scene, replace(comparison.runs, perturbed=None))
     assert without.verdict == comparison.verdict
     assert without.reactions == ()
 
@@ -385,6 +384,6 @@ def test_it_stands_though_a_finer_run_fails_and_not_where_the_run_at_n_fails():
         return lambda scene, choices: Spring(until=1 if choices.links == links else None)(scene, choices)
 
     finer, own = comparison_of(scene, failing(80)), comparison_of(scene, failing(40))
-    assert not finer.verdict.completed
+    assert finer.verdict.completed  # both compared answers are
     assert len(finer.reactions) == 2
     assert own.reactions == ()

@@ -7,17 +7,17 @@ from dataclasses import replace
 import pytest
 
 from comparisons import cases, figures, report
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict import compared
 from comparisons.writing import write
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.made_up import MadeUp
 
 
 @pytest.fixture(scope="module")
 def comparison():
     hinge, solvers = cases.opened("hinge"), Solvers(MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4))
-    return compared(hinge, paired(hinge, Choices(), solvers))
+    return compare(hinge, paired(hinge, Choices(), solvers))
 
 
 @pytest.fixture(scope="module")
@@ -80,9 +80,9 @@ def test_names_from_a_scene_are_only_text(comparison):
 
 def test_a_case_that_did_not_complete_has_a_chapter_too(hinge, right, tmp_path):
     early = Solvers(MadeUp("cprbm", 0.0, until=2), right.fea)
-    chapters = (report.added(tmp_path, compared(hinge, paired(hinge, Choices(), early))),)
+    chapters = (report.added(tmp_path, compare(hinge, paired(hinge, Choices(), early))),)
     assert chapters[0].word == "UNDECIDED"
-    assert chapters[0].pictures == ()
+    assert chapters[0].pictures  # of the two stations that both solvers reached
     assert "UNDECIDED" in report.page(chapters)
 
 

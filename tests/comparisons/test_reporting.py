@@ -11,6 +11,7 @@ import pytest
 
 from comparisons import cases
 from comparisons.bench import brief
+from comparisons.case import Comparison, Verdict
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.figures import canvas, picture
@@ -18,11 +19,10 @@ from comparisons.pairing import Runs, Solvers, cprbm_answer, fea_answer
 from comparisons.reporting import gathering, outlines
 from comparisons.reporting.inlined import inlined
 from comparisons.reporting.stepping import stepper
-from comparisons.verdict import Comparison, Verdict
-from comparisons.words import Word
+from comparisons.verdict.words import Word
 from cprbm_scene import Mistake, SceneError
 from tests.comparisons.killed import QUESTION
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.made_up import MadeUp
 
 SHORT = ("--without", "times", "--without", "convergence")
 VOID = {"wbr", "meta", "link", "br", "input", "img"}

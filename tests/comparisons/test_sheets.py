@@ -6,20 +6,21 @@ from dataclasses import replace
 import pytest
 
 from comparisons import cases, sheets, tables
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.paper_sheets import of_paper
 from comparisons.sheet import Sheet, without_empty
-from comparisons.verdict import compared
+from comparisons.steps import contact_model
 from cprbm_scene import Ending
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.made_up import MadeUp, with_value
 
 
 @pytest.fixture(scope="module")
 def comparison():
     """Two solvers that differ by a few parts in ten million."""
     scene = cases.opened("hinge")
-    return compared(scene, paired(scene, Choices(), Solvers(MadeUp("cprbm", 2e-7), MadeUp("fea", -5e-8))))
+    return compare(scene, paired(scene, Choices(), Solvers(MadeUp("cprbm", 2e-7), MadeUp("fea", -5e-8))))
 
 
 def cell(sheet, row, header):
@@ -55,11 +56,10 @@ def test_there_is_one_explanation_per_claim(comparison):
 @pytest.mark.parametrize(("formulation", "said"), [("auto", "would put the CPRBM"), ("paper", "in the contact model")])
 def test_the_contact_model_has_a_column_and_a_word(formulation, said):
     scene, solvers = cases.opened("hinge"), Solvers(MadeUp("cprbm", 2e-3, paper=1e-3), MadeUp("fea", 0.0))
-    found = compared(scene, paired(scene, Choices(formulation=formulation), solvers))
+    found = compare(scene, paired(scene, Choices(formulation=formulation), solvers))
     sheet = next(sheet for sheet in sheets.of_comparison(found) if "contact model" in sheet.headers)
     row = next(row for row in found.rows if row.probe.name == "BD.rotation" and row.station == 0.67)
-    assert row.contact_model is not None
-    share = 100 * row.contact_model / row.denominator
+    share = 100 * contact_model(found.runs, row) / row.denominator
     assert float(cell(sheet, "BD.rotation", "contact model").removesuffix(" %").lstrip("-")) == pytest.approx(
         share, 1e-2
     )
@@ -78,12 +78,12 @@ def test_by_how_much_paper_is_off_at_most_and_at_last_and_why():
         notes=("the chord is held",),
     )
     for paper, last in ((runs.paper, 0.67), (early, 0.268)):
-        found = compared(scene, replace(runs, paper=paper))
+        found = compare(scene, replace(runs, paper=paper))
         sheet = next(
             sheet for sheet in sheets.of_comparison(found) if sheet.title == "The formulation paper beside auto"
         )
         rows = [row for row in found.rows if row.probe.name == "BD.rotation" and row.station <= last]
-        shares = {row.station: row.contact_model / row.denominator for row in rows}
+        shares = {row.station: contact_model(found.runs, row) / row.denominator for row in rows}
         worst = max(shares, key=shares.get)
         said = [cell(sheet, "BD.rotation", header) for header in sheet.headers]
         assert sheet.headers[3] == f"at load {last:g}"
@@ -92,13 +92,17 @@ def test_by_how_much_paper_is_off_at_most_and_at_last_and_why():
             assert float(told.removesuffix(" %")) == pytest.approx(100.0 * shares[station], rel=1e-2)
         assert ("In paper: the chord is held." in sheet.note) is (paper is early)
         assert ("It ended before load 0.335: joint 3 presses beyond the end." in sheet.note) is (paper is early)
-        assert all(row.contact_model is None for row in found.rows if row.station > last)
+        assert all(contact_model(found.runs, row) is None for row in found.rows if row.station > last)
 
 
 @pytest.mark.parametrize(("denominator", "told"), [(0.05, "804 %"), (0.04, "402 mN")])
 def test_what_is_more_than_tenfold_is_told_as_it_is(comparison, denominator, told):
-    rows = [row for row in comparison.rows if row.probe.name == "contact.force"]
-    only = replace(comparison, rows=(replace(rows[-1], contact_model=0.402, denominator=denominator),))
+    """A force that the formulation ``paper`` changes by 0.402 N, as a share of a denominator."""
+    row = [row for row in comparison.rows if row.probe.name == "contact.force"][-1]
+    auto = comparison.runs.cprbm[0]
+    changed = with_value("contact.force", row.cprbm + 0.402)(auto.stations[-1])
+    runs = replace(comparison.runs, paper=replace(auto, stations=(*auto.stations[:-1], changed)))
+    only = replace(comparison, runs=runs, rows=(replace(row, denominator=denominator),))
     assert cell(of_paper(only), "contact.force", "off by at most") == told
 
 
@@ -107,7 +111,7 @@ def test_without_a_whole_answer_in_paper_the_column_is_left_out_and_the_verdict_
         comparison.runs.cprbm[0], ending=Ending.LEFT_BOUNDARY, stations=comparison.runs.cprbm[0].stations[:3]
     )
     for paper in (early, None):
-        found = compared(comparison.scene, replace(comparison.runs, paper=paper))
+        found = compare(comparison.scene, replace(comparison.runs, paper=paper))
         assert found.verdict == comparison.verdict
         steps = next(sheet for sheet in sheets.of_comparison(found) if sheet.title.startswith("What the difference"))
         assert "contact model" not in steps.headers

@@ -9,13 +9,14 @@ import pytest
 
 from comparisons.choices import Choices
 from comparisons.cli.main import run
-from comparisons.extrapolated_solid import orders_of
-from comparisons.pairing import ALONE, Solvers, solid_answer
+from comparisons.pairing import ALONE, Runs, Solvers, solid_answer
+from comparisons.solid_limits import solid_limit
 from comparisons.tolerances.solids import LARGEST
 from comparisons.tolerances.tolerated import paired_within, solved
+from comparisons.verdict.rows import rows_of
 from cprbm_scene import Ending
-from tests.comparisons.made_up import MadeUp
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
+from tests.verdict.made_up import MadeUp
 
 SAME_THEORY = Choices(kinematics="bending")
 
@@ -69,9 +70,11 @@ def test_the_order_is_seen_on_three_meshes_and_assumed_on_two(hinge):
     scene = of_stage(hinge)
     solid = Falling(0.01, 3.1)
     answers = [solid(scene, Choices(elements=n, across=n // 20)) for n in (20, 40, 80)]
-    seen = orders_of(scene, answers)["load", "B.displacement"]
-    assert seen == pytest.approx(3.1, abs=0.05)  # 0.005 of what presses besides is not linear in the error
-    assert orders_of(scene, answers[1:])["load", "B.displacement"] < 2.0
+    runs = Runs("bending", (answers[-1], answers[-1]), {"bending": (answers[-1], answers[-1])})
+    row = next(row for row in reversed(rows_of(scene, runs)) if row.probe.name == "B.displacement")
+    three, two = (solid_limit(scene, row, meshes)[0] for meshes in (answers, answers[1:]))
+    assert three.order == pytest.approx(3.1, abs=0.05)  # 0.005 of what presses besides is not linear in the error
+    assert (three.assumed, two.assumed, two.order) == (4.0, 2.0, None)
 
 
 def test_the_search_ends_at_its_bound_and_says_so(hinge):

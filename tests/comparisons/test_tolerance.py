@@ -11,21 +11,21 @@ import numpy as np
 import pytest
 
 from comparisons import cases
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.cli.options import tolerance
 from comparisons.cli.solve_ import command
-from comparisons.measures import rows_of
 from comparisons.pairing import ALONE, Runs, Solvers, solvers_of
-from comparisons.tolerances.extrapolation import settled, uneven
 from comparisons.tolerances.search import FIRST, Estimate, Stated, search
+from comparisons.tolerances.settled import settled
 from comparisons.tolerances.tolerated import paired_within, solved
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.rows import rows_of
+from comparisons.verdict.words import Word
 from cprbm_scene import Ending, Mistake, Probe, SceneError
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.made_up import MadeUp
 
 
 @dataclass
@@ -143,7 +143,7 @@ class Noting:
 def test_a_comparison_solves_nothing_twice_and_states_no_more_than_was_asked(hinge, tolerance):
     solvers = Solvers(Noting(MadeUp("cprbm", 2e-3), []), Noting(MadeUp("fea", -5e-4), []))
     runs, found = paired_within(hinge, Choices(), tolerance, solvers, ALONE, lambda text: None)
-    comparison = compared(hinge, runs)
+    comparison = compare(hinge, runs)
     assert comparison.verdict.word is Word.AGREE, comparison.verdict.sentence
     assert all(each.met for each in found)
     for asked in (solvers.cprbm.asked, solvers.fea.asked):
@@ -159,7 +159,7 @@ def test_what_falls_with_the_square_of_n_is_extrapolated_to_its_limit(hinge, rig
     answer, found = solved(hinge, "cprbm", Choices(), 1e-3, right, lambda text: None)
     assert found.extrapolated == (20, 40)
     assert found.solved == (10, 20, 23, 40)
-    assert found.n == answer.settings["n"] == 40
+    assert found.n == answer.settings["links"] == 40
     assert answer.settings["extrapolated_from"] == [20, 40]
     assert "B.displacement" in found.probes
     assert "N = 20, 40" in answer.notes[-1]
@@ -181,16 +181,19 @@ def test_an_error_that_is_uneven_in_n_is_stated_of_what_is_settled(hinge, off):
         ]
         return replace(found, stations=tuple(stations))
 
-    three = at(10), at(20), at(40)
+    three = {n: at(n) for n in (10, 20, 40)}
     fea = MadeUp("fea", 0.0)(hinge, Choices())
     for probes, share in (([], 0.25), (["B.displacement"], 2.0 / 3.0)):
-        pair = settled(hinge, (10, 20, 40), three, probes)
-        runs = Runs("bending", pair, {"bending": (fea, fea)})
-        beside = uneven(hinge, three, at(23), 20.0 / 23.0, pair, probes)
-        stated = [
-            [row for row in rows_of(hinge, each) if row.probe.name == "B.displacement"][-1]
-            for each in (runs, replace(runs, beside=beside, ratio=20.0 / 23.0))
-        ]
+        stated = []
+        for answers in (three, {**three, 23: at(23)}):
+            found = settled(hinge, answers, probes)
+            runs = Runs(
+                "bending",
+                (found.answer, found.coarse),
+                {"bending": (fea, fea)},
+                settled=frozendict({"cprbm": found.uncertainties}),
+            )
+            stated.append([row for row in rows_of(hinge, runs) if row.probe.name == "B.displacement"][-1])
         size = float(np.hypot(*at(23).stations[-1].values["B.displacement"])) / (1.0 + off)
         more = 1.25 * share * off * size * (23.0 / 20.0) ** 2
         assert stated[1].bounds.cprbm - stated[0].bounds.cprbm == pytest.approx(more, rel=1e-9, abs=1e-15)
@@ -200,7 +203,7 @@ def test_what_is_settled_beside_kinks_errs_by_no_more_than_it_states():
     """Reference: the exact answer of `tapered`, whose sections' kinks no mesh meets: at 80 links a moment was off by
     2.6 times what two successive changes, small by accident, had stated."""
     runs, _ = paired_within(cases.opened("tapered"), Choices(), 0.01, solvers_of(None), ALONE, lambda text: None)
-    verdict = compared(cases.opened("tapered"), runs).verdict
+    verdict = compare(cases.opened("tapered"), runs).verdict
     assert verdict.word is Word.AGREE, verdict.sentence
     assert "are within the stated ones" in verdict.sentence
 
@@ -211,7 +214,7 @@ def test_a_contact_that_is_open_at_one_size_leaves_the_finest_value_as_it_is(hin
     apart = replace(touched, touching={})
     answers[0] = replace(answers[0], stations=(*answers[0].stations[:-1], apart))
     everything = [probe.name for probe in hinge.probes]
-    value, _ = settled(hinge, (10, 20, 40), tuple(answers), everything)
+    value = settled(hinge, dict(zip((10, 20, 40), answers, strict=True)), everything).answer
     fine = answers[2].stations[-1].values["contact.force"]
     assert value.stations[-1].values["contact.force"] == fine
     assert value.stations[-2].values["contact.force"] != answers[2].stations[-2].values["contact.force"]
@@ -225,7 +228,7 @@ def test_ends_of_a_zone_that_would_change_places_are_kept(hinge, right):
         values = {**found.stations[-1].values, "contact.ends": frozen_array(ends)}
         last = replace(found.stations[-1], values=frozendict(values))
         answers.append(replace(found, stations=(*found.stations[:-1], last)))
-    value, _ = settled(asked, (10, 20, 40), tuple(answers), ["contact.ends"])
+    value = settled(asked, dict(zip((10, 20, 40), answers, strict=True)), ["contact.ends"]).answer
     assert value.stations[-1].values["contact.ends"].tolist() == [2e-3, 2.1e-3]
 
 
@@ -308,4 +311,4 @@ def test_a_drives_reaction_by_the_energies_comes_with_an_extrapolated_answer(rig
     scene = scene.model_copy(update={"stages": (stage,), "claims": ()})
     runs, (cprbm, _) = paired_within(scene, Choices(), 1e-3, right, ALONE, lambda text: None)
     assert cprbm.extrapolated
-    assert len(compared(scene, runs).reactions) == 3
+    assert len(compare(scene, runs).reactions) == 3

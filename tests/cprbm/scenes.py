@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from comparisons import cases
-from cprbm_scene import scene_from
+from cprbm_scene import read, scene_from
 
 LENGTH, THICKNESS, WIDTH, MODULUS = 0.0731, 0.00113, 0.0087, 7.13e9
 RIGIDITY = MODULUS * WIDTH * THICKNESS**3 / 12.0
@@ -14,7 +13,7 @@ HINGE = Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml"
 
 
 def hinge_data() -> dict[str, Any]:
-    return cases.data("hinge")
+    return read(HINGE).model_dump(mode="json", exclude_unset=True, exclude={"file", "parameters"})
 
 
 def hinge(**changes: Any):

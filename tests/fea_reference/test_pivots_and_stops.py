@@ -70,15 +70,13 @@ def test_the_moment_of_a_stop_acts_where_the_beam_is_pinned(end):
     got = answer(scene, Settings(elements=6, kinematics="bending"))
     # of double precision: a single one would make one of what it is compared with
     assert float(got.events[0].value) == pytest.approx(0.3, abs=1e-9)
-    acting = got.stations[-1].statics
-    own, other = (
-        [i for i, by in enumerate(acting.by) if by == "stop" and acting.on[i] == on] for on in ("beam", "wheel")
-    )
-    assert acting.places[[*own, *other]] == pytest.approx(np.zeros((2, 2)), abs=1e-12 * LENGTH)
+    acting = got.stations[-1].forces
+    own, other = (acting.chosen("stop", target) for target in ("beam", "wheel"))
+    assert acting.place[own | other] == pytest.approx(np.zeros((2, 2)), abs=1e-12 * LENGTH)
     assert acting.s[own] == pytest.approx([0.0 if end == "start" else LENGTH], abs=1e-12 * LENGTH)
     moment = 4.0 * 1e-3 * MOMENT
-    assert acting.moments[own] == pytest.approx([moment], rel=1e-4)
-    assert acting.moments[other] == pytest.approx([-moment], rel=1e-4)
+    assert acting.moment[own] == pytest.approx([moment], rel=1e-4)
+    assert acting.moment[other] == pytest.approx([-moment], rel=1e-4)
 
 
 def pressed(stations=(0.2, 0.301)):

@@ -16,17 +16,18 @@ DOCUMENTED = {
     # docs/api/cprbm_scene.md: the records of the answer sheet, filled by every solver
     "cprbm_scene.answer": (
         "Answer",
-        "Area",
+        "BeamState",
         "Certificate",
+        "ContactState",
         "Critical",
         "Ending",
         "Event",
         "GoneOver",
-        "Inside",
         "Loss",
+        "PointForce",
+        "PointForces",
         "Shape",
         "StationAnswer",
-        "Statics",
         "frozen_array",
     ),
     # docs/api/cprbm_scene.md: the records of a scene
@@ -79,8 +80,9 @@ DOCUMENTED = {
     # docs/api/comparisons.md: settings, built-in cases, the verdict and the rows, an answer as numbers, the audit
     "comparisons.choices": ("Choices",),
     "comparisons.cases": ("asked", "names", "opened"),
-    "comparisons.verdict": ("Comparison", "Verdict"),
-    "comparisons.measures": ("Bounds", "Row"),
+    "comparisons.case": ("Comparison", "Verdict"),
+    "comparisons.verdict.bounds": ("Bounds",),
+    "comparisons.verdict.rows": ("Row",),
     "comparisons.reactions": ("Absence", "WorkEnergyReaction"),
     "comparisons.tidy": ("Number",),
     "comparisons.audit": ("audit",),

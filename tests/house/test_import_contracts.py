@@ -18,7 +18,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
 CONTRACTS = {contract["id"]: contract for contract in SETTINGS["contracts"]}
-PACKAGES = (*SETTINGS["root_packages"], "fea_reference.solid")
+PACKAGES = (*SETTINGS["root_packages"], "fea_reference.solid", "comparisons.verdict")
 PLANTED = tomllib.loads(Path(__file__).with_name("planted_imports.toml").read_text(encoding="utf-8"))
 PROGRAM = Path(sys.executable).with_name("lint-imports")
 
@@ -41,8 +41,9 @@ def lint(packages, settings, configuration):
 
 
 def lawful():
-    """Lawful sources by file: a plain module in every package, and the doors of the libraries."""
-    sources = {f"{package.replace('.', '/')}/plain.py": "import numpy\n" for package in PACKAGES}
+    """Lawful sources by file: a plain module in every package and forbidden room, and the doors of the libraries."""
+    rooms = CONTRACTS["verdict"]["forbidden_modules"]
+    sources = {f"{package.replace('.', '/')}/plain.py": "import numpy\n" for package in (*PACKAGES, *rooms)}
     for contract in CONTRACTS.values():
         for door in contract.get("allowed_importers", ()):
             name = f"{door.replace('.', '/')}{'/__init__' if door in PACKAGES else ''}.py"

@@ -5,9 +5,9 @@ symbol  meaning
 ======  ==============================================================================================
 v, w    a probe's value at a station, in the answer to the scene and in that to the image
 v′      what v is in the image
-c       the probe's scale in the stage in the image, :mod:`comparisons.scales`
+c       the probe's scale in the stage in the image, :mod:`comparisons.verdict.scales`
 e       |w − v′|/c, the violation
-r       what the image's certificates leave unsettled of the probe (:func:`comparisons.measures.round_off`), over c
+r       residual or its floor by the certificate of the image's station
 u, u′   the uncertainties of v and w on their discretisations, :mod:`tests.relations.uncertain`
 ======  ==============================================================================================
 
@@ -25,11 +25,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.measures import arc_lengths, probe_scales, round_offs
 from comparisons.pairing import Solver
-from comparisons.scales import norm
-from comparisons.spots import clear_of_spots
+from comparisons.quantities import arc_lengths, norm
 from comparisons.stations import station_of
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.scales import probe_scales
 from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer, scene_from
 from cprbm_scene.answer import Array, Flags
 from cprbm_scene.statement import STRESSES
@@ -122,12 +122,8 @@ def _worst(first: Solved, image: Image, solver: Solver, choices: Choices) -> Dep
 def _departures(first: Solved, image: Image, other: Solved) -> Iterator[Departure]:
     """Of every probe that both answers have, at every station that both scenes have."""
     stages = {stage.name: stage for stage in other.scene.stages}
-    probes = {probe.name: probe for probe in other.scene.probes}
     closed_in = _closing_stages(first.answer)
     scales = probe_scales(other.scene, (other.answer,))
-    unsettled = {
-        name: round_offs(_as_far_as(other), probe, (other.answer,), (other.answer,)) for name, probe in probes.items()
-    }
     mine, theirs = ({}, {}) if not image.discretised_anew else (uncertainties(first), uncertainties(other))
     for station in first.answer.stations:
         stage = stages[station.stage]
@@ -151,7 +147,7 @@ def _departures(first: Solved, image: Image, other: Solved) -> Iterator[Departur
             scale, w = scales[in_stage, probe.name], its.values[probe.name]
             uncertain = mine.get((probe.name, stage.name, station.value), 0.0)
             uncertain += theirs.get((probe.name, stage.name, value), 0.0)
-            allowed = max(TARGET, unsettled[probe.name][stage.name, value] / scale, uncertain)
+            allowed = max(TARGET, its.certificate.residual, its.certificate.residual_floor, uncertain)
             if w.shape != expected.shape:
                 why = f"{expected.size} numbers became {w.size}"
                 yield Departure(probe.name, stage.name, station.value, math.inf, allowed, why)
@@ -168,7 +164,7 @@ def _compared(
     """Which of a probe are compared: of stresses on another discretisation those clear of where contacts end."""
     if not image.discretised_anew or probe.quantity not in STRESSES:
         return np.ones(values.shape, dtype=bool)
-    return clear_of_spots(scene, probe.of, arc_lengths(scene, probe), stations)
+    return away_from_point_forces(scene, probe.of, arc_lengths(scene, probe), stations)
 
 
 def _by_itself(image: Image, other: Solved) -> Iterator[Departure]:
@@ -204,16 +200,6 @@ def _criticals(first: Solved, image: Image, other: Solved) -> Iterator[Departure
             abs(there.value - placed) / largest[there.stage],
             max(TARGET, allowed / largest[there.stage]),
         )
-
-
-def _as_far_as(found: Solved) -> Scene:
-    """The scene with the stages and stations that were reached."""
-    reached = {
-        stage.name: tuple(station.value for station in found.answer.stations if station.stage == stage.name)
-        for stage in found.scene.stages
-    }
-    stages = (stage.model_copy(update={"stations": reached[stage.name]}) for stage in found.scene.stages)
-    return found.scene.model_copy(update={"stages": tuple(stage for stage in stages if stage.stations)})
 
 
 def _closing_stages(answer: Answer) -> dict[str, str]:

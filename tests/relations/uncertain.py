@@ -1,13 +1,7 @@
-"""What a solver's discretisation leaves uncertain, from an answer at twice the links or elements.
+"""Uncertainty of a solver's discretisation, from an answer at twice the links or elements.
 
-======  ===============================================================================================
-symbol  meaning
-======  ===============================================================================================
-v, V    a probe's value at N and at 2N
-p       order of convergence, :mod:`comparisons.order`
-S, F    1.25 and 0.25, as in :mod:`comparisons.measures`
-u       S·2^p/(2^p − 1)·|v − V|, no less than F times the largest in the stage, over the probe's scale
-======  ===============================================================================================
+The largest uncertainty of a probe in a stage counts at every station (:mod:`comparisons.verdict.uncertainty`), over
+the probe's scale.
 """
 
 from __future__ import annotations
@@ -16,15 +10,18 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 
+import numpy as np
+
 from comparisons.choices import Choices
-from comparisons.measures import SHARE_OF_LARGEST, arc_lengths, probe_scales
-from comparisons.order import SAFETY, USUAL, order_of, richardson
 from comparisons.pairing import Solver
-from comparisons.scales import norm
-from comparisons.spots import clear_of_spots
+from comparisons.quantities import arc_lengths, norm
 from comparisons.stations import station_of
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.scales import probe_scales
+from comparisons.verdict.uncertainty import error, largest
 from cprbm_scene import Answer, Probe, Scene, StationAnswer
-from cprbm_scene.statement import STRESSES
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import STRESSES, Quantity
 
 
 @dataclass(frozen=True)
@@ -51,20 +48,15 @@ def solved(scene: Scene, solver: Solver, choices: Choices) -> Solved:
 
 
 def uncertainties(found: Solved) -> dict[tuple[str, str, float], float]:
-    """u by probe, stage and station."""
+    """Stated uncertainty over the scale, by probe, stage and station."""
     scales = probe_scales(found.scene, (found.answer,))
-    uncertain: dict[tuple[str, str, float], float] = {}
-    for probe in found.scene.probes:
-        factor = SAFETY * richardson(order_of(found.scene, probe))
-        for stage in found.scene.stages:
-            changes = {
-                station.value: factor * _change(found, probe, station) / scales[stage.name, probe.name]
-                for station in found.answer.stations
-                if station.stage == stage.name
-            }
-            least = SHARE_OF_LARGEST * max(changes.values(), default=0.0)
-            uncertain |= {(probe.name, stage.name, value): max(size, least) for value, size in changes.items()}
-    return uncertain
+    rows = [(probe, station) for probe in found.scene.probes for station in found.answer.stations]
+    stated = largest(((probe.name, station.stage), _stated(found, probe, station)) for probe, station in rows)
+    return {
+        (probe.name, station.stage, station.value): stated[probe.name, station.stage]
+        / scales[station.stage, probe.name]
+        for probe, station in rows
+    }
 
 
 def critical_uncertainties(found: Solved) -> list[float]:
@@ -72,12 +64,12 @@ def critical_uncertainties(found: Solved) -> list[float]:
     mine, finer = found.answer.critical, found.finer.critical
     if len(mine) != len(finer):
         return [0.0] * len(mine)
-    factor = SAFETY * richardson(USUAL)
-    return [factor * abs(each.value - other.value) for each, other in zip(mine, finer, strict=True)]
+    pairs = zip(mine, finer, strict=True)
+    return [_size("closing_load", np.array([each.value]), np.array([other.value])) for each, other in pairs]
 
 
-def _change(found: Solved, probe: Probe, station: StationAnswer) -> float:
-    """|v − V|; of what only one of them has nothing."""
+def _stated(found: Solved, probe: Probe, station: StationAnswer) -> float:
+    """Stated uncertainty of a value; nothing where only one answer has it."""
     try:
         finer = station_of(found.finer, station.stage, station.value)
     except KeyError:
@@ -86,6 +78,11 @@ def _change(found: Solved, probe: Probe, station: StationAnswer) -> float:
     if v.shape != V.shape:
         return 0.0
     if probe.quantity in STRESSES:
-        counts = clear_of_spots(found.scene, probe.of, arc_lengths(found.scene, probe), (station, finer))
+        counts = away_from_point_forces(found.scene, probe.of, arc_lengths(found.scene, probe), (station, finer))
         v, V = v[counts], V[counts]
-    return norm(probe.quantity, v - V)
+    return _size(probe.quantity, v, V)
+
+
+def _size(quantity: Quantity, v: Array, V: Array) -> float:
+    """Stated uncertainty of values at N (k,) with others at 2N."""
+    return norm(quantity, error((1.0, 2.0), (v, V)).even)

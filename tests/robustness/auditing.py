@@ -14,15 +14,15 @@ class Auditing(Remembering):
     """A crew with a memory of answers and of audits.
 
     Attributes:
-        audited: findings of audits by the identities of the scene's and the answer's records; the records are kept, so
+        audited: findings of audits by the identities of the scene's and the stations' records; the records are kept, so
             that no other record takes over an identity.
     """
 
-    audited: dict[tuple[int, int], tuple[Scene, Answer, Audit]] = field(default_factory=dict)
+    audited: dict[tuple[int, ...], tuple[Scene, Answer, Audit]] = field(default_factory=dict)
 
     def audit(self, scene: Scene, answer: Answer) -> Audit:
         """The findings of the answer's audit, which is made once."""
-        key = id(scene), id(answer)
+        key = id(scene), *map(id, answer.stations)
         if key not in self.audited:
             self.audited[key] = scene, answer, audit(scene, answer)
         return self.audited[key][2]

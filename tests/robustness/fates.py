@@ -13,10 +13,10 @@ import numpy as np
 from comparisons.choices import Choices
 from comparisons.pairing import Solver, Solvers
 from cprbm_scene import Answer, Ending, Mistake, Scene, SceneError
-from tests.comparisons.made_up import MadeUp, with_value
 from tests.cprbm.scenes import cantilever_data, force
 from tests.robustness.drawing import Drawn
 from tests.robustness.toml import toml_of
+from tests.verdict.made_up import MadeUp, with_value
 
 FATES = (
     "right", "raises", "segfault", "leaves", "spins", "devours", "stiffer", "nan", "early", "refused", "vague",

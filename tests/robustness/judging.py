@@ -4,8 +4,8 @@ It is the verdict of ``compare`` on the runs on which it rests, at a size at whi
 160 links time grows by a quarter, and what is asked twice is paid twice.  Where it cannot be told, or a run ended
 early, the solver on whose account that is does it once more at twice its size: as often as the effort allows where
 what is stated promises to become little enough by that, and once where it is something else that keeps it.  The finer
-runs of one size are then the coarser ones of the next, and nothing is solved twice.  Of a scene whose answers end
-early at every size the stations that both reached are judged as a scene of their own.
+runs of one size are then the coarser ones of the next, and nothing is solved twice.  The verdict compares the stations
+that both reached, also where the answers end early at every size.
 
 Where the theories of ``bending`` and ``shear`` alone are further apart than may be stated, that is a property of the
 mechanism and no doubt about either solver, both of which can be asked in ``bending``: there the scene is judged once
@@ -20,7 +20,8 @@ An answer is *wrong* if it is certified and
 * a value is further from the finest that was found than F times what is stated of it; or
 * it is further from the exact answer, where one is known, than F times what is stated of it,
 
-with the F of :mod:`comparisons.calibration`: a stated uncertainty is to hold in 95 % of the rows and not in all.
+with the F of :mod:`comparisons.verdict.calibration`: a stated uncertainty is to hold in 95 % of the rows and not in
+all.
 """
 
 from __future__ import annotations
@@ -30,16 +31,20 @@ import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
-from comparisons.calibration import FAR, every
+from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
 from comparisons.formats import number
-from comparisons.measures import Bounds, Row
 from comparisons.pairing import Runs, Solvers, paired
-from comparisons.reach import ends_at_critical, first_stations, up_to
-from comparisons.scales import norm
+from comparisons.quantities import norm
 from comparisons.stations import station_of
-from comparisons.verdict import Comparison, compared
-from comparisons.words import Word
+from comparisons.verdict.bounds import Bounds
+from comparisons.verdict.calibration import EXACT_FACTOR, true_errors
+from comparisons.verdict.completeness import ends_at_critical, problems
+from comparisons.verdict.judge import SHARED
+from comparisons.verdict.point_forces import sharing_sources
+from comparisons.verdict.rows import Row
+from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Scene, SceneError
 from tests.robustness.auditing import Auditing
 from tests.robustness.outcomes import Outcome, Way
@@ -122,7 +127,7 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Auditing) -> 
             break
         else:
             finer = _at_one_size(scene, _finer(scene, finding, left), memory)
-            finer = finer if finer.way is Way.WRONG else _beside(finding, finer)
+            finer = finer if finer.way is Way.WRONG else _beside(scene, finding, finer)
             finding, left = replace(finer, apart=finding.apart), left - 1
     if finding.runs is None:
         return _as_far_as_it_goes(scene, finding, memory)
@@ -131,7 +136,7 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Auditing) -> 
     exact = solvers.exact(scene, finding.choices)
     if not exact.stations:
         return finding
-    comparison = compared(scene, replace(finding.runs, exact=exact), memory.audit)
+    comparison = compare(scene, replace(finding.runs, exact=exact), memory.audit)
     return replace(_of_comparison(finding.choices, comparison), apart=finding.apart)
 
 
@@ -149,15 +154,7 @@ def _at_one_size(scene: Scene, choices: Choices, memory: Auditing) -> _Finding:
         return _Finding(
             Way.ENDED, _why(early), choices, ending=early[0][1].ending.name, reached=reached, early=_whose(early)
         )
-    runs = paired(scene, choices, solvers, memory, bare=True)
-    finding = _of_comparison(choices, compared(scene, runs, memory.audit))
-    reached = min(len(answer.stations) for _, answer in runs.everything())
-    if finding.way is not Way.ENDED or finding.rows or reached == 0:
-        return finding
-    part = compared(*up_to(scene, runs, reached), memory.audit)
-    if part.verdict.word is Word.DIFFER:
-        return replace(finding, way=Way.WRONG, sentence=part.verdict.sentence, rows=part.rows, ending="")
-    return replace(finding, rows=part.rows)
+    return _of_comparison(choices, compare(scene, paired(scene, choices, solvers, memory, bare=True), memory.audit))
 
 
 def _as_far_as_it_goes(scene: Scene, finding: _Finding, memory: Auditing) -> _Finding:
@@ -168,7 +165,8 @@ def _as_far_as_it_goes(scene: Scene, finding: _Finding, memory: Auditing) -> _Fi
     """
     if finding.reached == 0:
         return finding
-    part = _at_one_size(first_stations(scene, finding.reached), finding.choices, memory)
+    runs = paired(scene, finding.choices, memory.solvers, memory, bare=True)
+    part = _of_comparison(finding.choices, compare(scene, runs, memory.audit))
     return part if part.way is Way.WRONG else replace(finding, rows=part.rows, runs=part.runs)
 
 
@@ -177,16 +175,17 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
     verdict, runs = comparison.verdict, comparison.runs
     early = [(name, answer) for name, answer in runs.everything() if not answer.completed]
     sentence, ending = verdict.sentence, ""
-    if verdict.word is Word.DIFFER:
+    untrue = [answer for _, answer in runs.everything() if answer.completed and problems(comparison.scene, answer)]
+    if verdict.word is Word.DIFFER or untrue:
         way = Way.WRONG
+    elif verdict.word is Word.AGREE:
+        way = Way.AGREE
     elif early:
         way = Way.ENDED
         ending = early[0][1].ending.name
         sentence = _why(early)
-    elif not verdict.completed:
-        way = Way.WRONG
     else:
-        way = Way.AGREE if verdict.word is Word.AGREE else Way.UNDECIDED
+        way = Way.UNDECIDED
     doubts = any(audit.complaints for audit in comparison.audits.values())
     gone = {name for row in comparison.criticals for name in row.turned}
     over = all(ends_at_critical(answer) or name in gone for name, answer in runs.everything())
@@ -271,30 +270,36 @@ def _whose(early: Iterable[tuple[str, Answer]]) -> frozenset[str]:
     return frozenset(name.split()[0] for name, _ in early)
 
 
-def _beside(coarser: _Finding, finding: _Finding) -> _Finding:
+def _beside(scene: Scene, coarser: _Finding, finding: _Finding) -> _Finding:
     """The finding of a size with what it says of half of it: wrong where a value is too far from its refinement."""
     worst, said = 1.0, ""
-    if finding.runs is None:
+    if finding.runs is None or coarser.runs is None:
         return finding
+    table = RunsTable(scene, coarser.runs)
     for row in coarser.rows:
+        if _depends_on_the_mesh(table, row):
+            continue
         for solver, off, allowed in _from_refinement(row, finding.runs):
             if off > worst * allowed:
                 worst = off / allowed
                 said = (
-                    f"{solver}: {row.probe.name} at {row.stage} {row.station:g} is {number(FAR * worst)} times as far "
-                    f"from its value at a finer size as is stated of it."
+                    f"{solver}: {row.probe.name} at {row.stage} {row.station:g} is {number(EXACT_FACTOR * worst)} "
+                    f"times as far from its value at a finer size as is stated of it."
                 )
     return finding if not said else replace(finding, way=Way.WRONG, sentence=said, ending="")
 
 
-def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]]:
-    """By solver the distance of a row's value from the finest of the finer runs, and what it may be.
+def _depends_on_the_mesh(table: RunsTable, row: Row) -> bool:
+    """Whether a row is a stress, the force of a contact that shares it, or between the runs' loads of one event."""
+    if row.arc_length is not None or row.events.unsettled or row.events.contradictory:
+        return True
+    shared = row.probe.quantity in SHARED
+    return shared and sharing_sources(table.scene, table.at(row.where).values(), row.probe.of) is not None
 
-    Of stresses, whose places next to contacts do not count, of forces that contacts share in a way that nothing tells,
-    or with a joint in one that no mesh does, of what hangs on a contact that is open by less than meshes tell, and of
-    rows that are not compared nothing is said.
-    """
-    if row.bounds is None or row.arc_length is not None or row.shared or row.hardly_open or row.beside is not None:
+
+def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]]:
+    """By solver the distance of a row's value from the finest of the finer runs, and what it may be."""
+    if row.bounds is None:
         return
     for solver, mine, answer, own in (
         ("cprbm", row.cprbm, finer.cprbm[1], row.bounds.cprbm),
@@ -306,7 +311,7 @@ def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]
             continue
         its = station.values[row.probe.name]
         if mine.shape == its.shape and station.branch == row.branch:
-            yield solver, norm(row.probe.quantity, mine - its), FAR * (own + row.bounds.round_off)
+            yield solver, norm(row.probe.quantity, mine - its), EXACT_FACTOR * (own + row.bounds.round_off)
 
 
 def _told(scene: Scene, finding: _Finding) -> Outcome:
@@ -322,7 +327,7 @@ def _told(scene: Scene, finding: _Finding) -> Outcome:
         finding.ending,
         difference=max((_pressure(row, bounds) for row, bounds in rows), default=None),
         uncertainty=max((max(bounds.total, bounds.same_theory) / row.scale for row, bounds in rows), default=None),
-        beyond=max((each.ratio for row, _ in rows for each in every(row)), default=None),
+        beyond=max((each.ratio for row, _ in rows for each in true_errors(row)), default=None),
         apart=finding.apart,
         links=links,
         elements=elements,

@@ -17,7 +17,6 @@ from comparisons.audit import audit
 from comparisons.cli.main import run as command
 from comparisons.pairing import Solvers
 from cprbm_scene import Ending, SceneError, read, scene_from
-from tests.comparisons.made_up import MadeUp
 from tests.robustness import auditing
 from tests.robustness.apart import Limits, OutOfTime, Returned
 from tests.robustness.command import exit_code
@@ -30,6 +29,7 @@ from tests.robustness.running import FAILURES, Crew, Plan, Stress, run
 from tests.robustness.shrinking import Patience, shrunk, steps
 from tests.robustness.told import document, sentence, sheets_of, told_of
 from tests.robustness.toml import toml_of
+from tests.verdict.made_up import MadeUp
 
 ROOT = Path(__file__).parents[2]
 PLAN = Plan(0, limits=Limits(seconds=1.0, waiting=120.0))
@@ -80,7 +80,7 @@ def test_totals_sum_to_the_scenes_and_the_json_says_so(whole):
         ("nan", "not finite"),
         ("early", "STEP_TOO_SMALL, Too small."),
         ("refused", "none of these"),
-        ("vague", "cannot be told"),
+        ("vague", "are undecided"),
     ],
 )
 def test_the_sentence_says_what_happened(whole, fate, said):
@@ -388,7 +388,7 @@ def test_an_answer_is_audited_once_however_often_it_is_compared(monkeypatch):
     looked = []
 
     def noted(scene, answer):
-        looked.append((answer.solver, answer.settings["n"]))
+        looked.append((answer.solver, answer.settings.get("links", answer.settings.get("elements"))))
         return audit(scene, answer)
 
     monkeypatch.setattr(auditing, "audit", noted)

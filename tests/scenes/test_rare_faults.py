@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer, paired, solvers_of
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.words import Word
 from cprbm_scene import Scene
 from tests.scenes.rare_scenes import ASKED, scene
 from tests.together.planted import asked_of, stiffer, without_contact
@@ -18,7 +18,7 @@ CHOICES = Choices(links=40, elements=40, kinematics="bending")
 def word(question: Scene, wrong):
     """The verdict's word where the CPRBM is replaced."""
     solvers = replace(solvers_of(None), cprbm=wrong)
-    return compared(question, paired(question, CHOICES, solvers, bare=True)).verdict.word
+    return compare(question, paired(question, CHOICES, solvers, bare=True)).verdict.word
 
 
 @pytest.mark.parametrize("name", ["two-corners-at-one-place", "flat-beside-its-pin"])

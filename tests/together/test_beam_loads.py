@@ -11,10 +11,11 @@ import pytest
 import cprbm
 import elastica_reference
 import fea_reference
+from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.measures import load_unit
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict import Word, compared
+from comparisons.quantities import load_unit
+from comparisons.verdict.words import Word
 from cprbm_scene import Ending, scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, cantilever_data
 from tests.elastica_reference.scenes import case
@@ -187,7 +188,7 @@ def weighed(data, q):
 
 def test_the_verdict_on_a_circle_is_agree():
     scene = scene_from(weighed(on_a_circle(8.0), 40.0))
-    found = compared(scene, paired(scene, Choices(kinematics="bending"), Solvers()))
+    found = compare(scene, paired(scene, Choices(kinematics="bending"), Solvers()))
     assert found.verdict.word is Word.AGREE, found.verdict.sentence
     assert [load_unit(scene, stage) for stage in scene.stages] == ["N/m", "N", "N"]
 

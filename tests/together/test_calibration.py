@@ -15,13 +15,13 @@ from functools import cache
 import pytest
 
 from comparisons import cases, documents
-from comparisons.calibration import Tally
 from comparisons.choices import Choices
-from comparisons.measures import rows_of
 from comparisons.pairing import Solvers, paired
 from comparisons.studies.calibration import Calibration, Trial, tallies, tried
 from comparisons.studies.calibration_told import told
-from comparisons.words import Word
+from comparisons.verdict.calibration import Tally
+from comparisons.verdict.rows import rows_of
+from comparisons.verdict.words import Word
 from cprbm_scene import scene_from
 from tests.together import truths
 

@@ -15,9 +15,9 @@ import pytest
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.converging.families import Convergence, Family, converged
-from comparisons.converging.limits import limit
 from comparisons.converging.told import beside, between
 from comparisons.pairing import ALONE, Solvers
+from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Scene
 from tests.references import hinge as exact
 from tests.together.truths import hinge_truth, wrapped_truth

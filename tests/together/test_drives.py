@@ -6,12 +6,12 @@ from math import hypot
 import pytest
 
 from comparisons import figures
+from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.measures import load_unit
 from comparisons.pairing import Solvers, cprbm_answer, paired
-from comparisons.scales import natural_scale
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.quantities import load_unit
+from comparisons.verdict.scales import natural_value
+from comparisons.verdict.words import Word
 from tests.cprbm.driven import driven_hinge
 from tests.together.driven import GAP, gripper_like, punched, snapping
 
@@ -24,14 +24,14 @@ def scene():
 def agreed(scene):
     """Both solvers' answers at standard choices, which must agree."""
     runs = paired(scene, Choices(), Solvers())
-    verdict = compared(scene, runs).verdict
+    verdict = compare(scene, runs).verdict
     assert verdict.word is Word.AGREE, verdict.sentence
     return runs.cprbm[0], runs.reference
 
 
 def test_the_verdict_is_agree(scene):
     """Slide, driven point, driven rotation and a load on the slide, in all three theories."""
-    found = compared(scene, paired(scene, Choices(), Solvers()))
+    found = compare(scene, paired(scene, Choices(), Solvers()))
     assert found.verdict.word is Word.AGREE, found.verdict.sentence
     assert {row.probe.name for row in found.rows} == {probe.name for probe in scene.probes}
 
@@ -46,14 +46,14 @@ def test_a_drives_reaction_or_a_slide_that_is_two_per_cent_wrong_is_caught(scene
         )
         return replace(answer, stations=stations)
 
-    found = compared(scene, paired(scene, Choices(), Solvers(cprbm=wrong)))
+    found = compare(scene, paired(scene, Choices(), Solvers(cprbm=wrong)))
     assert found.verdict.word is Word.DIFFER
     assert probe in found.verdict.sentence
 
 
 def test_a_driven_hinge_agrees_and_its_stations_are_angles():
     scene = driven_hinge(0.6)
-    found = compared(scene, paired(scene, Choices(kinematics="bending"), Solvers()))
+    found = compare(scene, paired(scene, Choices(kinematics="bending"), Solvers()))
     assert found.verdict.word is Word.AGREE, found.verdict.sentence
     closing = next(row for row in found.rows if row.probe.quantity == "closing_load")
     assert closing.unit == "rad"
@@ -64,13 +64,13 @@ def test_units_and_natural_scales_of_what_stages_step(scene):
     assert [load_unit(scene, stage) for stage in scene.stages] == ["m", "rad", "N"]
     ell = hypot(0.09, 0.05)  # of the straight beam, m
     EI = 2.3e9 * 0.0083 * 0.0021**3 / 12.0
-    natural = [natural_scale(scene, "closing_load", stage, contact="") for stage in scene.stages]
+    natural = [natural_value(scene, "closing_load", stage, contact="") for stage in scene.stages]
     assert natural == pytest.approx([ell, 1.0, EI / ell**2], rel=1e-12)
 
 
 def test_a_figure_has_one_axis_of_load(scene):
     """Stages that step different things are not drawn over one axis; the last one's is drawn."""
-    found = compared(scene, paired(scene, Choices(kinematics="bending", links=8, elements=8), Solvers()))
+    found = compare(scene, paired(scene, Choices(kinematics="bending", links=8, elements=8), Solvers()))
     pictures = {picture.name: picture for picture in figures.of_comparison(found)}
     assert "against pull" in pictures["rotation"].caption
 

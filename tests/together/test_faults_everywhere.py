@@ -33,17 +33,17 @@ import fea_reference.circle
 import fea_reference.contact
 import fea_reference.model
 from comparisons import cases
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.geometry import length, points
 from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer, paired
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Arc, BeamContact, CircleContact, Ending, Polynomial, Probe, Scene, StationAnswer
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
 from tests.together.planted import remembered, stiffer, without_contact
 
-CHOICES = Choices(links=40, elements=20, kinematics="bending")
+CHOICES = Choices(links=44, elements=20, kinematics="bending")  # of 40 links three grids of `five-bar` show order 1.4
 FIRST_LOOK = Choices(links=14)
 ROUGH = Choices(links=16, elements=18, kinematics="bending")
 SOME = 0.25  # of a contact's largest force
@@ -100,12 +100,14 @@ def word(case: str, solver: str, wrong: Answer) -> Word:
 
     def answer(scene: Scene, choices: Choices) -> Answer:
         own = getattr(true, solver)(scene, choices)
-        if choices == CHOICES or [each.value for each in own.stations] != [each.value for each in wrong.stations]:
+        if choices == CHOICES:
             return wrong
+        if len(own.stations) > len(wrong.stations):
+            return replace(wrong, stations=own.stations[: len(wrong.stations)], events=own.events)
         stations = zip(own.stations, base.stations, wrong.stations, strict=True)
         return replace(wrong, stations=tuple(_as_wrong(*three) for three in stations))
 
-    return compared(thinned(case), paired(thinned(case), CHOICES, replace(true, **{solver: answer}))).verdict.word
+    return compare(thinned(case), paired(thinned(case), CHOICES, replace(true, **{solver: answer}))).verdict.word
 
 
 def _as_wrong(own: StationAnswer, base: StationAnswer, wrong: StationAnswer) -> StationAnswer:
@@ -142,7 +144,7 @@ def altered(answer: Answer, change: Callable[[StationAnswer], StationAnswer]) ->
 @pytest.mark.parametrize("case", SCENES)
 def test_the_right_ones_agree(case):
     scene = thinned(case)
-    verdict = compared(scene, right(case)).verdict
+    verdict = compare(scene, right(case)).verdict
     assert verdict.word is Word.AGREE, verdict.sentence
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import cprbm
 import elastica_reference
 import fea_reference
-from comparisons.spots import clear_of_spots
+from comparisons.verdict.point_forces import away_from_point_forces
 from cprbm_scene import Answer, Ending, SceneError, SelfContact, scene_from
 from cprbm_scene.geometry import arc_length
 from cprbm_scene.statement import STRESSES
@@ -87,7 +87,7 @@ def compared(
         return np.ones(value.shape, dtype=bool)
     scene = scene_from(feature.data)
     s = np.linspace(0.0, arc_length(scene.beams[of].curve), value.size)
-    return clear_of_spots(scene, of, s, (answer.stations[-1], reference.stations[-1]))
+    return away_from_point_forces(scene, of, s, (answer.stations[-1], reference.stations[-1]))
 
 
 def table() -> str:

@@ -11,7 +11,7 @@ import pytest
 import cprbm
 import fea_reference
 from comparisons import cases
-from comparisons.audit import audited
+from comparisons.audit import audit
 
 WAYS = {
     "first": [("alpha1", [20.0]), ("alpha2", [30.0, 50.0, 70.0])],
@@ -92,6 +92,6 @@ def test_forces_balance_where_a_penalty_is_so_stiff_that_gaps_are_rounded_to_a_f
     scene = on_the_way([("alpha1", [20.0]), ("alpha2", [45.0, 50.0])])
     answer = fea_reference.answer(scene, fea_reference.Settings(elements=80))
     assert answer.completed, answer.sentence
-    assert audited(scene, answer) == ()
+    assert audit(scene, answer).complaints == ()
     for station in answer.stations:
         assert station.certificate.residual < 1e-10

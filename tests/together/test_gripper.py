@@ -10,10 +10,10 @@ import pytest
 
 import cprbm
 from comparisons import cases
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, cprbm_answer, crew_of, fea_answer, paired
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.words import Word
 from cprbm_scene import Scene
 from tests.together.planted import COARSE, without_contact
 
@@ -30,7 +30,7 @@ def at(case: str, stations: tuple[float, ...]) -> Scene:
 def driven():
     scene = at("gripper-driven", DISPLACEMENTS)
     with crew_of(2) as crew:
-        return compared(scene, paired(scene, Choices(links=PAPERS), Solvers(), crew))
+        return compare(scene, paired(scene, Choices(links=PAPERS), Solvers(), crew))
 
 
 def test_driven_the_verdict_is_agree_and_the_reactions_claim_is_met(driven):
@@ -59,7 +59,7 @@ def test_the_displacements_claims_are_met_in_both_formulations(formulation):
 def test_contacts_that_are_ignored_do_not_pass():
     scene = at("gripper", (16.0,))
     runs = paired(scene, COARSE, replace(Solvers(), cprbm=without_contact(cprbm_answer)))
-    assert compared(scene, runs).verdict.word is Word.DIFFER
+    assert compare(scene, runs).verdict.word is Word.DIFFER
 
 
 def sweep(links):

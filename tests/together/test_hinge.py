@@ -6,15 +6,15 @@ The bounds are those that the project set itself before there was a second solve
 import numpy as np
 import pytest
 
-from comparisons.measures import rows_of
+from comparisons.case import compare
 from comparisons.stations import station_of
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.rows import rows_of
+from comparisons.verdict.words import Word
 
 
 @pytest.fixture(scope="module")
 def comparison(hinge, hinge_runs):
-    return compared(hinge, hinge_runs)
+    return compare(hinge, hinge_runs)
 
 
 def row(comparison, probe, station=0.67):
@@ -57,7 +57,7 @@ def test_the_difference_from_the_default_elements_is_their_theory_and_the_cprbms
 def test_the_paper_stays_beside_and_not_inside(comparison):
     """Claims change nothing: without them the verdict is the same."""
     unclaimed = comparison.scene.model_copy(update={"claims": ()})
-    assert compared(unclaimed, comparison.runs).verdict == comparison.verdict
+    assert compare(unclaimed, comparison.runs).verdict == comparison.verdict
 
 
 def test_both_agree_where_the_beams_first_touch(comparison):

@@ -7,11 +7,11 @@ At an even number of links the hinge's contact falls between two joints, at an o
 import numpy as np
 import pytest
 
+from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.measures import rows_of
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.rows import rows_of
+from comparisons.verdict.words import Word
 from tests.cprbm.scenes import hinge
 from tests.references import hinge as exact
 
@@ -20,7 +20,7 @@ from tests.references import hinge as exact
 def test_the_verdict_at_even_and_odd_numbers_of_links(links, word):
     scene = hinge(stages=[{"name": "load", "steps": "M", "stations": [0.2, 0.67]}])
     runs = paired(scene, Choices(links=links, elements=30, formulation="paper", kinematics="bending"), Solvers())
-    assert compared(scene, runs).verdict.word is word
+    assert compare(scene, runs).verdict.word is word
     # reference: tests.references.hinge
     truth = exact.solve(exact.PAPER, 0.67)
     true = {"B.displacement": truth.displacement_B, "contact.force": [truth.contact_force]}

@@ -14,14 +14,14 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.measures import arc_lengths
 from comparisons.memory import Remembering
 from comparisons.pairing import Solvers
-from comparisons.scales import denominator, norm, probe_scale
-from comparisons.spots import clear_of_spots
+from comparisons.quantities import arc_lengths, norm
 from comparisons.stations import station_of
 from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.tolerated import solved
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.scales import denominator, probe_scales
 from cprbm_scene import Answer, Scene
 from tests.references import hinge as exact
 from tests.together.test_tapered import FORCE, LENGTH, scene_of
@@ -81,6 +81,7 @@ QUESTIONS: dict[str, tuple[Scene, Callable]] = {
 def errors(scene: Scene, answer: Answer, truth: Callable) -> list[float]:
     """True errors as fractions of what the tables divide by, of every row that has a value."""
     found = []
+    scales = probe_scales(scene, (answer,))
     for stage in scene.stages:
         for value in stage.stations:
             station = station_of(answer, stage.name, value)
@@ -92,9 +93,9 @@ def errors(scene: Scene, answer: Answer, truth: Callable) -> list[float]:
                     continue
                 error = station.values[probe.name] - true
                 if arc is not None:
-                    error = error[clear_of_spots(scene, probe.of, arc, (station,))]
-                scale = probe_scale(scene, probe, stage, (answer,))
-                found.append(norm(probe.quantity, error) / denominator(probe, true, scale))
+                    error = error[away_from_point_forces(scene, probe.of, arc, (station,))]
+                scale = scales[stage.name, probe.name]
+                found.append(norm(probe.quantity, error) / denominator(probe, norm(probe.quantity, true), scale))
     return found
 
 

@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 
 from comparisons import cases
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.words import Word
 from tests.references.wrapped import Wrapped
 
 
 @pytest.mark.parametrize("links", [20, 41, 1280])
 def test_wrapped_agrees(links):
     scene = cases.opened("wrapped")
-    comparison = compared(scene, paired(scene, Choices(links=links), Solvers()))
+    comparison = compare(scene, paired(scene, Choices(links=links), Solvers()))
     assert comparison.verdict.word is Word.AGREE, comparison.verdict.sentence
 
 

@@ -24,10 +24,10 @@ import pytest
 import cprbm.nearest
 import cprbm.section
 from comparisons import cases
+from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer, paired
-from comparisons.verdict import Verdict, compared
-from comparisons.words import Word
+from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
@@ -36,12 +36,12 @@ from tests.together.planted import COARSE, asked_of, remembered, stiffer, withou
 
 def with_cprbm(scene: Scene, runs: Runs, wrong: Solver) -> Verdict:
     """The verdict on a wrong CPRBM beside the right finite elements, at the standard settings."""
-    return compared(scene, paired(scene, Choices(), replace(remembered(runs), cprbm=wrong))).verdict
+    return compare(scene, paired(scene, Choices(), replace(remembered(runs), cprbm=wrong))).verdict
 
 
 def with_fea(scene: Scene, runs: Runs, wrong: Solver) -> Verdict:
     """The verdict on wrong finite elements beside the right CPRBM, in one theory and coarse."""
-    return compared(scene, paired(scene, COARSE, replace(remembered(runs), fea=wrong))).verdict
+    return compare(scene, paired(scene, COARSE, replace(remembered(runs), fea=wrong))).verdict
 
 
 def thin(scene: Scene) -> Scene:
@@ -72,9 +72,9 @@ def spoilt(solver: Solver, probe: str) -> Solver:
 
 def test_the_right_ones_agree(hinge, hinge_runs, coarse_runs):
     right = paired(hinge, Choices(), remembered(hinge_runs))
-    assert compared(hinge, right).verdict.word is Word.AGREE
+    assert compare(hinge, right).verdict.word is Word.AGREE
     coarse = paired(hinge, COARSE, remembered(coarse_runs))
-    assert compared(hinge, coarse).verdict.word is Word.AGREE
+    assert compare(hinge, coarse).verdict.word is Word.AGREE
 
 
 @pytest.mark.parametrize("altered", [stiffer, thin], ids=["too stiff", "thickness forgotten"])
@@ -98,7 +98,7 @@ def tapered() -> Scene:
 
 def in_bending(scene: Scene, solvers: Solvers) -> Word:
     """The verdict in one theory, in which nothing excuses a difference."""
-    return compared(scene, paired(scene, Choices(kinematics="bending"), solvers)).verdict.word
+    return compare(scene, paired(scene, Choices(kinematics="bending"), solvers)).verdict.word
 
 
 def test_the_right_ones_agree_on_the_tapered_beam(tapered):

@@ -1,0 +1,162 @@
+"""The verdict on a case: two answers, their rows and events, the audits, and the sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from comparisons import sentences as said
+from comparisons.audit import Audit, audit
+from comparisons.branch_words import BranchVerdict, branch_verdicts
+from comparisons.pairing import Runs
+from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
+from comparisons.tolerances.search import Tolerance
+from comparisons.verdict.completeness import complete_part, ends_at_critical, problems
+from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows
+from comparisons.verdict.judge import Judged, judge_case, judge_row
+from comparisons.verdict.rows import Row, build_rows
+from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.station_events import station_events
+from comparisons.verdict.words import Reason, Word
+from cprbm_scene import Answer, Scene
+from cprbm_scene.frozendict import frozendict
+
+Finding = tuple[Word, Reason | None, str]
+"""Word, reason and sentence."""
+
+Auditor = Callable[[Scene, Answer], Audit]
+"""Function that finds the faults of an answer to a scene."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """The verdict on a case.
+
+    Attributes:
+        word: of the case; reason: None where the case agrees.
+        sentences: the sentence on what decides first.
+        words, reasons: by row; a word is None where the row takes no part, a reason unless the word has one.
+        completed: whether both compared runs reached the last station, or agree on the critical point where they end.
+        branches: words by branch.
+    """
+
+    word: Word
+    sentences: tuple[str, ...]
+    words: tuple[Word | None, ...]
+    completed: bool
+    branches: tuple[BranchVerdict, ...] = ()
+    reason: Reason | None = None
+    reasons: tuple[Reason | None, ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        """All sentences."""
+        return " ".join(self.sentences)
+
+    @property
+    def because(self) -> str:
+        """The first sentence: what decides."""
+        return next(iter(self.sentences), "")
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """A scene, all runs, rows, events, the verdict, reactions by two ways, searches for N, and audits by solver."""
+
+    scene: Scene
+    runs: Runs
+    rows: tuple[Row, ...]
+    verdict: Verdict
+    criticals: tuple[CriticalRow, ...] = ()
+    reactions: tuple[WorkEnergyReaction, ...] = ()
+    tolerances: tuple[Tolerance, ...] = ()
+    audits: Mapping[str, Audit] = frozendict()
+
+
+def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
+    """The comparison of all runs of a scene.
+
+    Args:
+        scene: the question.
+        runs: the answers.
+        look: the audit.
+    """
+    exact = None if runs.exact is None else complete_part(scene, runs.exact)
+    table = RunsTable(scene, replace(runs, exact=exact))
+    criticals, closings = critical_rows(table), closing_rows(table)
+    rows = build_rows(table, station_events(table))
+    judged = [judge_row(table, row) for row in rows]
+    audits = {answer.solver: look(scene, complete_part(scene, answer)) for answer in table.pair}
+    verdict = _verdict(table, rows, judged, criticals, closings, audits)
+    return Comparison(scene, runs, rows, verdict, criticals, _reactions(scene, runs), audits=audits)
+
+
+def _verdict(
+    table: RunsTable,
+    rows: Sequence[Row],
+    judged: Sequence[Judged],
+    criticals: Sequence[CriticalRow],
+    closings: Sequence[ClosingRow],
+    audits: Mapping[str, Audit],
+) -> Verdict:
+    """All findings with their sentences; the worst decides, and its sentence comes first."""
+    of_rows = judge_case(rows, judged)
+    findings: list[Finding] = [(Word.DIFFER, Reason.EVENTS, said.closing_sentence(row)) for row in closings]
+    findings += [(*row.judged, said.critical_sentence(row)) for row in criticals]
+    completed = _completed(table, criticals)
+    if table.problems and not completed:
+        findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table.problems)))
+    for name, found in audits.items():
+        if found.complaints:
+            rest = f" (and {len(found.complaints) - 1} more)" if len(found.complaints) > 1 else ""
+            sentence = f"The audit of {name}'s answer fails: {found.complaints[0]}{rest}."
+            findings.append((Word.UNDECIDED, Reason.AUDIT, sentence))
+    crossing = next((found.crossings for found in audits.values() if found.crossings), ())
+    findings += [(Word.UNDECIDED, Reason.UNDECLARED_CONTACT, sentence) for sentence in crossing]
+    if rows or completed:
+        findings.append((*of_rows, said.headline(table, rows, judged, of_rows)))
+    findings.sort(key=_rank)
+    words = tuple(found for found, _ in judged)
+    word, reason, _ = findings[0]
+    others = {name: each for name, each in table.problems.items() if not ends_at_critical(table.answers[name])}
+    more = [said.ended_sentence(others)] if completed and others else []
+    more += [*said.passed_sentences(table, rows, judged), said.calibration_sentence(rows)]
+    if word is Word.AGREE:
+        more.append(said.wider_limits(table.scene))
+    return Verdict(
+        word,
+        tuple(filter(None, (*(sentence for *_, sentence in findings), *more))),
+        words,
+        completed,
+        branch_verdicts(rows, words),
+        reason,
+        tuple(why for _, why in judged),
+    )
+
+
+def _rank(finding: Finding) -> tuple[int, int]:
+    """Place of a finding among all: DIFFER first, then UNDECIDED, and of these the reasons in their order."""
+    word, reason, _ = finding
+    return _WORDS.index(word), 0 if reason is None else list(Reason).index(reason)
+
+
+_WORDS = (Word.DIFFER, Word.UNDECIDED, Word.AGREE)
+
+
+def _completed(table: RunsTable, criticals: Sequence[CriticalRow]) -> bool:
+    """Whether both compared answers are complete, or end at critical points that agree."""
+    if not any(name in table.problems for name in table.compared):
+        return True
+    ended = all(ends_at_critical(answer) for answer in table.pair)
+    return ended and bool(criticals) and criticals[-1].word is Word.AGREE
+
+
+def _reactions(scene: Scene, runs: Runs) -> tuple[WorkEnergyReaction, ...]:
+    """Reactions of drives by two ways, where both compared answers are complete."""
+    if problems(scene, runs.cprbm[0]) or problems(scene, runs.reference):
+        return ()
+    asked, found = perturbed_scene(scene), runs.perturbed
+    if asked is not None and found is None:
+        return ()
+    perturbed = None if asked is None or found is None else complete_part(asked, found)
+    return reactions(scene, runs.cprbm[0], runs.reference, perturbed)

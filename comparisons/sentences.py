@@ -1,0 +1,249 @@
+"""Sentences of a verdict: the finding, its place, the solver with the uncertainty, and the next command."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+
+from comparisons.formats import number, percent
+from comparisons.verdict.calibration import SOLVERS, error_ratios, tally, true_errors
+from comparisons.verdict.events import ClosingRow, CriticalRow, mechanism
+from comparisons.verdict.judge import Judged
+from comparisons.verdict.rows import Row
+from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.station_events import MIRRORED, PASSED, passed_by
+from comparisons.verdict.words import Reason, Word
+from cprbm_scene import Scene
+
+NAMES = {"cprbm": "the CPRBM", "fea": "the finite elements"}
+_OPTIONS = {"cprbm": ("-n", "links"), "fea": ("--elements", "elements")}
+
+
+def headline(table: RunsTable, rows: Sequence[Row], judged: Sequence[Judged], decided: Judged) -> str:
+    """Sentence on all rows: the deciding row, or the closest agreeing row."""
+    word, reason = decided
+    counted = Counter(found for found, _ in judged if found is not None)
+    total = sum(counted.values())
+    pairs = [(row, why) for row, (found, why) in zip(rows, judged, strict=True) if found is word]
+    if not pairs:
+        return "No station has a row that can be compared."
+    if word is Word.AGREE:
+        row = max((row for row, _ in pairs), key=pressure)
+        counts = f"All {total} rows agree" if counted[word] == total else f"{counted[word]} of {total} rows agree"
+        return f"{counts}; the closest is {place(row)}: {_measured(row)}.{_others(rows, judged)}"
+    mine = [row for row, why in pairs if why is reason]
+    row = max(mine, key=pressure)
+    verb = "differ" if word is Word.DIFFER else "are undecided"
+    return f"{len(pairs)} of {total} rows {verb}, first of all {place(row)}: {_explained(table, row, reason)}"
+
+
+def pressure(row: Row) -> float:
+    """Largest share of a stated uncertainty that a row's differences use, or of the scale where none is stated."""
+    if row.bounds is None:
+        return math.inf
+    shares = [_share(row.difference, row.bounds.total), _share(row.same_theory, row.bounds.same_theory)]
+    return max(*shares, *(each.pressure for each in true_errors(row)), 0.0)
+
+
+def place(row: Row) -> str:
+    """Probe, stage and station of a row."""
+    return f"{row.probe.name} at {row.stage} {row.station:g}"
+
+
+def calibration_sentence(rows: Sequence[Row]) -> str:
+    """Comparison of true errors with stated ones in a sentence; empty without an exact value."""
+    ratios = error_ratios(rows)
+    beyond = []
+    for solver in SOLVERS:
+        mine = tally(ratios, solver, worst=1)
+        if mine.rows > mine.within:
+            worst = mine.worst[0]
+            beyond.append(
+                f"{NAMES[solver]} exceed the stated error in {mine.rows - mine.within} of {mine.rows} rows, at most "
+                f"{number(worst.ratio)} times ({place(worst.row)})"
+            )
+    if beyond:
+        return f"Beside the exact answer {'; '.join(beyond)}."
+    return "All true errors beside the exact answer in bending are within the stated ones." if ratios else ""
+
+
+def wider_limits(scene: Scene) -> str:
+    """Probes with a wider limit than the scene's in a sentence; empty without any."""
+    wider = [probe for probe in scene.probes if scene.limit(probe) > scene.verdict_limit]
+    if not wider:
+        return ""
+    limits = ", ".join(f"{percent(scene.limit(probe))} for {probe.name}" for probe in wider)
+    return f"The scene allows stated uncertainties of {percent(scene.verdict_limit)} of the scale; {limits}."
+
+
+def ended_sentence(problems: Mapping[str, tuple[str, ...]]) -> str:
+    """The runs that are not complete, and their problems; each problem once."""
+    by_problem: dict[str, list[str]] = {}
+    for name, found in problems.items():
+        more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
+        by_problem.setdefault(f"{found[0].rstrip('.')}{more}", []).append(name)
+    parts = "; ".join(f"{', '.join(names)}: {problem}" for problem, names in by_problem.items())
+    return f"Runs without a complete answer: {parts}."
+
+
+def critical_sentence(row: CriticalRow) -> str:
+    """Loads and mechanisms of a critical point in both solvers, and its word."""
+    found = {"the CPRBM": row.cprbm, "the finite elements": row.fea}
+    parts = " and ".join(
+        f"nowhere in {name}" if one is None else f"{load(one.value, row.unit)} ({mechanism(one)}) in {name}"
+        for name, one in found.items()
+    )
+    if row.bounds is not None:
+        sizes = (row.difference, row.bounds.theory, row.same_theory, row.bounds.same_theory, row.allowed)
+        apart, theory, own, stated, allowed = (distance(size, row.unit) for size in sizes)
+        parts += f", {apart} apart and {theory} by theory; within one theory {own} against a stated {stated}, "
+        parts += f"{allowed} allowed"
+    elif not row.steady:
+        parts += ", and runs of one solver disagree; refine both: `-n` and `--elements` twice as large"
+    if row.turned:
+        most = number(max(row.turned.values()), 3)
+        parts += f". {', '.join(row.turned)} passed it and went on along a state turned by {most} rad"
+    return f"The branch ends in {row.stage} at {parts}: {row.word.value}."
+
+
+def closing_sentence(row: ClosingRow) -> str:
+    """Loads at which a contact closes in both solvers."""
+    loads = " and ".join(
+        f"{load(value, row.unit)} in {name}" for value, name in zip((row.cprbm, row.fea), NAMES.values(), strict=True)
+    )
+    stated, allowed = distance(row.stated, row.unit), distance(row.allowed, row.unit)
+    return f"{row.contact} closes in {row.stage} at {loads}, against a stated {stated}, {allowed} allowed: DIFFER."
+
+
+def passed_sentences(table: RunsTable, rows: Sequence[Row], judged: Sequence[Judged]) -> Iterator[str]:
+    """Passed critical points of both compared runs before the first differing row."""
+    differing = [row for row, (word, _) in zip(rows, judged, strict=True) if word is Word.DIFFER]
+    if not differing:
+        return
+    stages = [stage.name for stage in table.scene.stages]
+    stage = table.scene.stages[stages.index(differing[0].stage)]
+    index = stage.stations.index(differing[0].station)
+    for name, answer in zip(NAMES.values(), table.pair, strict=True):
+        earlier = [one for one in answer.gone_over if one.end.stage in stages[: stages.index(stage.name)]]
+        mine = [one for one in answer.gone_over if one.end.stage == stage.name]
+        for one in (*earlier, *mine[: passed_by(table.scene, stage, answer, index)])[-1:]:
+            yield (
+                f"Before that {name} passed a critical point ({mechanism(one.end)}) at {one.end.stage} "
+                f"{number(one.end.value, 5)} and went on along a state turned by {number(one.turned, 3)} rad."
+            )
+
+
+def load(value: float, unit: str) -> str:
+    """A load with its unit, a rotation also in degrees."""
+    degrees = f" ({number(math.degrees(value), 4)}°)" if unit == "rad" else ""
+    return f"{number(value, 5)} {unit}{degrees}"
+
+
+def distance(value: float, unit: str) -> str:
+    """A distance on the load axis, of a rotation in degrees."""
+    if not math.isfinite(value):
+        return "–"
+    return f"{number(math.degrees(value), 2)}°" if unit == "rad" else f"{number(value, 2)} {unit}"
+
+
+def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:
+    """Why the row does not agree, and the next command."""
+    contacts = " and ".join(sorted((row.events.unsettled | row.events.contradictory) - {PASSED, MIRRORED}))
+    match reason:
+        case Reason.VALUES:
+            return f"{_measured(row)} ({_parts(row)}). A third opinion: `--solver cprbm,fea,solid`."
+        case Reason.EXACT:
+            worst = max(true_errors(row), key=lambda each: each.ratio)
+            return (
+                f"{NAMES[worst.solver]} lie {_of_scale(worst.true, row)} of the scale from the exact answer, "
+                f"{number(worst.ratio)} times the stated {_of_scale(worst.stated, row)}."
+            )
+        case Reason.EVENTS:
+            cause = (
+                f"{contacts} presses in one solver and is open in the other"
+                if contacts
+                else ("one solver alone has passed a critical point")
+            )
+            return f"{cause}, and {_measured(row)}. `solve --solver cprbm,fea -v` shows each event."
+        case Reason.RUN_ENDED:
+            names = ", ".join(row.missing)
+            return f"{_measured(row)}, and the uncertainty is not known there: no answer of {names}."
+        case Reason.BRANCH:
+            return "the runs are on different branches or mirror images there. An imperfection would choose one."
+        case Reason.EVENT:
+            cause = f"{contacts} presses in some of the runs only" if contacts else "some runs have no such value"
+            return (
+                f"{cause}: the station lies between their loads of one event. Ask for a station beside it, or refine."
+            )
+        case Reason.THEORY:
+            assert row.bounds is not None
+            return (
+                f"the theories differ by {_of_scale(row.bounds.theory, row)} of the scale, more than "
+                f"{percent(table.scene.limit(row.probe))}; in one theory the solvers agree to "
+                f"{_of_scale(row.same_theory, row)}. Use the finite elements' value in {table.runs.kinematics}."
+            )
+        case Reason.NOT_UNIQUE:
+            return f"{row.probe.of} shares its force with a joint or contact beside it, and the sums agree."
+        case _:
+            return _coarse(table, row)
+
+
+def _coarse(table: RunsTable, row: Row) -> str:
+    """The solver with too large an uncertainty, and a sufficient size."""
+    assert row.bounds is not None
+    limit = table.scene.limit(row.probe)
+    needed = {}
+    for solver, stated in (("cprbm", row.bounds.cprbm), ("fea", row.bounds.fea)):
+        option, key = _OPTIONS[solver]
+        size = table.answers[table.compared[SOLVERS.index(solver)]].settings.get(key)
+        room = 0.4 * max(limit * row.scale - row.bounds.theory, 0.1 * limit * row.scale)
+        if isinstance(size, int) and stated > room:
+            needed[solver] = f"{option} {math.ceil(size * math.sqrt(stated / room) / 10.0) * 10}"
+    largest = max(row.bounds.total, row.bounds.same_theory)
+    hint = f" `{' '.join(needed.values())}` would do." if needed else " Refine both solvers."
+    whose = NAMES["cprbm" if row.bounds.cprbm >= row.bounds.fea else "fea"]
+    return (
+        f"the stated uncertainty is {_of_scale(largest, row)} of the scale, more than {percent(limit)}, most of it "
+        f"of {whose} ({_parts(row)}).{hint}"
+    )
+
+
+def _others(rows: Sequence[Row], judged: Sequence[Judged]) -> str:
+    """Undecided rows of a case that agrees, by probe and reason."""
+    found = Counter(
+        (row.probe.name, reason.value)
+        for row, (word, reason) in zip(rows, judged, strict=True)
+        if word is Word.UNDECIDED and reason is not None
+    )
+    if not found:
+        return ""
+    parts = ", ".join(f"{count} of {name} ({reason})" for (name, reason), count in found.items())
+    return f" Undecided rows: {parts}."
+
+
+def _measured(row: Row) -> str:
+    """The difference closest to its stated uncertainty, and both as shares of the scale."""
+    if row.bounds is None:
+        return f"the values differ by {_of_scale(row.difference, row)} of the scale"
+    bounds = row.bounds
+    tight = _share(row.same_theory, bounds.same_theory) > _share(row.difference, bounds.total)
+    pair = (row.same_theory, bounds.same_theory) if tight else (row.difference, bounds.total)
+    theory = " within one theory" if tight else ""
+    return f"{_of_scale(pair[0], row)} of the scale{theory} against a stated {_of_scale(pair[1], row)}"
+
+
+def _parts(row: Row) -> str:
+    assert row.bounds is not None
+    parts = {"CPRBM": row.bounds.cprbm, "FEA": row.bounds.fea, "theory": row.bounds.theory}
+    return ", ".join(f"{name} {_of_scale(part, row)}" for name, part in parts.items())
+
+
+def _of_scale(value: float, row: Row) -> str:
+    return percent(_share(value, row.scale))
+
+
+def _share(part: float, whole: float) -> float:
+    if whole > 0.0:
+        return part / whole
+    return 0.0 if part == 0.0 else math.inf

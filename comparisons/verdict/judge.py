@@ -1,0 +1,144 @@
+"""Word and reason of a row, and of all rows of a case.
+
+A row differs if |v_c − v_f| or |v_c − v_b| exceeds its stated uncertainty (:mod:`comparisons.verdict.bounds`), or if a
+true error beside the exact value exceeds twice the stated error.  A row is undecided if a stated uncertainty exceeds
+the scene's limit: such an uncertainty would excuse a wrong answer.  All other rows agree.
+
+A contradiction is no evidence against a solver, and the row is undecided, in four cases:
+
+* A contact presses in some runs only, and closes or opens in all runs of the stage (EVENT): the station lies between
+  the runs' loads of one event.
+* A clamp or another contact shares the contact's force, and the sums of the shared forces agree (NOT_UNIQUE).
+* Runs are on mirror images of one branch, or a run has passed a critical point near by (BRANCH).
+* The finite elements have no value in ``bending``, and the step of theory is not known (RUN_ENDED).
+
+Rows with the reason NOT_UNIQUE take no case down.  Rows with the reasons COARSE and EVENT take no case down if the
+probe agrees at most of its stations.  The sentence of the verdict counts such rows.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from comparisons.quantities import OPEN_AT_ZERO
+from comparisons.verdict.bounds import bounds_of
+from comparisons.verdict.calibration import true_errors
+from comparisons.verdict.completeness import ABSENT_WHILE_OPEN
+from comparisons.verdict.point_forces import resultant, sharing_sources
+from comparisons.verdict.rows import Row
+from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.station_events import MIRRORED, PASSED, Place
+from comparisons.verdict.words import Reason, Word
+from cprbm_scene import Scene
+from cprbm_scene.statement import Quantity
+
+Judged = tuple[Word | None, Reason | None]
+"""Word and reason; no word where a row takes no part."""
+
+SHARED: frozenset[Quantity] = frozenset({"force", "centre", "ends", "reaction", "reaction_moment"})
+"""Quantities of a contact or a joint that depend on how a clamp and a contact share a force."""
+
+RESOLVABLE = frozenset({Reason.COARSE, Reason.EVENT})
+"""Reasons that a finer mesh or another station removes."""
+
+
+def judge_row(table: RunsTable, row: Row) -> Judged:
+    """Word and reason of a row; no word where the row takes no part."""
+    scene, bounds = table.scene, row.bounds
+    if row.place is Place.BETWEEN:
+        return None, None
+    if row.absent or (row.exact is not None and row.exact.shape != row.fea.shape):
+        return _without_value(scene, row)
+    if bounds is None:
+        return (None, None) if np.isnan(row.difference) else (Word.UNDECIDED, Reason.RUN_ENDED)
+    if any(each.pressure > 1.0 for each in true_errors(row)):
+        return Word.DIFFER, Reason.EXACT
+    if row.difference > bounds.total or row.same_theory > bounds.same_theory:
+        return _contradiction(table, row)
+    limit = scene.limit(row.probe) * row.scale
+    if max(bounds.total, bounds.same_theory) <= limit:
+        return Word.AGREE, None
+    if _shares(table, row) is not None:
+        return Word.UNDECIDED, Reason.NOT_UNIQUE
+    if row.events.unsettled:
+        return Word.UNDECIDED, _event_reason(row)
+    theory = bounds.theory > limit or max(bounds.own, bounds.same_theory) <= limit
+    return Word.UNDECIDED, Reason.THEORY if theory else Reason.COARSE
+
+
+def judge_case(rows: Sequence[Row], judged: Sequence[Judged]) -> tuple[Word, Reason | None]:
+    """Word and reason of all rows together."""
+    for word in (Word.DIFFER, Word.UNDECIDED):
+        reasons = Counter(reason for row, (found, reason) in zip(rows, judged, strict=True) if found is word)
+        if word is Word.UNDECIDED:
+            reasons = Counter({reason: reasons[reason] for reason in reasons if _decides(rows, judged, reason)})
+        if reasons:
+            return word, next(reason for reason in Reason if reasons[reason])
+    if not any(word is Word.AGREE for word, _ in judged):
+        return Word.UNDECIDED, next((reason for _, reason in judged if reason is not None), Reason.RUN_ENDED)
+    return Word.AGREE, None
+
+
+def _without_value(scene: Scene, row: Row) -> Judged:
+    """Judgement of a row without a value in some run: an open contact has no place, and its force decides."""
+    everywhere = row.cprbm.size == 0 and row.fea.size == 0 and (row.exact is None or row.exact.size == 0)
+    asked = any(probe.of == row.probe.of and probe.quantity == "force" for probe in scene.probes)
+    if row.probe.quantity in ABSENT_WHILE_OPEN and (everywhere or asked):
+        return None, None
+    return Word.UNDECIDED, Reason.EVENT
+
+
+def _contradiction(table: RunsTable, row: Row) -> Judged:
+    bounds, events = row.bounds, row.events
+    assert bounds is not None
+    if _same_resultant(table, row):
+        return Word.UNDECIDED, Reason.NOT_UNIQUE
+    if bounds.bending is None and table.runs.kinematics != "bending":
+        return Word.UNDECIDED, Reason.RUN_ENDED
+    if events.unsettled:
+        return Word.UNDECIDED, _event_reason(row)
+    if not events.contradictory:
+        return Word.DIFFER, Reason.VALUES
+    own = row.probe.of in events.contradictory and row.probe.quantity in OPEN_AT_ZERO
+    small = row.difference <= table.scene.limit(row.probe) * row.scale
+    return (Word.UNDECIDED, Reason.EVENT) if own and small else (Word.DIFFER, Reason.EVENTS)
+
+
+def _event_reason(row: Row) -> Reason:
+    return Reason.BRANCH if row.events.unsettled & {PASSED, MIRRORED} else Reason.EVENT
+
+
+def _shares(table: RunsTable, row: Row) -> tuple[str, frozenset[str]] | None:
+    """The beam, and the sources that share a force with the row's contact or joint."""
+    if row.probe.quantity not in SHARED:
+        return None
+    return sharing_sources(table.scene, table.at(row.where).values(), row.probe.of)
+
+
+def _same_resultant(table: RunsTable, row: Row) -> bool:
+    """Whether the row's contact or joint shares its force, and the sums of the shared forces do not contradict."""
+    shared = _shares(table, row)
+    if shared is None:
+        return False
+    beam, others = shared
+    sums = {name: resultant(station, {row.probe.of, *others}, beam) for name, station in table.at(row.where).items()}
+    bounds = bounds_of(table.runs, sums, lambda difference: float(np.linalg.norm(difference)), 0.0)
+    v_c, v_f = (sums[name] for name in table.compared)
+    if bounds is None:
+        return False
+    same = np.linalg.norm(v_c - sums.get("fea bending", v_f)) <= bounds.same_theory
+    return bool(same and np.linalg.norm(v_c - v_f) <= bounds.total)
+
+
+def _decides(rows: Sequence[Row], judged: Sequence[Judged], reason: Reason | None) -> bool:
+    """Whether undecided rows of a reason make the case undecided."""
+    agreeing = Counter(row.probe.name for row, (word, _) in zip(rows, judged, strict=True) if word is Word.AGREE)
+    if reason is Reason.NOT_UNIQUE:
+        return not agreeing
+    if reason not in RESOLVABLE:
+        return True
+    unresolved = Counter(row.probe.name for row, (_, why) in zip(rows, judged, strict=True) if why in RESOLVABLE)
+    return any(count >= agreeing[name] for name, count in unresolved.items())

@@ -1,0 +1,134 @@
+"""Point forces along a beam: active contacts, places away from point forces, and shared forces.
+
+Beside a held end, a moment, and the ends of a contact zone, a discretisation spreads a point force over a link or an
+element.  By Saint-Venant's principle a point force disturbs the real stress over about a thickness.  The comparison
+leaves out stresses within the longer of both lengths.  Inside a contact zone the pressure and the stress are smooth.
+
+A clamp and a contact within an element of the clamp share one force: the sum converges with the order of the mesh, and
+the shares do not.  Two contacts at one place of a beam also share a force: mechanics determines the sum alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from comparisons.geometry import length
+from cprbm_scene import Beam, Scene, StationAnswer
+from cprbm_scene.answer import Array, Flags
+from cprbm_scene.statement import BeamMoment, FreeEnd
+
+SIGNIFICANT = 1e-3
+"""Least force of a source at a place, a share of the source's largest force on the beam."""
+
+ZONE_GAP = 3.0
+"""Largest distance of neighbouring forces in a zone of contact, in elements of the coarsest mesh."""
+
+
+def active_contacts(station: StationAnswer) -> frozenset[str]:
+    """Names of the contacts that press."""
+    return frozenset(name for name, state in station.contacts.items() if state.active)
+
+
+def away_from_point_forces(scene: Scene, beam: str, places: Array, stations: Sequence[StationAnswer]) -> Flags:
+    """Which places (k,) lie outside the disturbance of held ends, moments and ends of zones of contact.
+
+    Args:
+        scene: the question.
+        beam: name of the beam.
+        places: arc lengths (k,), m.
+        stations: one station of several answers; a contact in any of them counts.
+    """
+    record = scene.beams[beam]
+    whole = length(record.curve)
+    thickness = record.thickness_at(places / whole)
+    sharp = [s for s, end in ((0.0, record.start), (whole, record.end)) if not isinstance(end, FreeEnd)]
+    loads = scene.loads.values()
+    sharp += [load.at * whole for load in loads if isinstance(load, BeamMoment) and load.beam == beam]
+    clear = _farther(places, sharp, thickness)
+    coarsest = max((_element(station, beam) for station in stations), default=0.0)
+    for contact in (name for name, record in scene.contacts.items() if beam in record.beams):
+        forces = [_significant(station, contact, beam) for station in stations]
+        ends = zone_ends(forces, ZONE_GAP * coarsest)
+        clear &= _farther(places, ends, np.maximum(thickness, coarsest))
+    return clear
+
+
+def zone_ends(places: Sequence[Array], gap: float) -> list[float]:
+    """First and last place of every answer in every zone of contact, m.
+
+    Args:
+        places: arc lengths (k,) of the forces, by answer, m; empty where the contact is open.
+        gap: largest distance of neighbours in a zone, m.
+    """
+    together = np.sort(np.concatenate(places))
+    borders = 0.5 * (together[:-1] + together[1:])[np.diff(together) > gap]
+    found: list[float] = []
+    for own in places:
+        zones = np.searchsorted(borders, own)
+        for zone in np.unique(zones):
+            found += [float(own[zones == zone].min()), float(own[zones == zone].max())]
+    return found
+
+
+def sharing_sources(scene: Scene, stations: Iterable[StationAnswer], source: str) -> tuple[str, frozenset[str]] | None:
+    """The beam, and all other contacts and joints on the beam within an element of ``source``; None without any.
+
+    Args:
+        scene: the question.
+        stations: one station of several answers.
+        source: name of a contact, or of a point that a beam is joined to.
+    """
+    beams = [name for name, beam in scene.beams.items() if source in _joints(beam)]
+    if source in scene.contacts:
+        beams = list(scene.contacts[source].beams)
+    every = tuple(stations)
+    for beam in dict.fromkeys(beams):
+        others = {other for station in every for other in _neighbours(scene, station, source, beam)}
+        if others:
+            return beam, frozenset(others)
+    return None
+
+
+def resultant(station: StationAnswer, sources: Iterable[str], beam: str) -> Array:
+    """Sum of the forces of some ``sources`` on a beam, (2,), N."""
+    forces = station.forces
+    mine = np.any([forces.chosen(source, beam) for source in sources], axis=0)
+    return np.asarray(forces.force[mine].sum(axis=0))
+
+
+def _neighbours(scene: Scene, station: StationAnswer, source: str, beam: str) -> Iterable[str]:
+    own = _significant(station, source, beam)
+    joints = _joints(scene.beams[beam])
+    for other in {*scene.contacts, *joints} - {source}:
+        if source in joints and other in joints:
+            continue
+        theirs = _significant(station, other, beam)
+        if own.size and theirs.size and np.abs(own[:, None] - theirs).min() <= _element(station, beam):
+            yield other
+
+
+def _joints(beam: Beam) -> tuple[str, ...]:
+    return tuple(end.point for end in (beam.start, beam.end) if not isinstance(end, FreeEnd))
+
+
+def _significant(station: StationAnswer, source: str, beam: str) -> Array:
+    """Arc lengths (k,) at which a source presses a beam."""
+    mine = station.forces.chosen(source, beam)
+    size = np.hypot(*station.forces.force[mine].T)
+    return np.asarray(station.forces.s[mine][size > SIGNIFICANT * size.max(initial=0.0)])
+
+
+def _element(station: StationAnswer, beam: str) -> float:
+    """Length of the beam's longest element, m."""
+    state = station.beams.get(beam)
+    return float(np.diff(station.shapes[beam].s if state is None else state.borders).max())
+
+
+def _farther(places: Array, spots: Sequence[float], distance: Array) -> Flags:
+    """Which places (k,) lie at least a ``distance`` (k,) from all ``spots``; round-off counts as far enough."""
+    if not spots:
+        return np.ones(places.shape, dtype=bool)
+    nearest = np.min(np.abs(places[:, None] - np.array(spots)), axis=1)
+    return np.asarray(nearest >= distance * (1.0 - 1e-9))

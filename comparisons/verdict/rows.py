@@ -1,0 +1,246 @@
+"""Rows of a comparison: a probe at a station, both values, their difference and its stated uncertainty.
+
+======  ==========================================================================================
+symbol  meaning
+======  ==========================================================================================
+v_c     value of the CPRBM, v_f of the finite elements in the chosen theory, v_b in ``bending``
+x       exact value in ``bending``, where the elastica reference has the station
+q       uncertainty of x: its certificate's residual, at least 1e-9 of the scale
+======  ==========================================================================================
+
+A probe has one stated uncertainty per solver, stage and branch: the largest of the stations.  An error changes its sign
+along a stage, and the change between two grids vanishes there by accident.  Critical points split a stage.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from comparisons.pairing import Runs
+from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, norm, unit_of
+from comparisons.stations import station_of
+from comparisons.verdict.bounds import Bounds, bounds_of
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.scales import denominator, probe_scales
+from comparisons.verdict.station_events import NO_EVENTS, Place, StationEvents, station_events
+from comparisons.verdict.uncertainty import largest
+from cprbm_scene import Answer, Probe, Scene, Stage, StationAnswer
+from cprbm_scene.answer import Array, Flags
+from cprbm_scene.statement import STRESSES
+
+ROUND_OFF = 1e-9
+"""Round-off of a value, and least uncertainty of an exact value, as shares of the probe's scale."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrueErrors:
+    """Distances from the exact value in the probe's unit: of v_c, of v_b, and q."""
+
+    cprbm: float
+    bending: float
+    allowance: float
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """Probe at a station; all sizes in ``unit``.
+
+    Attributes:
+        probe, stage, station: the question.
+        unit: SI unit.
+        cprbm, fea: values (k,), empty where a contact is open.
+        scale: of the probe in the stage; denominator: divisor of shown fractions.
+        events: events of the runs by the station.
+        difference, same_theory: |v_c − v_f|, |v_c − v_b|; NaN without a value.
+        bounds: stated uncertainties; None without the value of a needed run.
+        missing: runs without the station; absent: runs without a value, since a contact is open.
+        arc_length: places (k,) of a stress, m.
+        counts: components (k,) in the difference: of a stress all away from point forces; None without a difference.
+        exact: x; true_errors: distances from x.
+    """
+
+    probe: Probe
+    stage: str
+    station: float
+    unit: str
+    cprbm: Array
+    fea: Array
+    scale: float
+    denominator: float
+    events: StationEvents = NO_EVENTS
+    difference: float = math.nan
+    same_theory: float = math.nan
+    bounds: Bounds | None = None
+    missing: tuple[str, ...] = ()
+    absent: tuple[str, ...] = ()
+    arc_length: Array | None = None
+    counts: Flags | None = None
+    exact: Array | None = None
+    true_errors: TrueErrors | None = None
+
+    @property
+    def place(self) -> Place:
+        """Whether all runs have passed the same events."""
+        return self.events.place
+
+    @property
+    def branch(self) -> int | None:
+        """Number of critical points before the station; None where the runs have passed different numbers."""
+        return self.events.branch
+
+    @property
+    def where(self) -> tuple[str, float]:
+        """Stage and station."""
+        return self.stage, self.station
+
+    def fraction(self, value: float) -> float | None:
+        """``value`` over the denominator; None without a finite quotient."""
+        if not math.isfinite(value):
+            return None
+        if self.denominator > 0.0:
+            return value / self.denominator
+        return 0.0 if value == 0.0 else None
+
+
+def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
+    """All rows of the stations that both compared answers reach."""
+    table = RunsTable(scene, runs)
+    return build_rows(table, station_events(table))
+
+
+def build_rows(table: RunsTable, events: Mapping[tuple[str, float], StationEvents]) -> tuple[Row, ...]:
+    """All rows of the stations that both compared runs reach, in the order of stations and probes."""
+    scene = table.scene
+    scales = probe_scales(scene, table.pair)
+    stages = {stage.name: stage for stage in scene.stages}
+    found = []
+    for where in table.reached:
+        stations = table.at(where)
+        missing = tuple(name for name in table.answers if name not in stations)
+        for probe in scene.probes:
+            row = bare_row(scene, table.pair, probe, stages[where[0]], where[1], scales[where[0], probe.name])
+            found.append(_measured(table, replace(row, events=events[where], missing=missing), stations))
+    return _with_largest_uncertainties(found)
+
+
+def bare_row(
+    scene: Scene, compared: tuple[Answer, Answer], probe: Probe, stage: Stage, value: float, scale: float
+) -> Row:
+    """The values of the two compared answers, without a difference.
+
+    Args:
+        scene: the question.
+        compared: answers of the CPRBM and of the finite elements.
+        probe: the probe.
+        stage: the stage.
+        value: the station.
+        scale: of the probe in the stage, :func:`comparisons.verdict.scales.probe_scales`.
+
+    Raises:
+        KeyError: an answer lacks the station or the probe.
+    """
+    v_c, v_f = (station_of(answer, stage.name, value).values[probe.name] for answer in compared)
+    return Row(
+        probe=probe,
+        stage=stage.name,
+        station=value,
+        unit=unit_of(scene, probe, stage),
+        cprbm=v_c,
+        fea=v_f,
+        scale=scale,
+        denominator=denominator(probe, norm(probe.quantity, v_f), scale),
+        arc_length=arc_lengths(scene, probe) if probe.quantity in STRESSES else None,
+    )
+
+
+def _measured(table: RunsTable, row: Row, stations: Mapping[str, StationAnswer]) -> Row:
+    """The row with its difference, stated uncertainties and true errors."""
+    runs, probe = table.runs, row.probe
+    values = {name: station.values[probe.name] for name, station in stations.items()}
+    exact = _exact_station(runs, row)
+    row = replace(
+        row,
+        exact=None if exact is None else exact.values[probe.name],
+        absent=tuple(name for name, value in values.items() if value.size == 0),
+    )
+    if row.fea.size == 0 or any(value.shape != row.fea.shape for value in values.values()):
+        return row
+    counts = np.ones(row.fea.shape, dtype=bool)
+    if row.arc_length is not None:
+        counts = away_from_point_forces(table.scene, probe.of, row.arc_length, tuple(stations.values()))
+    if not counts.any():
+        return row
+
+    def size(difference: Array) -> float:
+        return norm(probe.quantity, difference[counts])
+
+    v_b = values.get("fea bending")
+    row = replace(
+        row,
+        counts=counts,
+        difference=size(row.cprbm - row.fea),
+        same_theory=size(row.cprbm - (row.fea if v_b is None else v_b)),
+    )
+    if row.place is Place.BETWEEN:
+        return row
+    is_open = probe.quantity in OPEN_AT_ZERO and not any(value.any() for value in values.values())
+    floor = 0.0 if is_open else ROUND_OFF * row.scale
+    key = (row.stage, row.station, probe.name)
+    known = {name: each[key] for name, each in runs.settled.items() if key in each}
+    known = {name: each.of(counts) for name, each in known.items()}
+    masked = {name: value[counts] for name, value in values.items()}
+    return replace(
+        row,
+        bounds=bounds_of(runs, masked, lambda difference: norm(probe.quantity, difference), floor, known),
+        true_errors=_true_errors(row, exact, v_b, size),
+    )
+
+
+def _true_errors(row: Row, exact: StationAnswer | None, v_b: Array | None, size: object) -> TrueErrors | None:
+    if exact is None or v_b is None or row.exact is None or row.exact.shape != row.fea.shape:
+        return None
+    assert callable(size)
+    residual = max(exact.certificate.residual, exact.certificate.residual_floor, ROUND_OFF)
+    return TrueErrors(size(row.cprbm - row.exact), size(v_b - row.exact), residual * row.scale)
+
+
+def _exact_station(runs: Runs, row: Row) -> StationAnswer | None:
+    """The exact answer's station on the row's branch."""
+    if runs.exact is None or row.branch is None:
+        return None
+    try:
+        found = station_of(runs.exact, row.stage, row.station)
+    except KeyError:
+        return None
+    return found if found.branch == row.branch else None
+
+
+def _with_largest_uncertainties(rows: Sequence[Row]) -> tuple[Row, ...]:
+    """The rows with one uncertainty per solver, probe, stage and branch: the largest of the stations.
+
+    A contact that is open in all runs has no force and no uncertainty.
+    """
+    names = ("cprbm", "fea", "bending")
+    stated = {
+        name: largest(
+            ((row.probe.name, row.stage, row.branch), getattr(row.bounds, name) or 0.0)
+            for row in rows
+            if row.bounds is not None and not row.events.unsettled
+        )
+        for name in names
+    }
+
+    def widened(row: Row) -> Row:
+        if row.bounds is None or row.bounds.total == 0.0:
+            return row
+        key = row.probe.name, row.stage, row.branch
+        own = {name: max(getattr(row.bounds, name) or 0.0, each.get(key, 0.0)) for name, each in stated.items()}
+        bending = None if row.bounds.bending is None else own["bending"]
+        return replace(row, bounds=replace(row.bounds, cprbm=own["cprbm"], fea=own["fea"], bending=bending))
+
+    return tuple(map(widened, rows))

@@ -1,0 +1,104 @@
+"""The audit of answers: right answers of both solvers stay quiet, and every planted fault is a complaint.
+
+Faults are planted in right answers, so that the complaint is the fault's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import pytest
+
+import cprbm
+import fea_reference
+from comparisons import cases
+from comparisons.audit import audit
+from cprbm_scene import Scene, scene_from
+from tests.audit.faults import FAULTS
+from tests.together import branches
+
+SOLVERS = {
+    "cprbm": lambda scene: cprbm.answer(scene, cprbm.Settings(links=20)),
+    "shear": lambda scene: fea_reference.answer(scene, fea_reference.Settings(elements=20, kinematics="shear")),
+    "bending": lambda scene: fea_reference.answer(scene, fea_reference.Settings(elements=20, kinematics="bending")),
+}
+CASES = [name for name in cases.names() if isinstance(cases.asked(name), Scene)]
+EACH = pytest.mark.parametrize("solver", ["cprbm", "shear"])
+
+
+@cache
+def asked(case):
+    """A built-in case at the last stations of its stages."""
+    scene = cases.asked(case)
+    stages = []
+    for stage in scene.stages:
+        stations = stage.stations if stage.beyond is None else stage.stations[::20]
+        update = {"stations": stations[-3:] if stage.beyond is None else stations, "shown": ()}
+        stages.append(stage.model_copy(update=update))
+    return scene.model_copy(update={"stages": tuple(stages), "claims": ()})
+
+
+@cache
+def answered(case, solver):
+    found = SOLVERS[solver](asked(case))
+    assert found.completed, found.sentence
+    return found
+
+
+@EACH
+@pytest.mark.parametrize("case", CASES)
+def test_right_answers_stay_quiet(case, solver):
+    found = audit(asked(case), answered(case, solver))
+    assert found.complaints == ()
+    assert found.crossings == ()
+    assert found.stations == len(answered(case, solver).stations)
+
+
+@EACH
+@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.parametrize("case", CASES)
+def test_a_planted_fault_is_a_complaint(case, solver, fault):
+    scene, answer = asked(case), answered(case, solver)
+    altered = FAULTS[fault](scene, answer.stations[-1])
+    if altered is None:
+        pytest.skip("the scene has no place for the fault")
+    assert audit(scene, replace(answer, stations=(*answer.stations[:-1], altered))).complaints != ()
+
+
+@EACH
+@pytest.mark.parametrize("case", ["hinge", "stack", "wrapped"])
+def test_a_contact_that_the_solver_ignores_is_a_penetration(case, solver):
+    scene = cases.asked(case)
+    probes = tuple(probe for probe in scene.probes if probe.of not in scene.contacts)
+    alone = scene.model_copy(update={"contacts": {}, "probes": probes})
+    found = SOLVERS[solver](alone)
+    assert audit(alone, found).complaints == ()
+    said = audit(scene.model_copy(update={"probes": probes}), found).complaints
+    assert any("penetrates" in sentence for sentence in said), said
+
+
+@EACH
+def test_beams_that_are_thicker_than_solved_penetrate(solver):
+    scene = asked("hinge")
+    thicker = {name: beam.model_copy(update={"thickness": 1.12 * beam.thickness}) for name, beam in scene.beams.items()}
+    said = audit(scene.model_copy(update={"beams": thicker}), answered("hinge", solver)).complaints
+    assert any("penetrates" in sentence for sentence in said), said
+    assert any("internal forces make" in sentence for sentence in said), said
+
+
+@pytest.mark.parametrize("solver", ["cprbm", "bending"])
+def test_energy_that_a_silent_jump_loses_is_a_complaint(solver):
+    # the answer states where it jumped; the altered answer does not
+    scene = scene_from(branches.snap([[0.0, 0.61, 0.69]]))
+    answer = SOLVERS[solver](scene)
+    assert answer.completed, answer.sentence
+    assert audit(scene, answer).complaints == ()
+    silent = replace(answer, critical=(), stations=tuple(replace(station, branch=0) for station in answer.stations))
+    assert any("more than the work" in sentence for sentence in audit(scene, silent).complaints)
+
+
+def test_an_answer_without_internal_forces_is_not_audited():
+    answer = answered("hinge", "shear")
+    bare = replace(answer, stations=tuple(replace(station, beams={}) for station in answer.stations))
+    assert audit(asked("hinge"), bare).stations == 0

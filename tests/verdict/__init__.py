@@ -1,0 +1,1 @@
+"""The verdict on made-up answers, by families: uncertainties, rows, words, events, completeness and sentences."""

@@ -1,0 +1,89 @@
+"""Comparisons of made-up solvers, and changes of their answers."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from comparisons.case import Comparison, compare
+from comparisons.choices import Choices
+from comparisons.pairing import Solver, Solvers, paired
+from comparisons.verdict.rows import Row
+from cprbm_scene import Answer, Ending, Scene, StationAnswer
+from cprbm_scene.answer import ContactState, PointForces, frozen_array
+from cprbm_scene.frozendict import frozendict
+
+Change = Callable[[StationAnswer], StationAnswer]
+
+
+def compared(
+    scene: Scene, cprbm: Solver, fea: Solver, choices: Choices | None = None, *, exact: Solver | None = None
+) -> Comparison:
+    """The comparison of two made-up solvers."""
+    return compare(scene, paired(scene, choices or Choices(), Solvers(cprbm, fea, exact=exact)))
+
+
+def row_of(comparison: Comparison, probe: str, station: float = 0.67) -> Row:
+    """The row of a probe at a station."""
+    return next(row for row in comparison.rows if (row.probe.name, row.station) == (probe, station))
+
+
+def said_of(comparison: Comparison, probe: str, station: float = 0.67) -> str:
+    """Word and reason of a row, as ``UNDECIDED COARSE``; empty where the row takes no part."""
+    index = comparison.rows.index(row_of(comparison, probe, station))
+    both = comparison.verdict.words[index], comparison.verdict.reasons[index]
+    return " ".join(each.value for each in both if each is not None)
+
+
+def counted(comparison: Comparison) -> Counter[str]:
+    """Numbers of the words and reasons of all rows that take part."""
+    rows = zip(comparison.verdict.words, comparison.verdict.reasons, strict=True)
+    return Counter(" ".join(each.value for each in row if each is not None) for row in rows if row[0] is not None)
+
+
+def word_of(comparison: Comparison) -> str:
+    """Word and reason of the case."""
+    both = comparison.verdict.word, comparison.verdict.reason
+    return " ".join(each.value for each in both if each is not None)
+
+
+def altered(solver: Solver, change: Change, *stations: float) -> Solver:
+    """A solver with a change at some stations, or at all."""
+
+    def answer(scene: Scene, choices: Choices) -> Answer:
+        found = solver(scene, choices)
+        changed = (change(each) if not stations or each.value in stations else each for each in found.stations)
+        return replace(found, stations=tuple(changed))
+
+    return answer
+
+
+def only(solver: Solver, other: Solver, when: Callable[[Choices], bool]) -> Solver:
+    """The ``other`` solver for some choices, else the first."""
+    return lambda scene, choices: (other if when(choices) else solver)(scene, choices)
+
+
+def in_bending(solver: Solver) -> Solver:
+    """A solver of finite elements that answers in ``bending`` whatever theory is chosen: the step of theory is 0."""
+    return lambda scene, choices: solver(scene, choices.within("bending"))
+
+
+def ending(solver: Solver, stations: int) -> Solver:
+    """A solver that ends early, after some stations."""
+
+    def answer(scene: Scene, choices: Choices) -> Answer:
+        found = solver(scene, choices)
+        return replace(found, stations=found.stations[:stations], ending=Ending.STEP_TOO_SMALL, sentence="It stuck.")
+
+    return answer
+
+
+def opened(station: StationAnswer) -> StationAnswer:
+    """The station with an open contact; all other values stay."""
+    nothing = {"contact.force": [0.0], "contact.centre": [], "contact.closing_load": []}
+    values = {name: frozen_array(nothing.get(name, value)) for name, value in station.values.items()}
+    contacts = frozendict({"contact": ContactState(False, frozen_array(np.zeros((0, 2))))})
+    return replace(station, values=frozendict(values), touching=frozendict(), contacts=contacts, forces=PointForces())

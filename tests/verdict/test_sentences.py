@@ -1,0 +1,91 @@
+"""Sentences of a verdict: what decides, where, whose uncertainty, and the next command."""
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from comparisons.choices import Choices
+from cprbm_scene import Ending
+from tests.verdict.comparing import altered, compared, ending, only, word_of
+from tests.verdict.jumping import Jumping
+from tests.verdict.made_up import MadeUp, with_value
+
+C, F = MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4)
+
+
+COARSE = MadeUp("cprbm", 2e-2), MadeUp("fea", -8e-2)
+
+
+@pytest.fixture
+def away(hinge):
+    """The hinge without the station 0.201, near which the contact closes."""
+    (stage,) = hinge.stages
+    stations = tuple(value for value in stage.stations if value != 0.201)
+    return hinge.model_copy(update={"stages": (stage.model_copy(update={"stations": stations}),)})
+
+
+@pytest.mark.parametrize(
+    ("cprbm", "fea", "options"),
+    [(COARSE[0], F, {"-n"}), (MadeUp("cprbm", 1e-3), COARSE[1], {"--elements"}), (*COARSE, {"-n", "--elements"})],
+)
+def test_the_size_of_the_hint_makes_the_limit(away, cprbm, fea, options):
+    """Errors of second order: the command of the sentence agrees, and half of its sizes does not."""
+    found = compared(away, cprbm, fea)
+    assert word_of(found) == "UNDECIDED COARSE"
+    command = re.search(r"`([^`]*)` would do", found.verdict.because)[1].split()
+    sizes = dict(zip(command[::2], map(int, command[1::2]), strict=True))
+    assert set(sizes) == options
+    for share, word in ((1.0, "AGREE"), (0.5, "UNDECIDED")):
+        asked = {name: int(share * size) for name, size in sizes.items()}
+        choices = Choices(links=asked.get("-n", 40), elements=asked.get("--elements", 80))
+        assert word_of(compared(away, cprbm, fea, choices)).split()[0] == word
+
+
+def test_the_sentence_names_the_row_that_decides(hinge):
+    found = compared(hinge, altered(C, with_value("BD.rotation", [0.9]), 0.67), F)
+    assert found.verdict.because.startswith("1 of 126 rows differ, first of all BD.rotation at load 0.67: ")
+    assert "--solver cprbm,fea,solid" in found.verdict.because
+    assert found.verdict.sentence.startswith(found.verdict.because)
+
+
+def test_a_case_that_agrees_names_the_closest_row(hinge):
+    assert compared(hinge, C, F).verdict.because.startswith("All 126 rows agree; the closest is ")
+
+
+def test_whose_uncertainty_is_too_large(away):
+    assert "most of it of the CPRBM" in compared(away, COARSE[0], F).verdict.because
+    assert "most of it of the finite elements" in compared(away, C, COARSE[1]).verdict.because
+
+
+def test_a_problem_of_several_runs_is_told_once(hinge):
+    """Six runs of the finite elements end alike, and one run of the CPRBM for another reason."""
+
+    def stuck(scene, choices):
+        found = ending(C, 5)(scene, choices)
+        return replace(found, ending=Ending.STEP_TOO_SMALL, sentence="It lacks air.")
+
+    cprbm = only(C, stuck, lambda choices: choices.links == 80)
+    sentence = compared(hinge, cprbm, ending(F, 5)).verdict.sentence
+    assert sentence.count("It stuck") == sentence.count("It lacks air") == 1
+    assert "fea bending, fea bending finer, fea stretch, fea shear, fea shear finer, fea shear beside: " in sentence
+    assert "cprbm finer: it ended early: It lacks air" in sentence
+
+
+def test_no_sentence_is_said_twice_and_the_worst_comes_first(crank):
+    """A critical point that differs, another that agrees, and a run that ended."""
+    found = compared(crank, Jumping("cprbm", stops=True), Jumping("fea"))
+    assert found.verdict.because.startswith("The branch ends in back at nowhere in the CPRBM and 0.44")
+    assert len(set(found.verdict.sentences)) == len(found.verdict.sentences)
+    assert "70.41°" in found.verdict.sentence
+    assert found.verdict.sentence.count("The branch ends in forward") == 1
+
+
+def test_a_critical_point_is_told_in_degrees_with_its_mechanism(crank):
+    """70.4057° and 70.43°, 0.0043° apart within one theory against a stated 0.0091°."""
+    pair = (replace(Jumping(name), what="stopB") for name in ("cprbm", "fea"))
+    (first, *_) = compared(crank, *pair).verdict.sentences
+    assert first.startswith(
+        "The branch ends in forward at 1.2288 rad (70.41°) (stopB: fold) in the CPRBM and 1.2292 rad"
+    )
+    assert "within one theory 0.0043° against a stated 0.0091°, 0.30° allowed: AGREE." in first

@@ -1,0 +1,279 @@
+"""Words and reasons of rows and cases on made-up answers."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from comparisons import cases
+from comparisons.audit import audit
+from comparisons.case import compare
+from comparisons.choices import Choices
+from comparisons.pairing import Solvers, paired
+from comparisons.verdict.bounds import Bounds
+from comparisons.verdict.judge import judge_case, judge_row
+from comparisons.verdict.rows import Row
+from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.words import Reason, Word, worst_of
+from cprbm_scene import Probe, Stage
+from cprbm_scene.answer import PointForces, frozen_array
+from tests.verdict.comparing import altered, compared, counted, only, opened, row_of, said_of, word_of
+from tests.verdict.made_up import MadeUp, with_value
+
+C, F = MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4)
+HINGE = cases.opened("hinge")
+TABLE = RunsTable(HINGE, paired(HINGE, Choices(), Solvers(C, F)))
+LIMIT = 0.015  # of the hinge
+
+
+def planted(fault, solver):
+    pair = {"cprbm": C, "fea": F}
+    pair[solver] = replace(pair[solver], **fault)
+    return pair["cprbm"], pair["fea"]
+
+
+@pytest.mark.parametrize("solver", ["cprbm", "fea"])
+@pytest.mark.parametrize(
+    ("fault", "word"),
+    [
+        ({}, "AGREE"),
+        ({"stiffness": 1.02}, "DIFFER VALUES"),
+        ({"stiffness": 0.98}, "DIFFER VALUES"),
+        ({"sign": -1.0}, "DIFFER VALUES"),
+        ({"contact": False}, "DIFFER EVENTS"),
+        ({"until": 7}, "UNDECIDED RUN_ENDED"),
+    ],
+    ids=["right", "2 % too stiff", "2 % too soft", "sign of the contact", "contact ignored", "stops"],
+)
+def test_a_planted_fault_in_a_solver(hinge, solver, fault, word):
+    found = compared(hinge, *planted(fault, solver))
+    assert word_of(found) == word, found.verdict.sentence
+    assert found.verdict.completed is ("until" not in fault)
+
+
+@pytest.mark.parametrize(("solver", "error"), [("cprbm", 0.02), ("fea", 0.08)])
+def test_an_uncertainty_beyond_the_limit_is_coarse(hinge, solver, error):
+    """2 % of error at 40 links and at 80 elements state 2.5 %, more than 1.5 %."""
+    assert word_of(compared(hinge, *planted({"error": error}, solver))) == "UNDECIDED COARSE"
+
+
+def test_a_wrong_cprbm_does_not_hide_behind_the_step_of_theory(hinge):
+    """0.5 % too soft is the step of theory: against the default theory the values are equal."""
+    found = compared(hinge, MadeUp("cprbm", 1e-4, stiffness=1 / 1.005), MadeUp("fea", -1e-5))
+    assert word_of(found) == "DIFFER VALUES"
+    assert "within one theory" in found.verdict.because
+
+
+def test_identical_values_agree_without_any_uncertainty(hinge):
+    found = compared(hinge, MadeUp("cprbm", 0.0), MadeUp("fea", 0.0), Choices(kinematics="bending"))
+    assert set(counted(found)) == {"AGREE"}
+
+
+@pytest.mark.parametrize(("limit", "probe", "word"), [(None, None, "COARSE"), (0.2, None, ""), (None, 0.2, "")])
+def test_the_limit_of_the_scene_and_of_a_probe(hinge, limit, probe, word):
+    """2 % of error state 2.5 %, more than 1.5 % and less than 20 %."""
+    probes = tuple(each.model_copy(update={"verdict_limit": probe}) for each in hinge.probes)
+    scene = hinge.model_copy(update={"verdict_limit": limit or LIMIT, "probes": probes})
+    found = compared(scene, MadeUp("cprbm", 2e-2), F)
+    assert word_of(found) == (f"UNDECIDED {word}" if word else "AGREE")
+    assert ("20.0 % for C.reaction" in found.verdict.sentence) is (probe is not None)
+    assert ("more than 1.50 %" in found.verdict.because) is bool(word)
+
+
+def test_a_step_of_theory_beyond_the_limit_is_no_coarse_mesh(hinge):
+    shear = only(F, replace(F, stiffness=1.0 / 1.03), lambda choices: choices.kinematics != "bending")
+    found = compared(hinge, C, shear)
+    assert word_of(found) == "UNDECIDED THEORY"
+    assert said_of(found, "scene.potential_energy") == "UNDECIDED THEORY"
+    assert "shear" in found.verdict.because
+
+
+def test_an_audit_that_fails_is_undecided_and_hides_no_difference(hinge):
+    def look(scene, answer):
+        complaints = ("at load 0.67 beam1 is not in balance", "more") if answer.solver == "fea" else ()
+        return replace(audit(scene, answer), complaints=complaints)
+
+    agreeing, differing = (
+        compare(hinge, paired(hinge, Choices(), Solvers(cprbm, F)), look) for cprbm in (C, replace(C, stiffness=1.02))
+    )
+    assert (word_of(agreeing), word_of(differing)) == ("UNDECIDED AUDIT", "DIFFER VALUES")
+    assert agreeing.verdict.completed
+    for found in (agreeing, differing):
+        assert (
+            found.verdict.sentence.count("fea's answer fails: at load 0.67 beam1 is not in balance (and 1 more)") == 1
+        )
+        assert set(found.audits) == {"cprbm", "fea"}
+
+
+# -- Rows between events of the runs
+
+
+def test_a_station_between_the_loads_of_one_closing_is_undecided_and_counted(hinge):
+    """The CPRBM is open at 0.268, and both solvers close later: one row of ten by the force, none of the rest."""
+    found = compared(hinge, altered(C, opened, 0.201, 0.268), F)
+    assert said_of(found, "contact.force", 0.268) == "UNDECIDED EVENT"
+    assert said_of(found, "contact.centre", 0.268) == ""  # the force decides
+    assert said_of(found, "BD.rotation", 0.268) == "AGREE"
+    assert word_of(found) == "AGREE"
+    assert "of contact.force (EVENT)" in found.verdict.because
+
+
+def test_runs_of_one_solver_that_do_not_agree_on_a_contact_are_undecided(hinge):
+    """The run at 2N never closes: most rows of the force are between events, and the case is undecided."""
+    unsure = only(C, altered(C, opened), lambda choices: choices.links == 80)
+    found = compared(hinge, unsure, F)
+    assert said_of(found, "contact.force") == "UNDECIDED EVENT"
+    assert word_of(found) == "UNDECIDED EVENT"
+
+
+@pytest.mark.parametrize("quantity", ["centre", "ends", "closing_load"])
+def test_without_a_force_a_place_in_one_solver_alone_is_undecided(hinge, quantity):
+    asked = hinge.model_copy(update={"probes": (Probe(of="contact", quantity=quantity),), "claims": ()})
+    assert word_of(compared(asked, replace(C, contact=False), F)) == "UNDECIDED EVENT"
+    assert word_of(compared(asked, replace(C, contact=False), replace(F, contact=False))).startswith("UNDECIDED")
+
+
+def test_a_force_without_a_place_differs(hinge):
+    found = compared(hinge, replace(C, contact=False), F)
+    assert said_of(found, "contact.force") == "DIFFER EVENTS"
+    assert row_of(found, "contact.force").fraction(row_of(found, "contact.force").difference) == pytest.approx(1.0)
+    assert (row_of(found, "contact.centre").bounds, said_of(found, "contact.centre")) == (None, "")
+
+
+# -- Forces that a clamp and a contact share
+
+
+def sharing(force, clamp):
+    """A contact 1.6 mm from the clamp A, of which an element is 2 mm long, and the force of the clamp."""
+
+    def change(station):
+        forces = PointForces(
+            ("contact", "A"),
+            ("beam1", "beam1"),
+            frozen_array([0.0016, 0.0]),
+            frozen_array(np.zeros((2, 2))),
+            frozen_array([[0.0, force], [0.0, clamp]]),
+            frozen_array([0.0, 0.0]),
+        )
+        return replace(with_value("contact.force", [abs(force)])(station), forces=forces)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("clamp", "word", "case"), [(-32.0, "UNDECIDED NOT_UNIQUE", "AGREE"), (-30.0, "DIFFER VALUES", "DIFFER VALUES")]
+)
+def test_a_shared_force_is_not_unique_if_the_sums_are_equal(hinge, clamp, word, case):
+    """9 N and −29 N in one solver, 12 N and −32 N in the other have one sum; −30 N have another."""
+    pair = altered(C, sharing(9.0, -29.0), 0.603, 0.67), altered(F, sharing(12.0, clamp), 0.603, 0.67)
+    found = compared(hinge, *pair)
+    assert [said_of(found, "contact.force", at) for at in (0.603, 0.67)] == [word] * 2
+    assert word_of(found) == case
+    assert ("2 of contact.force (NOT_UNIQUE)" in found.verdict.because) is (case == "AGREE")
+
+
+def test_rows_that_are_all_not_unique_do_not_agree(hinge):
+    stage = Stage(name="load", steps="M", stations=(0.603, 0.67))
+    probes = (Probe(of="contact", quantity="force"),)
+    scene = hinge.model_copy(update={"stages": (stage,), "probes": probes, "claims": ()})
+    found = compared(scene, altered(C, sharing(9.0, -29.0)), altered(F, sharing(12.0, -32.0)))
+    assert word_of(found) == "UNDECIDED NOT_UNIQUE"
+
+
+# -- Rows and cases by definition
+
+SHARES = st.floats(min_value=0.0, max_value=0.1)
+
+
+def row(difference, same_theory, bounds):
+    value = frozen_array([1.0])
+    probe = Probe(of="BD", quantity="rotation")
+    own = {"difference": difference, "same_theory": same_theory, "bounds": bounds}
+    return Row(probe, "load", 0.67, "rad", value, value, 1.0, 1.0, **own)
+
+
+@settings(max_examples=300)
+@given(SHARES, SHARES, SHARES, SHARES, st.none() | SHARES, SHARES, SHARES)
+def test_a_word_follows_from_the_two_inequalities(difference, same_theory, c, f, b, theory, r):
+    """|v_c − v_f| ≤ u_c + u_f + θ + r and |v_c − v_b| ≤ u_c + u_b + r, with both sums within the limit."""
+    word, reason = judge_row(TABLE, row(difference, same_theory, Bounds(c, f, b, theory, r)))
+    total, tight = c + f + r + theory, c + (f if b is None else b) + r
+    if difference > total or same_theory > tight:
+        expected = (Word.UNDECIDED, Reason.RUN_ENDED) if b is None else (Word.DIFFER, Reason.VALUES)
+    elif max(total, tight) > LIMIT:
+        by_theory = theory > LIMIT or max(c + f + r, tight) <= LIMIT
+        expected = (Word.UNDECIDED, Reason.THEORY if by_theory else Reason.COARSE)
+    else:
+        expected = (Word.AGREE, None)
+    assert (word, reason) == expected
+
+
+@settings(max_examples=300)
+@given(SHARES, SHARES, SHARES, SHARES, SHARES, st.sampled_from([-1.0, 1.0]))
+def test_the_step_of_theory_alone_makes_no_difference(own, c, f, b, step, sign):
+    """v_c − v_f is the sum of v_c − v_b and of v_b − v_f, and u_f is never less than u_b."""
+    word, _ = judge_row(TABLE, row(abs(own + sign * step), own, Bounds(c, max(f, b), b, step, 1e-15)))
+    assert (word is Word.DIFFER) is (own > c + b + 1e-15)
+
+
+WORDS = {
+    "D": (Word.DIFFER, Reason.VALUES),
+    "E": (Word.DIFFER, Reason.EVENTS),
+    "C": (Word.UNDECIDED, Reason.COARSE),
+    "V": (Word.UNDECIDED, Reason.EVENT),
+    "T": (Word.UNDECIDED, Reason.THEORY),
+    "R": (Word.UNDECIDED, Reason.RUN_ENDED),
+    "B": (Word.UNDECIDED, Reason.BRANCH),
+    "N": (Word.UNDECIDED, Reason.NOT_UNIQUE),
+    "A": (Word.AGREE, None),
+    "-": (None, None),
+}
+
+
+@pytest.mark.parametrize(
+    ("rows", "case"),
+    [
+        ("AAA", "A"),
+        ("A-A", "A"),
+        ("", "R"),
+        ("--", "R"),
+        ("ADC", "D"),
+        ("EDA", "D"),
+        ("CAA", "A"),
+        ("CVAAA", "A"),
+        ("CVA", "V"),
+        ("CA", "C"),
+        ("CCAAAA", "A"),
+        ("TAAA", "T"),
+        ("RAAA", "R"),
+        ("BAAA", "B"),
+        ("BRA", "R"),
+        ("NNNA", "A"),
+        ("NN", "N"),
+        ("NC", "C"),
+    ],
+)
+def test_words_of_rows_of_one_probe_make_the_word_of_the_case(rows, case):
+    """A contradiction decides; a minority of unresolved rows, and rows that are not unique, decide nothing."""
+    found = row(0.0, 0.0, None)
+    assert judge_case([found] * len(rows), [WORDS[each] for each in rows]) == WORDS[case]
+
+
+def test_a_minority_of_all_rows_decides_where_it_is_the_majority_of_a_probe():
+    one, other = (replace(row(0.0, 0.0, None), probe=Probe(of=of, quantity="rotation")) for of in ("a", "b"))
+    judged = [WORDS["A"]] * 10 + [WORDS["C"], WORDS["C"], WORDS["A"]]
+    assert judge_case([one] * 10 + [other] * 3, judged) == WORDS["C"]
+
+
+def test_the_worst_of_words():
+    assert worst_of([Word.AGREE, None, Word.DIFFER, Word.UNDECIDED]) is Word.DIFFER
+    assert worst_of([Word.AGREE, Word.UNDECIDED]) is Word.UNDECIDED
+    assert worst_of([None]) is None
+
+
+def test_a_row_without_a_value_or_a_statement_takes_no_part_or_is_undecided():
+    assert judge_row(TABLE, row(math.nan, math.nan, None)) == (None, None)
+    assert judge_row(TABLE, row(0.0, 0.0, None)) == (Word.UNDECIDED, Reason.RUN_ENDED)
