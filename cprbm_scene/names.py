@@ -68,7 +68,7 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
             for kind in (each.kind for each in info.metadata if isinstance(each, Of)):
                 for part, name in _named(getattr(record, field)):
                     if name not in known[kind]:
-                        yield unknown_name(f"{key}.{field}{part}", name, kind, known[kind])
+                        yield unknown_name(f"{key}.{field}{part}".removeprefix("."), name, kind, known[kind])
 
 
 def _named(value: object) -> Iterator[tuple[str, str]]:
