@@ -21,7 +21,7 @@ from typing import assert_never
 import numpy as np
 
 from cprbm_scene import Arc, Beam, Line, Polynomial, Spline
-from cprbm_scene.answer import Array, Shape
+from cprbm_scene.answer import Array
 from cprbm_scene.geometry import arc_length, curvature_on, largest_curvature, points_on
 from cprbm_scene.statement import Curve
 
@@ -83,45 +83,6 @@ def points(curve: Curve, s: Array) -> Array:
             return points_on(curve, np.asarray(s) / arc_length(curve))
         case _:
             assert_never(curve)
-
-
-def nearest(shape: Shape, places: Array) -> Array:
-    """Arc lengths (k,), m, of the points of a deformed neutral line, a polyline, nearest to ``places`` (k, 2), m."""
-    s, away = _feet(shape, places)
-    return np.asarray(s[np.arange(len(s)), np.argmin(away, axis=1)])
-
-
-def nearest_of_two_laps(shape: Shape, places: Array) -> Array:
-    """The same (k, 2) where a line lies beside itself: on the nearest lap, and on another one.
-
-    Between laps the tangents spread over more than a right angle, or a chord between them is not normal to either.
-    Where there is no other one, the first counts twice.
-    """
-    s, away = _feet(shape, places)
-    angle = np.unwrap(np.arctan2(np.diff(shape.y), np.diff(shape.x)))
-    found = []
-    for at, distance in zip(s, away, strict=True):
-        first = int(np.argmin(distance))
-        spread = np.concatenate([_spread(angle[first::-1])[:0:-1], _spread(angle[first:])])
-        other = np.where(spread > 0.5 * math.pi, distance, np.inf)
-        second = int(np.argmin(other)) if np.isfinite(other).any() else first
-        found.append([at[first], at[second]])
-    return np.array(found).reshape(-1, 2)
-
-
-def _spread(angle: Array) -> Array:
-    """Over how much angles (k,) spread from the first up to each."""
-    return np.asarray(np.maximum.accumulate(angle) - np.minimum.accumulate(angle))
-
-
-def _feet(shape: Shape, places: Array) -> tuple[Array, Array]:
-    """Of every piece of a polyline the nearest arc length to each place, and the square of its distance, (k, m)."""
-    start = np.stack([shape.x[:-1], shape.y[:-1]], axis=1)
-    step = np.stack([np.diff(shape.x), np.diff(shape.y)], axis=1)
-    square = np.maximum(np.sum(step**2, axis=1), np.finfo(float).tiny)
-    way = np.reshape(places, (-1, 1, 2)) - start
-    share = np.clip(np.sum(way * step, axis=2) / square, 0.0, 1.0)
-    return shape.s[:-1] + share * np.diff(shape.s), np.sum((way - share[..., None] * step) ** 2, axis=2)
 
 
 def _turn(arc: Arc) -> float:
