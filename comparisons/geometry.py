@@ -21,7 +21,7 @@ from typing import assert_never
 import numpy as np
 
 from cprbm_scene import Arc, Beam, Line, Polynomial, Spline
-from cprbm_scene.answer import Array, Shape
+from cprbm_scene.answer import Array
 from cprbm_scene.geometry import arc_length, curvature_on, largest_curvature, points_on
 from cprbm_scene.statement import Curve
 
@@ -83,22 +83,6 @@ def points(curve: Curve, s: Array) -> Array:
             return points_on(curve, np.asarray(s) / arc_length(curve))
         case _:
             assert_never(curve)
-
-
-def nearest(shape: Shape, places: Array) -> Array:
-    """Arc lengths (k,), m, of the points of a deformed neutral line, a polyline, nearest to ``places`` (k, 2), m."""
-    s, away = _feet(shape, places)
-    return np.asarray(s[np.arange(len(s)), np.argmin(away, axis=1)])
-
-
-def _feet(shape: Shape, places: Array) -> tuple[Array, Array]:
-    """Of every piece of a polyline the nearest arc length to each place, and the square of its distance, (k, m)."""
-    start = np.stack([shape.x[:-1], shape.y[:-1]], axis=1)
-    step = np.stack([np.diff(shape.x), np.diff(shape.y)], axis=1)
-    square = np.maximum(np.sum(step**2, axis=1), np.finfo(float).tiny)
-    way = np.reshape(places, (-1, 1, 2)) - start
-    share = np.clip(np.sum(way * step, axis=2) / square, 0.0, 1.0)
-    return shape.s[:-1] + share * np.diff(shape.s), np.sum((way - share[..., None] * step) ** 2, axis=2)
 
 
 def _turn(arc: Arc) -> float:

@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from comparisons.geometry import length, nearest, points, radius
-from cprbm_scene import Arc, Line, Polynomial, Shape
-from cprbm_scene.answer import frozen_array
+from comparisons.geometry import length, points, radius
+from cprbm_scene import Arc, Line, Polynomial
 
 HALF = Arc(kind="arc", center=(0.0, 0.0), start=(-2.0, 0.0), end=(2.0, 0.0), direction="counterclockwise")
 QUARTER = Arc(kind="arc", center=(1.0, 0.0), start=(2.0, 0.0), end=(1.0, -1.0), direction="clockwise")
@@ -48,10 +47,3 @@ def test_a_parabola():
     np.testing.assert_allclose(found, [[2, 2], [0, 0], [-1, 0.5]], atol=1e-13)
     level = parabola.model_copy(update={"coefficients": (3.0, 0.0)})
     assert radius(level) == math.inf
-
-
-def test_nearest_measures_along_the_line_and_not_along_its_chord():
-    shape = Shape(s=frozen_array([0.0, 1.0, 2.0]), x=frozen_array([0.0, 1.0, 1.0]), y=frozen_array([0.0, 0.0, 1.0]))
-    places = np.array([[0.3, -0.2], [1.4, 0.6], [1.0, 5.0]])
-    np.testing.assert_allclose(nearest(shape, places), [0.3, 1.6, 2.0])
-    assert nearest(shape, np.empty((0, 2))).shape == (0,)
