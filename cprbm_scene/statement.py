@@ -219,11 +219,8 @@ class Scene(Record):
         return self._source.read(values)
 
     def __repr__(self) -> str:
-        """Name, and numbers of beams, contacts, probes and stations."""
-        stations = sum(len(stage.stations) for stage in self.stages)
-        parts = {"beams": self.beams, "contacts": self.contacts, "probes": self.probes}
-        counts = ", ".join(f"{len(found)} {name}" for name, found in parts.items())
-        return f"<Scene {self.name}: {counts}, {stations} stations>"
+        """Name, and numbers of beams, contacts and probes."""
+        return f"<Scene {self.name}: {len(self.beams)} beams, {len(self.contacts)} contacts, {len(self.probes)} probes>"
 
     def limit(self, probe: Probe) -> float:
         """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""
