@@ -13,7 +13,7 @@ from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.tolerances.search import Tolerance
 from comparisons.verdict.completeness import complete_part, ends_at_critical, problems
 from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows
-from comparisons.verdict.judge import Judged, judge_case, judge_row
+from comparisons.verdict.judge import Judged, judge_case, judge_rows
 from comparisons.verdict.rows import Row, build_rows
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.station_events import station_events
@@ -85,7 +85,7 @@ def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
     table = RunsTable(scene, replace(runs, exact=exact))
     criticals, closings = critical_rows(table), closing_rows(table)
     rows = build_rows(table, station_events(table))
-    judged = [judge_row(table, row) for row in rows]
+    judged = judge_rows(table, rows)
     audits = {answer.solver: look(scene, complete_part(scene, answer)) for answer in table.pair}
     verdict = _verdict(table, rows, judged, criticals, closings, audits)
     return Comparison(scene, runs, rows, verdict, criticals, _reactions(scene, runs), audits=audits)

@@ -4,12 +4,13 @@ A row differs if |v_c − v_f| or |v_c − v_b| exceeds its stated uncertainty (
 true error beside the exact value exceeds twice the stated error.  A row is undecided if a stated uncertainty exceeds
 the scene's limit: such an uncertainty would excuse a wrong answer.  All other rows agree.
 
-A contradiction is no evidence against a solver, and the row is undecided, in four cases:
+A contradiction is no evidence against a solver, and the row is undecided, in five cases:
 
 * A contact presses in some runs only, and closes or opens in all runs of the stage (EVENT): the station lies between
   the runs' loads of one event.
 * A clamp or another contact shares the contact's force, and the sums of the shared forces agree (NOT_UNIQUE).
 * Runs are on mirror images of one branch, or a run has passed a critical point near by (BRANCH).
+* A contact presses in one solver only, and neither its force nor another probe differs notably (EVENT).
 * The finite elements have no value in ``bending``, and the step of theory is not known (RUN_ENDED).
 
 Rows with the reason NOT_UNIQUE take no case down.  Rows with the reasons COARSE and EVENT take no case down if the
@@ -23,7 +24,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from comparisons.quantities import OPEN_AT_ZERO
 from comparisons.verdict.bounds import bounds_of
 from comparisons.verdict.calibration import true_errors
 from comparisons.verdict.completeness import ABSENT_WHILE_OPEN
@@ -45,8 +45,18 @@ RESOLVABLE = frozenset({Reason.COARSE, Reason.EVENT})
 """Reasons that a finer mesh or another station removes."""
 
 
-def judge_row(table: RunsTable, row: Row) -> Judged:
-    """Word and reason of a row; no word where the row takes no part."""
+def judge_rows(table: RunsTable, rows: Sequence[Row]) -> list[Judged]:
+    """Word and reason of every row; no word where a row takes no part."""
+    notable = {
+        row.where
+        for row in rows
+        if row.events.contradictory and row.difference > table.scene.limit(row.probe) * _reference(table, row)
+    }
+    return [_judge(table, row, faint=row.where not in notable) for row in rows]
+
+
+def _judge(table: RunsTable, row: Row, *, faint: bool) -> Judged:
+    """Word and reason of a row; ``faint`` tells that a contact in one solver only has no notable effect."""
     scene, bounds = table.scene, row.bounds
     if row.place is Place.BETWEEN:
         return None, None
@@ -57,7 +67,7 @@ def judge_row(table: RunsTable, row: Row) -> Judged:
     if any(each.pressure > 1.0 for each in true_errors(row)):
         return Word.DIFFER, Reason.EXACT
     if row.difference > bounds.total or row.same_theory > bounds.same_theory:
-        return _contradiction(table, row)
+        return _contradiction(table, row, faint=faint)
     limit = scene.limit(row.probe) * row.scale
     if max(bounds.total, bounds.same_theory) <= limit:
         return Word.AGREE, None
@@ -91,7 +101,17 @@ def _without_value(scene: Scene, row: Row) -> Judged:
     return Word.UNDECIDED, Reason.EVENT
 
 
-def _contradiction(table: RunsTable, row: Row) -> Judged:
+def _reference(table: RunsTable, row: Row) -> float:
+    """Scale of a row; of a contact in one solver only the station's largest force or bending moment over length."""
+    if row.probe.of not in row.events.contradictory or row.probe.quantity != "force":
+        return row.scale
+    stations = [table.stations[name][row.where] for name in table.compared]
+    forces = [np.hypot(*station.forces.force.T).max(initial=0.0) for station in stations]
+    moments = [np.abs(beam.M).max() / beam.s[-1] for station in stations for beam in station.beams.values()]
+    return float(max(*forces, *moments))
+
+
+def _contradiction(table: RunsTable, row: Row, *, faint: bool) -> Judged:
     bounds, events = row.bounds, row.events
     assert bounds is not None
     if _same_resultant(table, row):
@@ -102,9 +122,7 @@ def _contradiction(table: RunsTable, row: Row) -> Judged:
         return Word.UNDECIDED, _event_reason(row)
     if not events.contradictory:
         return Word.DIFFER, Reason.VALUES
-    own = row.probe.of in events.contradictory and row.probe.quantity in OPEN_AT_ZERO
-    small = row.difference <= table.scene.limit(row.probe) * row.scale
-    return (Word.UNDECIDED, Reason.EVENT) if own and small else (Word.DIFFER, Reason.EVENTS)
+    return (Word.UNDECIDED, Reason.EVENT) if faint else (Word.DIFFER, Reason.EVENTS)
 
 
 def _event_reason(row: Row) -> Reason:

@@ -14,7 +14,7 @@ from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict.bounds import Bounds
-from comparisons.verdict.judge import judge_case, judge_row
+from comparisons.verdict.judge import judge_case, judge_rows
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.words import Reason, Word, worst_of
@@ -199,7 +199,7 @@ def row(difference, same_theory, bounds):
 @given(SHARES, SHARES, SHARES, SHARES, st.none() | SHARES, SHARES, SHARES)
 def test_a_word_follows_from_the_two_inequalities(difference, same_theory, c, f, b, theory, r):
     """|v_c − v_f| ≤ u_c + u_f + θ + r and |v_c − v_b| ≤ u_c + u_b + r, with both sums within the limit."""
-    word, reason = judge_row(TABLE, row(difference, same_theory, Bounds(c, f, b, theory, r)))
+    word, reason = judge_rows(TABLE, [row(difference, same_theory, Bounds(c, f, b, theory, r))])[0]
     total, tight = c + f + r + theory, c + (f if b is None else b) + r
     if difference > total or same_theory > tight:
         expected = (Word.UNDECIDED, Reason.RUN_ENDED) if b is None else (Word.DIFFER, Reason.VALUES)
@@ -215,7 +215,7 @@ def test_a_word_follows_from_the_two_inequalities(difference, same_theory, c, f,
 @given(SHARES, SHARES, SHARES, SHARES, SHARES, st.sampled_from([-1.0, 1.0]))
 def test_the_step_of_theory_alone_makes_no_difference(own, c, f, b, step, sign):
     """v_c − v_f is the sum of v_c − v_b and of v_b − v_f, and u_f is never less than u_b."""
-    word, _ = judge_row(TABLE, row(abs(own + sign * step), own, Bounds(c, max(f, b), b, step, 1e-15)))
+    word, _ = judge_rows(TABLE, [row(abs(own + sign * step), own, Bounds(c, max(f, b), b, step, 1e-15))])[0]
     assert (word is Word.DIFFER) is (own > c + b + 1e-15)
 
 
@@ -275,5 +275,5 @@ def test_the_worst_of_words():
 
 
 def test_a_row_without_a_value_or_a_statement_takes_no_part_or_is_undecided():
-    assert judge_row(TABLE, row(math.nan, math.nan, None)) == (None, None)
-    assert judge_row(TABLE, row(0.0, 0.0, None)) == (Word.UNDECIDED, Reason.RUN_ENDED)
+    assert judge_rows(TABLE, [row(math.nan, math.nan, None)])[0] == (None, None)
+    assert judge_rows(TABLE, [row(0.0, 0.0, None)])[0] == (Word.UNDECIDED, Reason.RUN_ENDED)
