@@ -60,7 +60,7 @@ def test_on_a_terminal_a_bar_goes_to_the_end_with_the_time_that_remains_and_the_
 
 
 def test_on_a_terminal_a_comparison_says_the_number_of_the_case():
-    code, out, seen = _on_a_terminal("compare", "offset", "tapered", "-n", "10", "--elements", "10", "--no-exact")
+    code, out, seen = _on_a_terminal("compare", "offset", "tapered", "-n", "20", "--elements", "20", "--no-exact")
     assert code == 0
     assert "case 1 of 2" in seen
     assert re.search(r"case 2 of 2, about \d+ s left", seen)

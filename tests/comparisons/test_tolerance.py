@@ -269,7 +269,7 @@ def test_a_tolerance_and_n_are_a_wrong_question(right, capsys, command, option):
 def test_compare_says_which_n_were_found(right, capsys, tmp_path):
     file = tmp_path / "numbers.json"
     assert run(["compare", "hinge", "--tol", "0.1%", "--json", str(file)], right) == 0
-    assert "N for a tolerance of 0.100 %" in capsys.readouterr().out
+    assert "N for 0.100 %: cprbm 40, fea 80." in capsys.readouterr().out
     solvers = json.loads(file.read_text("utf-8"))["cases"][0]["solvers"]
     assert solvers["cprbm"]["tolerance"]["links"] == 40
     # in bending the made-up contact is still open at 0.201 N·m with 10 elements, and 10, 20 and 40 are not of one law

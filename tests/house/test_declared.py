@@ -27,7 +27,9 @@ def modules(requirements):
 
 
 CORE = modules(PROJECT["dependencies"]) | REQUIRED
-ALL = CORE.union(*map(modules, PROJECT["optional-dependencies"].values()))
+OF_USERS = {"pandas"}
+"""Libraries that a user brings along: no dependency, and a message where they are missing."""
+ALL = CORE.union(OF_USERS, *map(modules, PROJECT["optional-dependencies"].values()))
 
 
 def is_wrong(found):
