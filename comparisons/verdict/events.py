@@ -47,7 +47,7 @@ class CriticalRow:
         cprbm, fea: the solvers' critical points; None where a solver has none.
         span: of the stage; allowed: T; largest: W.
         steady: whether all runs of each solver have it by one mechanism, or none has.
-        difference, same_theory: |λ_c − λ_f|, |λ_c − λ_b|; NaN where a run lacks it.
+        difference, same_theory: distances of λ_c from λ_f and from λ_b; NaN where a run lacks it.
         bounds: U and U_b; None where a run lacks it.
         turned: rotation of the state that a run went on to, rad, by name of the run that passed the point.
     """
@@ -100,7 +100,7 @@ class CriticalRow:
 
 @dataclass(frozen=True, slots=True)
 class ClosingRow:
-    """Closing of a contact at loads that the runs do not excuse: |λ_c − λ_b| > max(T, U_b).
+    """Closing of a contact at loads farther apart than max(T, U_b).
 
     Attributes:
         stage, contact: names; unit: SI unit of the loads; cprbm, fea: the solvers' loads.

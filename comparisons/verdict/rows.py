@@ -56,7 +56,7 @@ class Row:
         cprbm, fea: values (k,), empty where a contact is open.
         scale: of the probe in the stage; denominator: divisor of shown fractions.
         events: events of the runs by the station.
-        difference, same_theory: |v_c − v_f|, |v_c − v_b|; NaN without a value.
+        difference, same_theory: distances of v_c from v_f and from v_b; NaN without a value.
         bounds: stated uncertainties; None without the value of a needed run.
         missing: runs without the station; absent: runs without a value, since a contact is open.
         arc_length: places (k,) of a stress, m.
