@@ -41,17 +41,16 @@ Judged = tuple[Word | None, Reason | None]
 SHARED: frozenset[Quantity] = frozenset({"force", "centre", "ends", "reaction", "reaction_moment"})
 """Quantities of a contact or a joint that depend on how a clamp and a contact share a force."""
 
+NOTABLE = 1e-8
+"""Least effect of a contact in one solver only, beyond the stated uncertainty: ten times the round-off of a value."""
+
 RESOLVABLE = frozenset({Reason.COARSE, Reason.EVENT})
 """Reasons that a finer mesh or another station removes."""
 
 
 def judge_rows(table: RunsTable, rows: Sequence[Row]) -> list[Judged]:
     """Word and reason of every row; no word where a row takes no part."""
-    notable = {
-        row.where
-        for row in rows
-        if row.events.contradictory and row.difference > table.scene.limit(row.probe) * _reference(table, row)
-    }
+    notable = {row.where for row in rows if row.events.contradictory and _is_notable(table, row)}
     return [_judge(table, row, faint=row.where not in notable) for row in rows]
 
 
@@ -101,14 +100,14 @@ def _without_value(scene: Scene, row: Row) -> Judged:
     return Word.UNDECIDED, Reason.EVENT
 
 
-def _reference(table: RunsTable, row: Row) -> float:
-    """Scale of a row; of a contact in one solver only the station's largest force or bending moment over length."""
+def _is_notable(table: RunsTable, row: Row) -> bool:
+    """Whether a contact in one solver only has an effect: by its force, or by another probe's difference."""
     if row.probe.of not in row.events.contradictory or row.probe.quantity != "force":
-        return row.scale
+        return row.bounds is not None and row.difference > row.bounds.total + NOTABLE * row.scale
     stations = [table.stations[name][row.where] for name in table.compared]
     forces = [np.hypot(*station.forces.force.T).max(initial=0.0) for station in stations]
     moments = [np.abs(beam.M).max() / beam.s[-1] for station in stations for beam in station.beams.values()]
-    return float(max(*forces, *moments))
+    return row.difference > table.scene.limit(row.probe) * float(max(*forces, *moments))
 
 
 def _contradiction(table: RunsTable, row: Row, *, faint: bool) -> Judged:
