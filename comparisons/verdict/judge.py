@@ -28,7 +28,7 @@ from comparisons.verdict.bounds import bounds_of
 from comparisons.verdict.calibration import true_errors
 from comparisons.verdict.completeness import ABSENT_WHILE_OPEN
 from comparisons.verdict.point_forces import resultant, sharing_sources
-from comparisons.verdict.rows import Row
+from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.station_events import MIRRORED, PASSED, Place
 from comparisons.verdict.words import Reason, Word
@@ -40,9 +40,6 @@ Judged = tuple[Word | None, Reason | None]
 
 SHARED: frozenset[Quantity] = frozenset({"force", "centre", "ends", "reaction", "reaction_moment"})
 """Quantities of a contact or a joint that depend on how a clamp and a contact share a force."""
-
-NOTABLE = 1e-8
-"""Least effect of a contact in one solver only, beyond the stated uncertainty: ten times the round-off of a value."""
 
 RESOLVABLE = frozenset({Reason.COARSE, Reason.EVENT})
 """Reasons that a finer mesh or another station removes."""
@@ -103,7 +100,7 @@ def _without_value(scene: Scene, row: Row) -> Judged:
 def _is_notable(table: RunsTable, row: Row) -> bool:
     """Whether a contact in one solver only has an effect: by its force, or by another probe's difference."""
     if row.probe.of not in row.events.contradictory or row.probe.quantity != "force":
-        return row.bounds is not None and row.difference > row.bounds.total + NOTABLE * row.scale
+        return row.bounds is not None and row.difference > row.bounds.total + 10.0 * ROUND_OFF * row.scale
     stations = [table.stations[name][row.where] for name in table.compared]
     forces = [np.hypot(*station.forces.force.T).max(initial=0.0) for station in stations]
     moments = [np.abs(beam.M).max() / beam.s[-1] for station in stations for beam in station.beams.values()]
