@@ -11,7 +11,7 @@ from comparisons.branch_words import BranchVerdict, branch_verdicts
 from comparisons.pairing import Runs
 from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.tolerances.search import Tolerance
-from comparisons.verdict.completeness import complete_part, ends_at_critical, problems
+from comparisons.verdict.completeness import complete_part, ends_at_critical
 from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows
 from comparisons.verdict.judge import Judged, judge_case, judge_rows
 from comparisons.verdict.rows import Row, build_rows
@@ -86,9 +86,12 @@ def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
     criticals, closings = critical_rows(table), closing_rows(table)
     rows = build_rows(table, station_events(table))
     judged = judge_rows(table, rows)
-    audits = {answer.solver: look(scene, complete_part(scene, answer)) for answer in table.pair}
+    audits = {
+        answer.solver: look(scene, replace(answer, stations=tuple(table.stations[name].values())))
+        for name, answer in zip(table.compared, table.pair, strict=True)
+    }
     verdict = _verdict(table, rows, judged, criticals, closings, audits)
-    return Comparison(scene, runs, rows, verdict, criticals, _reactions(scene, runs), audits=audits)
+    return Comparison(scene, runs, rows, verdict, criticals, _reactions(table), audits=audits)
 
 
 def _verdict(
@@ -108,9 +111,7 @@ def _verdict(
         findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table.problems)))
     for name, found in audits.items():
         if found.complaints:
-            rest = f" (and {len(found.complaints) - 1} more)" if len(found.complaints) > 1 else ""
-            sentence = f"The audit of {name}'s answer fails: {found.complaints[0]}{rest}."
-            findings.append((Word.UNDECIDED, Reason.AUDIT, sentence))
+            findings.append((Word.UNDECIDED, Reason.AUDIT, said.audit_sentence(name, found.complaints)))
     crossing = next((found.crossings for found in audits.values() if found.crossings), ())
     findings += [(Word.UNDECIDED, Reason.UNDECLARED_CONTACT, sentence) for sentence in crossing]
     if rows or completed:
@@ -145,18 +146,23 @@ _WORDS = (Word.DIFFER, Word.UNDECIDED, Word.AGREE)
 
 def _completed(table: RunsTable, criticals: Sequence[CriticalRow]) -> bool:
     """Whether both compared answers are complete, or end at critical points that agree."""
-    if not any(name in table.problems for name in table.compared):
+    if not _lacking(table):
         return True
     ended = all(ends_at_critical(answer) for answer in table.pair)
     return ended and bool(criticals) and criticals[-1].word is Word.AGREE
 
 
-def _reactions(scene: Scene, runs: Runs) -> tuple[WorkEnergyReaction, ...]:
+def _lacking(table: RunsTable) -> bool:
+    """Whether a compared answer is not complete."""
+    return any(name in table.problems for name in table.compared)
+
+
+def _reactions(table: RunsTable) -> tuple[WorkEnergyReaction, ...]:
     """Reactions of drives by two ways, where both compared answers are complete."""
-    if problems(scene, runs.cprbm[0]) or problems(scene, runs.reference):
+    if _lacking(table):
         return ()
-    asked, found = perturbed_scene(scene), runs.perturbed
+    asked, found = perturbed_scene(table.scene), table.runs.perturbed
     if asked is not None and found is None:
         return ()
     perturbed = None if asked is None or found is None else complete_part(asked, found)
-    return reactions(scene, runs.cprbm[0], runs.reference, perturbed)
+    return reactions(table.scene, *table.pair, perturbed)

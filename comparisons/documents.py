@@ -17,6 +17,7 @@ from comparisons.reactions import WorkEnergyReaction
 from comparisons.steps import contact_model, largest_difference, steps_of
 from comparisons.third import Third, thirds_of
 from comparisons.tolerances.search import Tolerance
+from comparisons.verdict.completeness import CERTIFICATE_NUMBERS
 from comparisons.verdict.events import CriticalRow, released
 from comparisons.verdict.rows import Row
 from comparisons.verdict.words import Reason, Word
@@ -190,18 +191,9 @@ def worst(certificates: tuple[Certificate, ...]) -> Plain | None:
     """Of every number of the certificates the least reassuring one; None if there is no certificate."""
     if not certificates:
         return None
-    largest = (
-        "residual",
-        "residual_floor",
-        "violation",
-        "penetration",
-        "complementarity",
-        "force_balance",
-        "moment_balance",
-    )
     return {
         "holds": all(certificate.holds for certificate in certificates),
-        **{key: plain(max(getattr(certificate, key) for certificate in certificates)) for key in largest},
+        **{key: plain(max(getattr(certificate, key) for certificate in certificates)) for key in CERTIFICATE_NUMBERS},
         "smallest_curvature": plain(min(certificate.smallest_curvature for certificate in certificates)),
         "iterations": sum(certificate.iterations for certificate in certificates),
         "failures": [failure for certificate in certificates for failure in certificate.failures],

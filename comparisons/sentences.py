@@ -81,10 +81,14 @@ def ended_sentence(problems: Mapping[str, tuple[str, ...]]) -> str:
     """The runs that are not complete, and their problems; each problem once."""
     by_problem: dict[str, list[str]] = {}
     for name, found in problems.items():
-        more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
-        by_problem.setdefault(f"{found[0].rstrip('.')}{more}", []).append(name)
+        by_problem.setdefault(_first(found), []).append(name)
     parts = "; ".join(f"{', '.join(names)}: {problem}" for problem, names in by_problem.items())
     return f"Runs without a complete answer: {parts}."
+
+
+def audit_sentence(solver: str, complaints: Sequence[str]) -> str:
+    """The first complaint of an audit, and the number of further complaints."""
+    return f"The audit of {solver}'s answer fails: {_first(complaints)}."
 
 
 def critical_sentence(row: CriticalRow) -> str:
@@ -187,6 +191,12 @@ def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:
             return f"{row.probe.of} shares its force with a joint or contact beside it, and the sums agree."
         case _:
             return _coarse(table, row)
+
+
+def _first(sentences: Sequence[str]) -> str:
+    """The first sentence without its full stop, and the number of further sentences."""
+    more = f" (and {len(sentences) - 1} more)" if len(sentences) > 1 else ""
+    return sentences[0].rstrip(".") + more
 
 
 def _coarse(table: RunsTable, row: Row) -> str:

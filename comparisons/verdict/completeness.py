@@ -26,7 +26,7 @@ Where = tuple[str, float]
 _ROUND_OFF = 1e-9  # of a stage's span: round-off of a critical load beside a station
 
 
-_NUMBERS = (
+CERTIFICATE_NUMBERS = (
     "residual",
     "residual_floor",
     "violation",
@@ -35,6 +35,7 @@ _NUMBERS = (
     "force_balance",
     "moment_balance",
 )
+"""Fields of a certificate that are finite and small in a complete station."""
 
 
 def stations_of(scene: Scene) -> tuple[Where, ...]:
@@ -89,7 +90,7 @@ def problems(scene: Scene, answer: Answer) -> tuple[str, ...]:
 def _station_problems(scene: Scene, station: StationAnswer) -> Iterator[str]:
     certificate = station.certificate
     yield from (f"its certificate does not hold: {failure}" for failure in certificate.failures)
-    numbers = [getattr(certificate, name) for name in _NUMBERS]
+    numbers = [getattr(certificate, name) for name in CERTIFICATE_NUMBERS]
     # without a feasible direction the smallest curvature is infinite
     if not np.isfinite(numbers).all() or np.isnan(certificate.smallest_curvature):
         yield "its certificate holds a number that is not finite"

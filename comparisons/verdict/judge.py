@@ -78,11 +78,10 @@ def _judge(table: RunsTable, row: Row, *, faint: bool) -> Judged:
 def judge_case(rows: Sequence[Row], judged: Sequence[Judged]) -> tuple[Word, Reason | None]:
     """Word and reason of all rows together."""
     for word in (Word.DIFFER, Word.UNDECIDED):
-        reasons = Counter(reason for row, (found, reason) in zip(rows, judged, strict=True) if found is word)
-        if word is Word.UNDECIDED:
-            reasons = Counter({reason: reasons[reason] for reason in reasons if _decides(rows, judged, reason)})
-        if reasons:
-            return word, next(reason for reason in Reason if reasons[reason])
+        reasons = {reason for found, reason in judged if found is word}
+        for reason in (each for each in Reason if each in reasons):
+            if word is Word.DIFFER or _decides(rows, judged, reason):
+                return word, reason
     if not any(word is Word.AGREE for word, _ in judged):
         return Word.UNDECIDED, next((reason for _, reason in judged if reason is not None), Reason.RUN_ENDED)
     return Word.AGREE, None
@@ -147,7 +146,7 @@ def _same_resultant(table: RunsTable, row: Row) -> bool:
     return bool(same and np.linalg.norm(v_c - v_f) <= bounds.total)
 
 
-def _decides(rows: Sequence[Row], judged: Sequence[Judged], reason: Reason | None) -> bool:
+def _decides(rows: Sequence[Row], judged: Sequence[Judged], reason: Reason) -> bool:
     """Whether undecided rows of a reason make the case undecided."""
     agreeing = Counter(row.probe.name for row, (word, _) in zip(rows, judged, strict=True) if word is Word.AGREE)
     if reason is Reason.NOT_UNIQUE:

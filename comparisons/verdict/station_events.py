@@ -150,11 +150,8 @@ def _states(
 
 def _sequences(states: Sequence[State]) -> dict[str, tuple[int, ...]]:
     """Values of every part of the state in order, repetitions left out."""
-    return (
-        {part: tuple(value for value, _ in groupby(state[part] for state in states)) for part in states[0]}
-        if states
-        else {}
-    )
+    parts = states[0] if states else {}
+    return {part: tuple(value for value, _ in groupby(state[part] for state in states)) for part in parts}
 
 
 def _on_mirror_images(table: RunsTable, here: Mapping[str, StationAnswer]) -> bool:
