@@ -5,7 +5,7 @@ symbol      meaning
 ==========  ==============================================================================================
 v, v*       values of a probe at the last station, and the reference
 scale       the largest of |v*|, of a thousandth of the largest |v*| of its quantity, since a probe may vanish by
-            symmetry, and of 1e-7 of its natural scale (:mod:`comparisons.scales`), since all may
+            symmetry, and of 1e-4 of its natural value (:mod:`comparisons.verdict.scales`)
 e           largest |v − v*| / scale over the probes of a measure
 U           the same of the reference's own uncertainty; zero where it is exact
 ==========  ==============================================================================================

@@ -120,7 +120,7 @@ def budgets_of(scene: Scene, runs: BudgetRuns) -> tuple[Budget, ...]:
     """All budgets in the order of stages, stations and probes; none where a contact is open, or where the
     answers are on different branches.
 
-    Every answer of :meth:`BudgetRuns.everything` must be complete, as :func:`comparisons.soundness.complaints` finds.
+    Every answer of :meth:`BudgetRuns.everything` must be complete, as :func:`comparisons.verdict.completeness.problems` finds.
 
     Raises:
         KeyError: an answer lacks a station or a probe.
@@ -142,7 +142,8 @@ def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: f
     every = [station.values[probe.name] for station in stations]
     if every[0].size == 0 or any(v.shape != every[0].shape for v in every) or not any(v.any() for v in every):
         return None
-    row = bare_row(scene, (runs.cprbm, runs.reference), probe, stage, value, scale)
+    pair = station_of(runs.cprbm, stage.name, value), station_of(runs.reference, stage.name, value)
+    row = bare_row(scene, pair, probe, stage, value, scale)
     counts = np.ones(row.cprbm.shape, dtype=bool)
     if row.arc_length is not None:
         counts = away_from_point_forces(scene, probe.of, row.arc_length, stations)

@@ -253,8 +253,8 @@ def _places(
     """Of a stress the one place at which it is followed, of all else everything.
 
     It is where the stress is largest in the finest answers among the places at which it is compared
-    (:mod:`comparisons.spots`) and that are no nearer to a kink of the section than its elements at the three finest
-    sizes reach, beside which the stress shows no order; where there are none, among all.  Of places that are equally
+    (:mod:`comparisons.verdict.point_forces`) and that are no nearer to a kink of the section than its elements at the
+    three finest sizes reach, beside which the stress shows no order; where there are none, among all.  Of places that are equally
     large, as all are along a circle, it is the first.
     """
     if probe.quantity not in STRESSES:

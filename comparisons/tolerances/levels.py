@@ -1,6 +1,6 @@
 """The answers of one solver to one scene at the sizes that a search asks for, and what they state.
 
-A row's f is u, as :mod:`comparisons.measures` states it, over what the tables divide that row by.  There the
+A row's f is u, as :mod:`comparisons.verdict.bounds` states it, over what the tables divide that row by.  There the
 finite elements' value takes part; where they have not answered (``solve``) the answer stands in its own place.
 """
 

@@ -15,7 +15,7 @@ along a stage, and the change between two grids vanishes there by accident.  Cri
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,7 +29,7 @@ from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.scales import denominator, probe_scales
 from comparisons.verdict.station_events import NO_EVENTS, Place, StationEvents, station_events
 from comparisons.verdict.uncertainty import largest
-from cprbm_scene import Answer, Probe, Scene, Stage, StationAnswer
+from cprbm_scene import Probe, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array, Flags
 from cprbm_scene.statement import STRESSES
 
@@ -119,32 +119,35 @@ def build_rows(table: RunsTable, events: Mapping[tuple[str, float], StationEvent
     scales = probe_scales(scene, table.pair)
     stages = {stage.name: stage for stage in scene.stages}
     found = []
+    first, second = table.compared
     for where in table.reached:
         stations = table.at(where)
+        exact = _exact_station(table.runs, where, events[where].branch)
         missing = tuple(name for name in table.answers if name not in stations)
         for probe in scene.probes:
-            row = bare_row(scene, table.pair, probe, stages[where[0]], where[1], scales[where[0], probe.name])
-            found.append(_measured(table, replace(row, events=events[where], missing=missing), stations))
+            pair = stations[first], stations[second]
+            row = bare_row(scene, pair, probe, stages[where[0]], where[1], scales[where[0], probe.name])
+            found.append(_measured(table, replace(row, events=events[where], missing=missing), stations, exact))
     return _with_largest_uncertainties(found)
 
 
 def bare_row(
-    scene: Scene, compared: tuple[Answer, Answer], probe: Probe, stage: Stage, value: float, scale: float
+    scene: Scene, pair: tuple[StationAnswer, StationAnswer], probe: Probe, stage: Stage, value: float, scale: float
 ) -> Row:
     """The values of the two compared answers, without a difference.
 
     Args:
         scene: the question.
-        compared: answers of the CPRBM and of the finite elements.
+        pair: the station of the CPRBM and of the finite elements.
         probe: the probe.
         stage: the stage.
         value: the station.
         scale: of the probe in the stage, :func:`comparisons.verdict.scales.probe_scales`.
 
     Raises:
-        KeyError: an answer lacks the station or the probe.
+        KeyError: an answer lacks the probe.
     """
-    v_c, v_f = (station_of(answer, stage.name, value).values[probe.name] for answer in compared)
+    v_c, v_f = (station.values[probe.name] for station in pair)
     return Row(
         probe=probe,
         stage=stage.name,
@@ -158,11 +161,10 @@ def bare_row(
     )
 
 
-def _measured(table: RunsTable, row: Row, stations: Mapping[str, StationAnswer]) -> Row:
+def _measured(table: RunsTable, row: Row, stations: Mapping[str, StationAnswer], exact: StationAnswer | None) -> Row:
     """The row with its difference, stated uncertainties and true errors."""
     runs, probe = table.runs, row.probe
     values = {name: station.values[probe.name] for name, station in stations.items()}
-    exact = _exact_station(runs, row)
     row = replace(
         row,
         exact=None if exact is None else exact.values[probe.name],
@@ -201,23 +203,24 @@ def _measured(table: RunsTable, row: Row, stations: Mapping[str, StationAnswer])
     )
 
 
-def _true_errors(row: Row, exact: StationAnswer | None, v_b: Array | None, size: object) -> TrueErrors | None:
+def _true_errors(
+    row: Row, exact: StationAnswer | None, v_b: Array | None, size: Callable[[Array], float]
+) -> TrueErrors | None:
     if exact is None or v_b is None or row.exact is None or row.exact.shape != row.fea.shape:
         return None
-    assert callable(size)
     residual = max(exact.certificate.residual, exact.certificate.residual_floor, ROUND_OFF)
     return TrueErrors(size(row.cprbm - row.exact), size(v_b - row.exact), residual * row.scale)
 
 
-def _exact_station(runs: Runs, row: Row) -> StationAnswer | None:
-    """The exact answer's station on the row's branch."""
-    if runs.exact is None or row.branch is None:
+def _exact_station(runs: Runs, where: tuple[str, float], branch: int | None) -> StationAnswer | None:
+    """The exact answer's station on a branch."""
+    if runs.exact is None or branch is None:
         return None
     try:
-        found = station_of(runs.exact, row.stage, row.station)
+        found = station_of(runs.exact, *where)
     except KeyError:
         return None
-    return found if found.branch == row.branch else None
+    return found if found.branch == branch else None
 
 
 def _with_largest_uncertainties(rows: Sequence[Row]) -> tuple[Row, ...]:
