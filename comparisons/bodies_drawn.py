@@ -18,16 +18,13 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from comparisons.geometry import length, points
+from comparisons.geometry import edge_places, length
 from cprbm_scene import PinnedEnd, Scene, StationAnswer, WeldedEnd
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import (
     EdgeContact,
     FixedBody,
     FreeEnd,
-    FunctionContact,
-    HalfPlaneContact,
-    LineContact,
     Point,
     TurningBody,
 )
@@ -35,6 +32,7 @@ from cprbm_scene.statement import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+GRAPH = 100  # places of a function's graph
 RAY = 0.15  # of the longest beam: how far the limits of a stop are drawn
 CLOSE = 0.05  # of the longest beam: nearer points have their names on different sides
 SAME = 1e-3  # of that: points nearer than this are in one place
@@ -117,24 +115,12 @@ def draw_edges(axes: Axes, scene: Scene, places: Places, colour: str) -> None:
         if not isinstance(contact, EdgeContact):
             continue
         body = scene.bodies[contact.body]
-        edge, turned = _edge(contact, reach), rotation(scene, contact.body, places)
+        edge, turned = edge_places(contact, reach, GRAPH), rotation(scene, contact.body, places)
         if turned is not None and not isinstance(body, FixedBody):
             known = next(point for point in body.points if point in places)
             cos, sin = np.cos(turned), np.sin(turned)
             edge = (edge - body.points[known]) @ np.array([[cos, sin], [-sin, cos]]) + places[known]
         axes.plot(*(1e3 * edge.T), "--" if turned is None else "-", color=colour, linewidth=0.9, zorder=0)
-
-
-def _edge(contact: EdgeContact, reach: float) -> Array:
-    """Places (k, 2) along an edge as drawn, m; of a half-plane ``reach`` to either side of its point."""
-    match contact:
-        case LineContact():
-            return np.array(contact.points)
-        case HalfPlaneContact():
-            n = np.array(contact.normal) / np.hypot(*contact.normal)
-            return np.array(contact.point) + np.outer([-reach, reach], [-n[1], n[0]])
-        case FunctionContact():
-            return points(contact.curve, np.linspace(0.0, length(contact.curve), 100))
 
 
 def draw_names(axes: Axes, scene: Scene) -> None:

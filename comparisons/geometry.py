@@ -23,7 +23,7 @@ import numpy as np
 from cprbm_scene import Arc, Beam, Line, Polynomial, Spline
 from cprbm_scene.answer import Array
 from cprbm_scene.geometry import arc_length, curvature_on, largest_curvature, points_on
-from cprbm_scene.statement import Curve
+from cprbm_scene.statement import Curve, EdgeContact, FunctionContact, HalfPlaneContact, LineContact
 
 _SAMPLES = 1001  # along a beam whose thickness varies
 
@@ -83,6 +83,35 @@ def points(curve: Curve, s: Array) -> Array:
             return points_on(curve, np.asarray(s) / arc_length(curve))
         case _:
             assert_never(curve)
+
+
+def edge_places(contact: EdgeContact, reach: float, count: int) -> Array:
+    """Places (k, 2) along a rigid edge as drawn, m.
+
+    Args:
+        contact: with the edge.
+        reach: length of a half-plane's edge to either side of its point, m.
+        count: number of places of a function's graph.
+    """
+    match contact:
+        case LineContact():
+            return np.array(contact.points)
+        case HalfPlaneContact():
+            n = np.array(contact.normal) / np.hypot(*contact.normal)
+            return np.array(contact.point) + np.outer([-reach, reach], [-n[1], n[0]])
+        case FunctionContact():
+            return points(contact.curve, np.linspace(0.0, length(contact.curve), count))
+        case _:
+            assert_never(contact)
+
+
+def is_free_on_the_left(contact: LineContact | FunctionContact) -> bool:
+    """Whether the beam's side of an edge lies on the left of :func:`edge_places`."""
+    if isinstance(contact, LineContact):
+        return contact.side == "left"
+    # the places above a function of x lie on the left of a graph towards larger x
+    forward = (contact.range[1] > contact.range[0]) == (contact.axis == "x")
+    return forward == (contact.side == "above")
 
 
 def _turn(arc: Arc) -> float:

@@ -24,7 +24,7 @@ import numpy as np
 import shapely
 
 from comparisons.audit.state import Complex, StationState, unit
-from comparisons.geometry import length, points
+from comparisons.geometry import edge_places, is_free_on_the_left
 from cprbm_scene.answer import Array
 from cprbm_scene.contact_states import ACTIVE
 from cprbm_scene.statement import (
@@ -38,7 +38,7 @@ from cprbm_scene.statement import (
 )
 
 DEEP = 0.05
-"""Largest penetration, and largest gap under a force, over the mean thickness."""
+"""Largest penetration, and largest gap under a force, over the mean thickness; also of an undeclared contact."""
 
 SUNK = 2e-3
 """The same of lines without thickness, over the longest beam."""
@@ -64,22 +64,23 @@ SMALL = 1e-6
 
 def contacts(state: StationState) -> Iterator[str]:
     """Contacts that penetrate, press across a gap, pull or rub, and contacts without a state."""
-    at_rest = {name: beam.at_rest for name, beam in state.beams.items()}
-    rest = replace(state, beams=at_rest, station=replace(state.station, bodies={}))
     for name, contact in state.scene.contacts.items():
         if name not in state.station.contacts:
             yield f"{name} has no contact state"
         for on in dict.fromkeys(contact.beams):
             if contact.thick or isinstance(contact, RigidContact):  # a distance of lines has no sign
-                yield from _penetration(state, rest, name, on)
+                yield from _penetration(state, name, on)
             yield from _pressing(state, name, on)
 
 
-def _penetration(state: StationState, rest: StationState, name: str, on: str) -> Iterator[str]:
-    """The deepest penetration of a beam."""
+def _penetration(state: StationState, name: str, on: str) -> Iterator[str]:
+    """The deepest penetration of a beam outside overlaps at rest."""
     contact, beam, s = state.scene.contacts[name], state.beams[on], state.beams[on].fine
     own, allowed = _surface(state, contact, on, s)
-    gap, at = closest(state, contact, on, s)[0] - own, s[closest(rest, contact, on, s)[0] < own * (1.0 - 1e-6)]
+    gap = closest(state, contact, on, s)[0] - own
+    if (gap >= -allowed).all():
+        return
+    at = s[closest(_at_rest(state), contact, on, s)[0] < own * (1.0 - 1e-6)]
     if at.size:
         behind = np.searchsorted(at, s)
         away = np.minimum(np.abs(s - at[np.maximum(behind - 1, 0)]), np.abs(at[np.minimum(behind, len(at) - 1)] - s))
@@ -87,6 +88,12 @@ def _penetration(state: StationState, rest: StationState, name: str, on: str) ->
     worst = int(np.argmin(gap))
     if not gap[worst] >= -allowed[worst]:
         yield f"{on} penetrates its partner in {name} by {-gap[worst]:.2g} m at {s[worst]:.4g} m"
+
+
+def _at_rest(state: StationState) -> StationState:
+    """The beams and bodies of a station at rest."""
+    beams = {name: beam.at_rest for name, beam in state.beams.items()}
+    return replace(state, beams=beams, station=replace(state.station, bodies={}))
 
 
 def _pressing(state: StationState, name: str, on: str) -> Iterator[str]:
@@ -161,12 +168,8 @@ def _to_rigid(state: StationState, contact: RigidContact, x: Complex) -> tuple[A
 @cache
 def _edge(contact: LineContact | FunctionContact, depth: float) -> shapely.LineString:
     """A rigid edge at rest with the free side on the left, and both sides that go straight back from an open edge."""
-    if isinstance(contact, LineContact):
-        line, left = np.asarray(np.array(contact.points) @ (1.0, 1j)), contact.side == "left"
-    else:
-        line = np.asarray(points(contact.curve, np.linspace(0.0, length(contact.curve), GRAPH)) @ (1.0, 1j))
-        left = ((contact.side == "above") == (contact.axis == "x")) == (contact.range[1] > contact.range[0])
-    line = line if left else line[::-1]
+    line = np.asarray(edge_places(contact, depth, GRAPH) @ (1.0, 1j))
+    line = line if is_free_on_the_left(contact) else line[::-1]
     ends = line[0] - line[1], line[-1] - line[-2]
     sides = line[0] + 1j * depth * ends[0] / abs(ends[0]), line[-1] - 1j * depth * ends[1] / abs(ends[1])
     if line[0] == line[-1]:

@@ -30,23 +30,18 @@ import shapely
 from shapely.affinity import rotate, translate
 from shapely.geometry.base import BaseGeometry
 
+from comparisons.audit.contacts import DEEP
+from comparisons.geometry import edge_places
 from cprbm_scene import Answer, Scene, StationAnswer
 from cprbm_scene.geometry import arc_length, points_on
 from cprbm_scene.statement import (
     CircleContact,
+    EdgeContact,
     FixedBody,
     FreeEnd,
-    FunctionContact,
-    HalfPlaneContact,
-    LineContact,
     RigidContact,
 )
 
-SHALLOW = 0.05
-"""Permitted depth, as a fraction of the mean thickness of two beams, or of half the thickness beside a rigid edge.
-
-The audit permits the same depth between the beams of a contact.
-"""
 _LINES = 1.0  # permitted depth beside a beam in a contact of lines: a joint on the line touches with the full thickness
 _FRACTIONS = np.linspace(0.0, 1.0, 201)  # of a curve as drawn: in an arc of 90° e is 1e-5 of the length
 _FAR = 1e3  # length of the edge of a half-plane, in lengths of the longest beam
@@ -139,13 +134,13 @@ def _allowed(scene: Scene, edge_of: Mapping[str, str]) -> set[frozenset[str]]:
 
 
 def _near(scene: Scene, drawn: Drawn, allowed: Set[frozenset[str]]) -> Iterator[tuple[Pair, float]]:
-    """Pairs of neighbouring shapes outside the allowed pairs, and the permitted depth, m."""
+    """Pairs of neighbouring shapes outside the allowed pairs, and the permitted depth, m, as in a contact."""
     names, lines = list(drawn), np.array(list(drawn.values()))
     half = np.array([0.5 * scene.beams[name].thickest if name in scene.beams else 0.0 for name in names])
     thin = {beam for contact in scene.contacts.values() if not contact.thick for beam in contact.beams}
     for i, j in shapely.STRtree(lines).query(lines, predicate="dwithin", distance=half + half.max()).T:
         if i < j and half[i] > 0.0 and frozenset((names[i], names[j])) not in allowed:
-            share = SHALLOW if thin.isdisjoint((names[i], names[j])) else _LINES
+            share = DEEP if thin.isdisjoint((names[i], names[j])) else _LINES
             yield (names[i], names[j]), share * (half[i] + half[j])
 
 
@@ -168,15 +163,9 @@ def _edge(contact: RigidContact, size: float) -> BaseGeometry:
     """Outline of a rigid edge as drawn, a disc or a thin strip along a line, in a scene of a ``size``, m."""
     if isinstance(contact, CircleContact):
         return shapely.Point(contact.center).buffer(contact.radius, quad_segs=64)
-    if isinstance(contact, HalfPlaneContact):
-        along = _FAR * size / np.hypot(*contact.normal) * np.array([[-1.0], [1.0]])
-        points = np.array(contact.point) + along * (-contact.normal[1], contact.normal[0])
-    elif isinstance(contact, FunctionContact):
-        points = points_on(contact.curve, _FRACTIONS)
-    else:
-        assert isinstance(contact, LineContact)
-        points = np.array(contact.points)
-    return shapely.LineString(points).buffer(0.5 * _THIN * size, cap_style="flat")
+    assert isinstance(contact, EdgeContact)
+    places = edge_places(contact, _FAR * size, len(_FRACTIONS))
+    return shapely.LineString(places).buffer(0.5 * _THIN * size, cap_style="flat")
 
 
 def _outline(scene: Scene, name: str, drawn: Drawn) -> BaseGeometry:

@@ -120,7 +120,7 @@ def budgets_of(scene: Scene, runs: BudgetRuns) -> tuple[Budget, ...]:
     """All budgets in the order of stages, stations and probes; none where a contact is open, or where the
     answers are on different branches.
 
-    Every answer of :meth:`BudgetRuns.everything` must be complete, as :func:`comparisons.verdict.completeness.problems` finds.
+    Every answer of :meth:`BudgetRuns.everything` must be complete (:mod:`comparisons.verdict.completeness`).
 
     Raises:
         KeyError: an answer lacks a station or a probe.

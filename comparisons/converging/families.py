@@ -252,10 +252,10 @@ def _places(
 ) -> slice:
     """Of a stress the one place at which it is followed, of all else everything.
 
-    It is where the stress is largest in the finest answers among the places at which it is compared
-    (:mod:`comparisons.verdict.point_forces`) and that are no nearer to a kink of the section than its elements at the
-    three finest sizes reach, beside which the stress shows no order; where there are none, among all.  Of places that are equally
-    large, as all are along a circle, it is the first.
+    The place has the largest stress in the finest answers, of all compared places
+    (:mod:`comparisons.verdict.point_forces`) outside the elements beside a kink of the section at the three finest
+    sizes, where the stress shows no order; without such a place, of all.  Of places with equal stress, as along a
+    circle, it is the first.
     """
     if probe.quantity not in STRESSES:
         return slice(None)

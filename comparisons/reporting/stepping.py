@@ -18,7 +18,7 @@ from comparisons.case import Comparison
 from comparisons.cells import signed
 from comparisons.figures import along_axis
 from comparisons.formats import number, percent, scaled_unit, vector
-from comparisons.geometry import length, points
+from comparisons.geometry import edge_places, length, points
 from comparisons.quantities import load_unit, norm, unit_of
 from comparisons.reporting.outlines import Frame, arrows, band, circle, dots, frame, line, turned
 from comparisons.stations import station_of
@@ -36,9 +36,6 @@ from cprbm_scene.statement import (
     EdgeContact,
     FixedBody,
     Force,
-    FunctionContact,
-    HalfPlaneContact,
-    LineContact,
     Moment,
     Probe,
 )
@@ -352,18 +349,10 @@ def _same(one: CircleContact | EdgeContact, other: CircleContact | EdgeContact) 
 
 def _edge(scene: Scene, seen: Frame, name: str, edge: CircleContact | EdgeContact, station: StationAnswer) -> str:
     body = scene.bodies[edge.body]
-    match edge:
-        case CircleContact():
-            centre = _carried(body, np.array([edge.center]), edge.body, station)
-            return circle(seen.of(centre)[0], edge.radius * seen.scale)
-        case LineContact():
-            places = np.array(edge.points)
-        case HalfPlaneContact():
-            normal = np.array(edge.normal) / np.hypot(*edge.normal)
-            reach = 2.0 * max(seen.width, seen.height) / seen.scale
-            places = np.array(edge.point) + np.outer([-reach, reach], [-normal[1], normal[0]])
-        case FunctionContact():
-            places = points(edge.curve, np.linspace(0.0, length(edge.curve), _ALONG_BEAM))
+    if isinstance(edge, CircleContact):
+        centre = _carried(body, np.array([edge.center]), edge.body, station)
+        return circle(seen.of(centre)[0], edge.radius * seen.scale)
+    places = edge_places(edge, 2.0 * max(seen.width, seen.height) / seen.scale, _ALONG_BEAM)
     return line(seen.of(_carried(body, places, edge.body, station)))
 
 

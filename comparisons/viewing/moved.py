@@ -19,13 +19,13 @@ from math import cos, sin
 import numpy as np
 
 from comparisons.bodies_drawn import Places, places_at, rotation
+from comparisons.geometry import edge_places, is_free_on_the_left
 from cprbm_scene import Scene, StationAnswer
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import (
     CircleContact,
     EdgeContact,
     FixedBody,
-    FunctionContact,
     HalfPlaneContact,
     LineContact,
     RigidContact,
@@ -125,23 +125,13 @@ def _outline(contact: RigidContact, reach: float, depth: float) -> tuple[Array, 
         outline = centre + contact.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
         return outline, np.broadcast_to(centre, outline.shape), True
     assert isinstance(contact, EdgeContact)
-    match contact:
-        case LineContact():
-            places = np.array(contact.points)
-            to_rigid = -1.0 if contact.side == "left" else 1.0
-            if contact.closed and to_rigid * _area(places) > 0.0:
-                return places, np.broadcast_to(places[:-1].mean(axis=0), places.shape), True
-        case HalfPlaneContact():
-            n = np.array(contact.normal) / np.hypot(*contact.normal)
-            places = np.array(contact.point) + np.outer([-reach, reach], [n[1], -n[0]])
-            to_rigid = -1.0
-        case FunctionContact():
-            from comparisons.geometry import length, points
-
-            places = points(contact.curve, np.linspace(0.0, length(contact.curve), _ROUND))
-            # seen along the edge, what is above a function of x lies at its left if it runs to larger x
-            forward = (contact.range[1] > contact.range[0]) == (contact.axis == "x")
-            to_rigid = -1.0 if forward == (contact.side == "above") else 1.0
+    places = edge_places(contact, reach, _ROUND)
+    if isinstance(contact, HalfPlaneContact):
+        places, to_rigid = places[::-1], -1.0
+    else:
+        to_rigid = -1.0 if is_free_on_the_left(contact) else 1.0
+    if isinstance(contact, LineContact) and contact.closed and to_rigid * _area(places) > 0.0:
+        return places, np.broadcast_to(places[:-1].mean(axis=0), places.shape), True
     return places, places + to_rigid * depth * _normals(places), False
 
 
