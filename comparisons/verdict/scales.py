@@ -186,16 +186,17 @@ def _stepped(scene: Scene, stage: Stage) -> dict[str, float]:
 
 
 def _largest_deflection(scene: Scene, stage: Stage, answers: Sequence[Answer]) -> float:
-    """Largest distance, m, of nine places of a beam from the places at rest, at the stage's stations."""
+    """Largest deflection of all beams at the stage's stations, m; shapes that are not finite do not count."""
     deflections = [
-        _deflection(scene.beams[name], shape)
+        deflection(scene.beams[name], shape)
         for station in _stations(stage, answers)
         for name, shape in station.shapes.items()
     ]
     return max((each for each in deflections if np.isfinite(each)), default=0.0)
 
 
-def _deflection(beam: Beam, shape: Shape) -> float:
+def deflection(beam: Beam, shape: Shape) -> float:
+    """Largest distance, m, of nine places of a beam from the places at rest."""
     some = np.linspace(0, len(shape.s) - 1, _PLACES).astype(int)
     rest = points(beam.curve, shape.s[some])
     return float(np.max(np.hypot(shape.x[some] - rest[:, 0], shape.y[some] - rest[:, 1])))

@@ -22,13 +22,13 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
-from comparisons.geometry import points
 from comparisons.stages import begins_at, event_tolerance
 from comparisons.verdict.completeness import Where
 from comparisons.verdict.events import disagree_within_a_solver
 from comparisons.verdict.point_forces import active_contacts
 from comparisons.verdict.runs_table import RunsTable
-from cprbm_scene import Answer, Beam, Loss, Scene, Stage, StationAnswer
+from comparisons.verdict.scales import deflection
+from cprbm_scene import Answer, Loss, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array, Shape
 
 BRANCH = "branch"
@@ -165,11 +165,9 @@ def _on_mirror_images(table: RunsTable, here: Mapping[str, StationAnswer]) -> bo
         return False
     first = here[table.compared[0]].shapes
     beams = table.scene.beams.items()
-    rest = max(_distance(_nine(first[name]), _nine_at_rest(beam, first[name])) for name, beam in beams)
-    apart = max(
-        _distance(_nine(first[name]), _nine(station.shapes[name])) for station in here.values() for name, _ in beams
-    )
-    return apart > MIRROR_DISTANCE * rest
+    bent = max(deflection(beam, first[name]) for name, beam in beams)
+    apart = max(_distance(first[name], station.shapes[name]) for station in here.values() for name, _ in beams)
+    return apart > MIRROR_DISTANCE * bent
 
 
 def _nine(shape: Shape) -> Array:
@@ -178,9 +176,6 @@ def _nine(shape: Shape) -> Array:
     return np.stack([np.interp(s, shape.s, shape.x), np.interp(s, shape.s, shape.y)], axis=1)
 
 
-def _nine_at_rest(beam: Beam, shape: Shape) -> Array:
-    return points(beam.curve, np.linspace(0.0, shape.s[-1], 9))
-
-
-def _distance(one: Array, other: Array) -> float:
-    return float(np.max(np.hypot(*(one - other).T)))
+def _distance(one: Shape, other: Shape) -> float:
+    """Largest distance of nine places of a beam in two shapes, m."""
+    return float(np.max(np.hypot(*(_nine(one) - _nine(other)).T)))
