@@ -19,7 +19,7 @@ from comparisons.sheet import Sheet
 from comparisons.sheets import share, value_unit
 from comparisons.tables import fitted
 from comparisons.verdict.rows import ROUND_OFF, Row
-from comparisons.verdict.words import Word
+from comparisons.verdict.words import SEVERITY, Word
 
 LINES = 30
 """Most lines of a brief report, with an empty line below."""
@@ -32,7 +32,7 @@ WIDTH = 80
 
 _SENTENCE_LINES = 6
 _COMMAND = re.compile(r"`(-[^`]* [^`]*|solve [^`]*)`")
-_NEAREST = (Word.DIFFER, Word.UNDECIDED, Word.AGREE, None)
+_NEAREST = (*SEVERITY, None)
 
 Judged: TypeAlias = tuple[Row, Word | None]
 """Row and word."""

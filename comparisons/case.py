@@ -17,7 +17,7 @@ from comparisons.verdict.judge import Judged, judge_case, judge_rows
 from comparisons.verdict.rows import Row, build_rows
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.station_events import station_events
-from comparisons.verdict.words import Reason, Word
+from comparisons.verdict.words import SEVERITY, Reason, Word
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -138,10 +138,7 @@ def _verdict(
 def _rank(finding: Finding) -> tuple[int, int]:
     """Place of a finding among all: DIFFER first, then UNDECIDED, and of these the reasons in their order."""
     word, reason, _ = finding
-    return _WORDS.index(word), 0 if reason is None else list(Reason).index(reason)
-
-
-_WORDS = (Word.DIFFER, Word.UNDECIDED, Word.AGREE)
+    return SEVERITY.index(word), 0 if reason is None else list(Reason).index(reason)
 
 
 def _completed(table: RunsTable, criticals: Sequence[CriticalRow]) -> bool:

@@ -7,7 +7,7 @@ of h, a chain's joints lie h² M/(8 E·I) beside its smooth line.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -60,18 +60,22 @@ def sums(state: StationState) -> Iterator[str]:
                     yield f"the pinned end of {name} at {end.point} carries a moment of {moment:.2g} N·m"
 
 
-def cuts(state: StationState) -> Iterator[str]:
-    """Places where N, Q or M differ from the resultant of all that acts beyond."""
-    for name, beam in state.beams.items():
-        for what, (off, allowed) in zip(("force in N", "moment in N·m"), cut_errors(state, name), strict=True):
+CutErrors = tuple[tuple[Array, Array], tuple[Array, Array]]
+"""Errors of the stated force and of the stated moment at the cuts of a beam, each with the allowed error, (n,)."""
+
+
+def cuts(state: StationState, errors: Mapping[str, CutErrors]) -> Iterator[str]:
+    """Places where N, Q or M differ from the resultant of all that acts beyond, by the ``errors`` of every beam."""
+    for name, of_beam in errors.items():
+        for what, (off, allowed) in zip(("force in N", "moment in N·m"), of_beam, strict=True):
             worst = int(np.argmax(off - allowed))
             if not off[worst] <= allowed[worst]:
-                where = f"{name} at {beam.state.s[worst]:.4g} m"
+                where = f"{name} at {state.beams[name].state.s[worst]:.4g} m"
                 yield f"{where} states a {what} that is {off[worst]:.2g} off all that acts beyond"
 
 
-def cut_errors(state: StationState, name: str) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-    """Errors of the stated force and of the stated moment at the cuts of a beam, each with the allowed error, (n,)."""
+def cut_errors(state: StationState, name: str) -> CutErrors:
+    """Errors at the cuts of a beam."""
     beam = state.beams[name]
     s, stated, (F, M) = beam.state.s, beam.state.N + 1j * beam.state.Q, state.beyond(name, beam.state.s)
     small = np.minimum(np.append(np.inf, np.diff(s)), np.append(np.diff(s), np.inf))

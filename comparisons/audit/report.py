@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
+from functools import partial
 
 import numpy as np
 
-from comparisons.audit.balance import cut_errors, cuts, sums
+from comparisons.audit.balance import CutErrors, cut_errors, cuts, sums
 from comparisons.audit.contacts import contacts
 from comparisons.audit.crossings import crossing_sentence, crossings
 from comparisons.audit.joints import joints
@@ -47,20 +48,21 @@ def audit(scene: Scene, answer: Answer) -> Audit:
     complaints, worst, scaled = [], 0.0, 0.0
     for state in states:
         where = f"at {state.station.stage} {state.station.value:g}"
-        complaints += [f"{where} {complaint}" for complaint in _at_station(state)]
-        errors = [float(cut_errors(state, name)[1][0][1:-1].max()) for name in state.beams]
-        worst, scaled = max(worst, *errors), max(scaled, max(errors) / state.largest[1])
+        errors = {name: cut_errors(state, name) for name in state.beams}
+        complaints += [f"{where} {complaint}" for complaint in _at_station(state, errors)]
+        unbalance = max(float(moment[1:-1].max()) for _, (moment, _) in errors.values())
+        worst, scaled = max(worst, unbalance), max(scaled, unbalance / state.largest[1])
     complaints += path(answer, states)
     crossing = tuple(crossing_sentence(scene, pair) for pair in crossings(scene, answer))
     return Audit(tuple(complaints), crossing, len(states), worst, scaled)
 
 
-def _at_station(state: StationState) -> Iterator[str]:
+def _at_station(state: StationState, errors: Mapping[str, CutErrors]) -> Iterator[str]:
     """Complaints at one station; a state with a number that is not finite is not audited further."""
     numbers = [getattr(beam, field.name) for beam in state.station.beams.values() for field in fields(beam)]
     numbers += [state.station.forces.force.ravel(), state.station.forces.moment]
     if not np.isfinite(np.concatenate(numbers)).all():
         yield "states a number that is not finite"
     else:
-        for check in (joints, sums, cuts, section_law, contacts, probes):
+        for check in (joints, sums, partial(cuts, errors=errors), section_law, contacts, probes):
             yield from check(state)

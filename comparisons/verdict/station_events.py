@@ -29,7 +29,7 @@ from comparisons.verdict.point_forces import active_contacts
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.scales import deflection
 from cprbm_scene import Answer, Loss, Scene, Stage, StationAnswer
-from cprbm_scene.answer import Array, Shape
+from cprbm_scene.answer import Shape
 
 BRANCH = "branch"
 PASSED = "passed critical points"
@@ -170,12 +170,10 @@ def _on_mirror_images(table: RunsTable, here: Mapping[str, StationAnswer]) -> bo
     return apart > MIRROR_DISTANCE * bent
 
 
-def _nine(shape: Shape) -> Array:
-    """Nine places of a beam, (9, 2), m."""
-    s = np.linspace(0.0, shape.s[-1], 9)
-    return np.stack([np.interp(s, shape.s, shape.x), np.interp(s, shape.s, shape.y)], axis=1)
-
-
 def _distance(one: Shape, other: Shape) -> float:
     """Largest distance of nine places of a beam in two shapes, m."""
-    return float(np.max(np.hypot(*(_nine(one) - _nine(other)).T)))
+    first, second = (
+        np.stack([np.interp(np.linspace(0.0, shape.s[-1], 9), shape.s, along) for along in (shape.x, shape.y)])
+        for shape in (one, other)
+    )
+    return float(np.max(np.hypot(*(first - second))))

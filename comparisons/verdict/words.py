@@ -30,7 +30,11 @@ class Reason(Enum):
     NOT_UNIQUE = "NOT_UNIQUE"
 
 
+SEVERITY = (Word.DIFFER, Word.UNDECIDED, Word.AGREE)
+"""Words from the worst to the best."""
+
+
 def worst_of(words: Iterable[Word | None]) -> Word | None:
     """DIFFER before UNDECIDED before AGREE; None without a word."""
     found = set(words)
-    return next((word for word in (Word.DIFFER, Word.UNDECIDED, Word.AGREE) if word in found), None)
+    return next((word for word in SEVERITY if word in found), None)
