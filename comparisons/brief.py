@@ -136,8 +136,7 @@ def _nearness(row: Row, word: Word | None) -> tuple[int, float]:
 def _station(compared: Comparison, row: Row) -> str:
     stage = next(stage for stage in compared.scene.stages if stage.name == row.stage)
     unit = load_unit(compared.scene, stage)
-    load = f"{math.degrees(row.station):.4g}°" if unit == "rad" else f"{row.station:g} {unit}"
-    return f"{row.stage} {load}"
+    return f"{row.stage} " + (f"{math.degrees(row.station):.4g}°" if unit == "rad" else f"{row.station:g} {unit}")
 
 
 def _lines(row: Row, word: Word | None) -> list[tuple[str, ...]]:

@@ -158,8 +158,7 @@ def _reactions(table: RunsTable) -> tuple[WorkEnergyReaction, ...]:
     """Reactions of drives by two ways, where both compared answers are complete."""
     if _lacking(table):
         return ()
-    asked, found = perturbed_scene(table.scene), table.runs.perturbed
-    if asked is not None and found is None:
-        return ()
-    perturbed = None if asked is None or found is None else complete_part(asked, found)
-    return reactions(table.scene, *table.pair, perturbed)
+    asked, perturbed = perturbed_scene(table.scene), table.runs.perturbed
+    if asked is None:
+        return reactions(table.scene, *table.pair, None)
+    return () if perturbed is None else reactions(table.scene, *table.pair, complete_part(asked, perturbed))

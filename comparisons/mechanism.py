@@ -15,7 +15,7 @@ from comparisons.pairing import cprbm_answer, exact_answer, fea_answer, paired, 
 from comparisons.rendering import embedded, rendered
 from comparisons.sheet import Sheet
 from comparisons.sheets import of_answer
-from comparisons.tidy import comparison_records, csv_of, csv_text, numbers
+from comparisons.tidy import comparison_records, csv_of, csv_of_comparisons, numbers
 from comparisons.writing import write
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
@@ -53,7 +53,7 @@ class Comparison(case.Comparison):
         Raises:
             OSError: the file cannot be written.
         """
-        write(Path(path), csv_text(comparison_records(self)))
+        write(Path(path), csv_of_comparisons([self]))
 
     def to_pandas(self) -> Any:  # noqa: ANN401 - pandas is no dependency
         """The rows of :meth:`to_csv` as a ``pandas.DataFrame``.

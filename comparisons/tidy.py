@@ -67,7 +67,29 @@ def _parts(scene: Scene, probe: Probe, values: Array) -> Iterator[tuple[str, flo
         yield name, None, float(value)
 
 
-def comparison_records(compared: Comparison) -> Iterator[dict[str, object]]:
+ComparedNumber = TypedDict(
+    "ComparedNumber",
+    {
+        "scene": str,
+        "stage": str,
+        "station": float,
+        "station_unit": str,
+        "branch": int | None,
+        "probe": str,
+        "component": str,
+        "arc_length (m)": float | None,
+        "unit": str,
+        "cprbm": float | None,
+        "fea": float | None,
+        "difference": float,
+        "stated": float | None,
+        "word": str,
+    },
+)
+"""One number of a comparison in the SI ``unit``, with the values of both solvers."""
+
+
+def comparison_records(compared: Comparison) -> Iterator[ComparedNumber]:
     """Every number of a comparison with the values of both solvers beside each other.
 
     ``difference`` and ``stated`` are norms of the probe, in ``unit``; ``word`` is empty where the row takes no part.
@@ -100,14 +122,18 @@ def comparison_records(compared: Comparison) -> Iterator[dict[str, object]]:
 
 def csv_of(scene: Scene, *answers: Answer) -> str:
     """Answers to one scene as comma-separated values, with a line of headers."""
-    return csv_text(number for answer in answers for number in numbers(scene, answer))
+    return _csv_text((number for answer in answers for number in numbers(scene, answer)), Number)
 
 
-def csv_text(rows: Iterable[Mapping[str, object]]) -> str:
-    """Rows as comma-separated values, with a line of headers."""
+def csv_of_comparisons(comparisons: Iterable[Comparison]) -> str:
+    """Comparisons as comma-separated values, with a line of headers."""
+    return _csv_text((record for each in comparisons for record in comparison_records(each)), ComparedNumber)
+
+
+def _csv_text(rows: Iterable[Mapping[str, object]], kind: type) -> str:
+    """Rows of a ``kind`` as comma-separated values; also without rows a line of headers."""
     text = io.StringIO()
-    lines = list(rows)
-    table = csv.DictWriter(text, fieldnames=list(lines[0]) if lines else [], lineterminator="\n")
+    table = csv.DictWriter(text, fieldnames=list(kind.__annotations__), lineterminator="\n")
     table.writeheader()
-    table.writerows(lines)
+    table.writerows(rows)
     return text.getvalue()

@@ -151,12 +151,12 @@ def _export(finished: Sequence[Comparison | OffsetComparison], csv_file: Path | 
     """Write the table and the drawing of all comparisons; standard error says that there is nothing to draw."""
     from comparisons.figures import of_designs
     from comparisons.offset_verdict import OffsetComparison
-    from comparisons.tidy import comparison_records, csv_text
+    from comparisons.tidy import csv_of_comparisons
     from comparisons.writing import write
 
     compared = [each for each in finished if not isinstance(each, OffsetComparison)]
     if csv_file is not None:
-        write(csv_file, csv_text(record for each in compared for record in comparison_records(each)))
+        write(csv_file, csv_of_comparisons(compared))
     if plot_file is not None and compared and all(each.rows for each in compared):
         of_designs(compared).save(plot_file)
     elif plot_file is not None:
@@ -196,8 +196,8 @@ def exit_code(finished: Sequence[Comparison | OffsetComparison]) -> int:
     verdicts = [comparison.verdict for comparison in finished]
     if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):
         return 1
-    undecided = any(verdict.word is Word.UNDECIDED for verdict in verdicts)
-    return 3 if undecided or any(_beyond(comparison) for comparison in finished) else 0
+    undecided = (verdict.word is Word.UNDECIDED for verdict in verdicts)
+    return 3 if any(undecided) or any(map(_beyond, finished)) else 0
 
 
 def _beyond(one: Comparison | OffsetComparison) -> tuple[Tolerance, ...]:

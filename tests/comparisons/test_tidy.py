@@ -1,6 +1,7 @@
 """From Python: a verdict, an answer as a table of numbers, and the same as a file, each in one call."""
 
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -51,6 +52,14 @@ def test_the_file_reads_back_to_the_table(wrapped, tmp_path):
         assert {key: line[key] for key in ("probe", "component", "unit")} == {
             key: each[key] for key in ("probe", "component", "unit")
         }
+
+
+def test_a_file_without_stations_keeps_its_headers(wrapped, tmp_path):
+    scene, answer = wrapped
+    for name, stations in (("all", answer.stations), ("none", ())):
+        comparisons.write_csv(tmp_path / name, scene, replace(answer, stations=stations))
+    (headers,) = (tmp_path / "none").read_text(encoding="utf-8").splitlines()
+    assert headers == (tmp_path / "all").read_text(encoding="utf-8").splitlines()[0]
 
 
 def test_a_verdict_is_one_call():
