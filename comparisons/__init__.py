@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from comparisons.choices import Choices
-    from comparisons.mechanism import Comparison, Mechanism
+    from comparisons.mechanism import Mechanism, MechanismComparison
     from comparisons.tidy import Number
     from cprbm_scene import Answer, Scene
 
@@ -57,7 +57,7 @@ def open(  # noqa: A001 - as in gzip.open or Image.open
     return Mechanism(opened(str(case), parameters))
 
 
-def compare(scene: Scene, choices: Choices | None = None) -> Comparison:
+def compare(scene: Scene, choices: Choices | None = None) -> MechanismComparison:
     """Both solvers' answers to a scene beside each other, and the verdict.
 
     Args:

@@ -26,7 +26,7 @@ _SOLVERS = {"cprbm": cprbm_answer, "fea": fea_answer, "exact": exact_answer, "so
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Comparison(case.Comparison):
+class MechanismComparison(case.Comparison):
     """Comparison with tables, files and drawings."""
 
     def __repr__(self) -> str:
@@ -98,14 +98,14 @@ class Mechanism:
         named = (replace(station, values=frozendict(station.values)) for station in answer.stations)
         return replace(answer, stations=tuple(named))
 
-    def compare(self, choices: Choices | None = None) -> Comparison:
+    def compare(self, choices: Choices | None = None) -> MechanismComparison:
         """Answers of both solvers and the verdict.
 
         Raises:
             SceneError: a solver refuses the scene.
         """
         found = case.compare(self.scene, paired(self.scene, choices or Choices(), solvers_of(None)))
-        return Comparison(**{each.name: getattr(found, each.name) for each in fields(found)})
+        return MechanismComparison(**{each.name: getattr(found, each.name) for each in fields(found)})
 
     def plot(
         self, path: str | Path | None = None, solver: SolverName = "cprbm", choices: Choices | None = None

@@ -80,7 +80,7 @@ DOCUMENTED = {
     # docs/api/comparisons.md: settings, built-in cases, the verdict and the rows, an answer as numbers, the audit
     "comparisons.choices": ("Choices",),
     "comparisons.cases": ("asked", "names", "opened"),
-    "comparisons.mechanism": ("Comparison", "Mechanism"),
+    "comparisons.mechanism": ("Mechanism", "MechanismComparison"),
     "comparisons.case": ("Comparison", "Verdict"),
     "comparisons.verdict.bounds": ("Bounds",),
     "comparisons.verdict.rows": ("Row",),
