@@ -56,16 +56,19 @@ class Settings(BaseModel):
         return self.model_dump(mode="json")
 
     def check(self, scene: Scene) -> None:
-        """Refuse numbers of links that fit no beam of ``scene``.
+        """Refuse numbers of links that fit no beam of ``scene``, and a theory other than bending.
 
         Raises:
-            SceneError: a beam has no number, a number has no beam, or one is too small.
+            SceneError: a beam has no number, a number has no beam, a number is too small, or the theory has no links.
         """
-        mistakes = []
         named: Mapping[str, int] = dict.fromkeys(scene.beams, self.links) if isinstance(self.links, int) else self.links
-        for beam in named:
-            if beam not in scene.beams:
-                mistakes.append(Mistake(f"settings.links.{beam}", "no such beam", " or ".join(scene.beams), scene.file))
+        mistakes = [
+            Mistake(f"settings.links.{beam}", "no such beam", " or ".join(scene.beams), scene.file)
+            for beam in named
+            if beam not in scene.beams
+        ]
+        if scene.theory != "bending":
+            mistakes.append(Mistake("theory", repr(scene.theory), "'bending', the theory of the CPRBM", scene.file))
         for beam in scene.beams:
             if beam not in named:
                 mistakes.append(Mistake(f"settings.links.{beam}", "nothing", "a number of links", scene.file))

@@ -10,7 +10,7 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Protocol, TypeVar
+from typing import Annotated, Literal, Protocol, TypeVar
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
@@ -144,12 +144,14 @@ class Scene(Record):
     ``may_cross`` lists pairs that may pass through each other without a contact: two beams, or a beam and a contact
     with a rigid edge.  ``verdict_limit`` is the largest total uncertainty, a fraction of a probe's scale, for the
     verdict AGREE; a probe may have another limit.  ``units`` are those of a file; a scene from a file has SI units.
+    ``theory`` is the beam theory of the CPRBM: bending alone, with stretch, or with stretch and shear.
     """
 
     name: Name
     title: Title = ""
     source: Text = ""
     units: Units = Units()
+    theory: Literal["bending", "stretch", "shear"] = "bending"
     parameters: Named[Parameter] = Field(default_factory=frozendict)
     materials: Named[Material]
     beams: Annotated[Named[Beam], Field(min_length=1, max_length=256)]

@@ -47,6 +47,7 @@ RECORDS = [
     ("may_cross", ["beam1"], "may_cross[0]", "a list"),
     ("probes/0/points", 2.5, "probes[0].points", "a whole number"),
     ("probes/0/quantity", "speed", "probes[0].quantity", "'rotation'"),
+    ("theory", "plastic", "theory", "'bending', 'stretch' or 'shear'"),
     ("file", "x.toml", "file", "no key here"),
 ]
 
