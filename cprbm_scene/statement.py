@@ -228,6 +228,10 @@ class Scene(Record):
         """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""
         return self.verdict_limit if probe.verdict_limit is None else probe.verdict_limit
 
+    def probes_in(self, stage: str) -> tuple[Probe, ...]:
+        """The probes that are asked in a stage."""
+        return tuple(probe for probe in self.probes if probe.asked_in(stage))
+
     def stepped(self, stage: Stage) -> Load | Drive:
         """The stepped load or drive of a stage.
 
