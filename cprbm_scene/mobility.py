@@ -82,7 +82,8 @@ def _pins(scene: Scene) -> Iterator[Mistake]:
 
 def _supports(scene: Scene, freedoms: Freedoms | None) -> Iterator[Mistake]:
     """Scenes without ground or drives, beams without supports, bodies without a way to a support."""
-    if all(body.motion == "free" for body in scene.bodies.values()) and not scene.drives:
+    drives = [drive for drive in scene.drives.values() if scene.holds(drive, scene.stages[0].name)]
+    if all(body.motion == "free" for body in scene.bodies.values()) and not drives:
         yield Mistake("bodies", "no fixed body", 'at least one body with motion = "fixed"')
         return
     joints = {}
@@ -101,7 +102,7 @@ def _supports(scene: Scene, freedoms: Freedoms | None) -> Iterator[Mistake]:
     for name, body in scene.bodies.items():
         together = _connected(name, met)
         rows = [row for each in together for row in freedoms.guide(each)]
-        rows += [freedoms.row(drive) for drive in scene.drives.values() if freedoms.owner(drive) in together]
+        rows += [freedoms.row(drive) for drive in drives if freedoms.owner(drive) in together]
         if rank(rows) == FREEDOMS:
             continue
         found = f"a {_KINDS.get(body.motion, 'free')} body that "
@@ -140,7 +141,11 @@ def _loose(scene: Scene, freedoms: Freedoms) -> Iterator[Mistake]:
     parts: list[Part] = [("body", name) for name in scene.bodies] + [("beam", name) for name in scene.beams]
     rows: list[Motion] = [{("body", name): row} for name in scene.bodies for row in freedoms.guide(name)]
     rows += [row for pin in scene.pins.values() for row in _pin_rows(freedoms, pin)]
-    rows += [{("body", freedoms.owner(drive)): freedoms.row(drive)} for drive in scene.drives.values()]
+    rows += [
+        {("body", freedoms.owner(drive)): freedoms.row(drive)}
+        for drive in scene.drives.values()
+        if scene.holds(drive, scene.stages[0].name)
+    ]
     for name, beam in scene.beams.items():
         for end in (beam.start, beam.end):
             if not isinstance(end, FreeEnd):

@@ -9,13 +9,20 @@ from cprbm_scene.check_overlaps import overlap_at_rest
 from cprbm_scene.mistakes import Mistake, SceneError
 from cprbm_scene.statement import BeamContact, Scene
 
-Requirement = Literal["theory", "overlap at rest"]
+Requirement = Literal["theory", "overlap at rest", "from", "together"]
 
 
 def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
     """Kinds of requirements, with the keys, the values found, and values that every solver allows."""
     if scene.theory != "bending":
         yield "theory", Mistake("theory", repr(scene.theory), "'bending'", scene.file)
+    for name, drive in scene.drives.items():
+        if not scene.holds(drive, scene.stages[0].name):
+            found = f"a drive that is free before the stage {drive.begins!r}"
+            yield "from", Mistake(f"drives.{name}.from", found, "drives that hold from the start", scene.file)
+    for i, stage in enumerate(scene.stages):
+        if stage.together:
+            yield "together", Mistake(f"stages[{i}].steps", f"{list(stage.together)}", "one name", scene.file)
     for name, contact in scene.contacts.items():
         if isinstance(contact, BeamContact) and (overlap := overlap_at_rest(scene, contact)):
             found = f"beams that overlap at the start by {overlap:.3g} m"

@@ -232,6 +232,11 @@ class Scene(Record):
         """The probes that are asked in a stage."""
         return tuple(probe for probe in self.probes if probe.asked_in(stage))
 
+    def holds(self, drive: Drive, stage: str) -> bool:
+        """True if a drive prescribes its motion in a stage; False in stages before the drive's ``from``."""
+        names = [each.name for each in self.stages]
+        return drive.begins not in names[names.index(stage) + 1 :]
+
     def stepped(self, stage: Stage) -> Load | Drive:
         """The stepped load or drive of a stage.
 
