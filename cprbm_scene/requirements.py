@@ -6,10 +6,12 @@ from collections.abc import Iterator
 from typing import Literal
 
 from cprbm_scene.check_overlaps import overlap_at_rest
+from cprbm_scene.freedoms import Freedoms
 from cprbm_scene.mistakes import Mistake, SceneError
+from cprbm_scene.mobility import unsupported
 from cprbm_scene.statement import BeamContact, Scene
 
-Requirement = Literal["theory", "overlap at rest", "from", "together"]
+Requirement = Literal["theory", "overlap at rest", "from", "together", "support"]
 
 
 def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
@@ -23,6 +25,8 @@ def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
     for i, stage in enumerate(scene.stages):
         if stage.together:
             yield "together", Mistake(f"stages[{i}].steps", f"{list(stage.together)}", "one name", scene.file)
+    for mistake, _ in unsupported(scene, Freedoms(scene)):
+        yield "support", Mistake(mistake.key, mistake.found, "joints, guides and drives that hold it", scene.file)
     for name, contact in scene.contacts.items():
         if isinstance(contact, BeamContact) and (overlap := overlap_at_rest(scene, contact)):
             found = f"beams that overlap at the start by {overlap:.3g} m"
