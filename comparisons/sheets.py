@@ -428,15 +428,16 @@ def _answered(scene: Scene, answer: Answer, stage: Stage) -> Sheet:
     stations = [station for station in answer.stations if station.stage == stage.name]
     scales = probe_scales(scene, (answer,))
     columns: dict[str, list[str]] = {}
+    probes = scene.probes_in(stage.name)
     units = display_units(
         scene,
         (
             (unit_of(scene, probe, stage), max(norm(probe.quantity, at.values[probe.name]) for at in stations))
-            for probe in scene.probes
+            for probe in probes
             if stations
         ),
     )
-    for probe in scene.probes:
+    for probe in probes:
         found = [station.values[probe.name] for station in stations]
         factor, unit = units.get(unit_of(scene, probe, stage), (1.0, ""))
         floor = ROUND_OFF * scales[stage.name, probe.name]

@@ -83,7 +83,8 @@ def _body_load(
             found, what, key = f"a force at {load.point!r}, a point of {of}", "a point of a body", "point"
         yield Mistake(f"loads.{name}.{key}", found, f"{what} that can move: {_listed(movable)}")
     elif not any(load.rules()) and not any(scene.bodies[owner].rules()):
-        guide, row, drives = freedoms.guide(owner), freedoms.row(load), driven.get(owner, {})
+        guide, row = freedoms.guide(owner), freedoms.row(load)
+        drives = {name: each for name, each in driven.get(owner, {}).items() if scene.drives[name].begins is None}
         if held(row, guide):
             if isinstance(load, Moment):
                 found = f"a moment on {owner!r}, which slides and does not turn"

@@ -79,7 +79,7 @@ def wrong_probes(scene: Scene) -> Iterator[Mistake]:
 def wrong_claims(scene: Scene) -> Iterator[Mistake]:
     """Claims on unknown probes, stages or stations, and a single value for a probe of several numbers."""
     probes = {probe.name: probe for probe in scene.probes}
-    stages = [stage.name for stage in scene.stages]
+    stages = {stage.name for stage in scene.stages}
     ascending = {stage.name: sorted(stage.stations) for stage in scene.stages}
     for i, claim in enumerate(scene.claims):
         key = f"claims[{i}]"
@@ -87,8 +87,8 @@ def wrong_claims(scene: Scene) -> Iterator[Mistake]:
             yield unknown_name(f"{key}.probe", claim.probe, "probe", [*probes, CRITICAL])
         elif claim.value is not None and claim.probe != CRITICAL and probes[claim.probe].quantity in _SEVERAL:
             yield Mistake(f"{key}.value", f"a value of {claim.probe!r}, which has several", "a probe of one number")
-        if claim.stage is not None and claim.stage not in stages:
-            yield unknown_name(f"{key}.stage", claim.stage, "stage", stages)
+        if claim.probe in probes and claim.stage in stages and not probes[claim.probe].asked_in(claim.stage):
+            yield Mistake(f"{key}.stage", f"{claim.stage!r}, in which {claim.probe!r} is not asked", "another stage")
         elif claim.station is not None and claim.probe == CRITICAL:
             allowed = f"none: of {CRITICAL!r} the first of a stage is meant"
             yield Mistake(f"{key}.station", f"{claim.station:g}", allowed)
@@ -100,13 +100,20 @@ def wrong_claims(scene: Scene) -> Iterator[Mistake]:
             yield Mistake(f"{key}.station", f"{claim.station:g}", f"a station of a stage: {listed}")
 
 
-def repeated_stages(scene: Scene) -> Iterator[Mistake]:
-    """Stages with the same name: an answer could not tell their stations apart."""
+def wrong_stages(scene: Scene) -> Iterator[Mistake]:
+    """Stages with the same name, with loads of different units together, or with a drive that is free there."""
     seen: set[str] = set()
     for i, stage in enumerate(scene.stages):
         if stage.name in seen:
             yield Mistake(f"stages[{i}].name", f"{stage.name!r} again", "each stage's name once")
         seen.add(stage.name)
+        units = {str(scene.loads[load].unit) for load in stage.together if load in scene.loads}
+        if len(units) > 1:
+            yield Mistake(f"stages[{i}].steps", f"loads in {' and '.join(sorted(units))}", "loads of one unit")
+        drive = scene.drives.get(stage.steps)
+        if drive is not None and not scene.holds(drive, stage.name):
+            found = f"{stage.steps!r}, a drive that is free until the stage {drive.begins!r}"
+            yield Mistake(f"stages[{i}].steps", found, "a drive that holds, or a load")
 
 
 def wrong_spacings(scene: Scene) -> Iterator[Mistake]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Protocol, TypeVar
+from typing import Annotated, Literal, Protocol, TypeVar
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
@@ -153,12 +153,14 @@ class Scene(Record):
     with a rigid edge.  ``verdict_limit`` is the largest total uncertainty, a fraction of a probe's scale, for the
     verdict AGREE; a probe may have another limit.  ``units`` are those of a file; a scene from a file has SI units, and
     ``display_units`` remember the file's.
+    ``theory`` is the beam theory of the CPRBM: bending alone, with stretch, or with stretch and shear.
     """
 
     name: Name
     title: Title = ""
     source: Text = ""
     units: Units = Units()
+    theory: Literal["bending", "stretch", "shear"] = "bending"
     parameters: Named[Parameter] = Field(default_factory=frozendict)
     materials: Named[Material]
     beams: Annotated[Named[Beam], Field(min_length=1, max_length=256)]
@@ -240,6 +242,15 @@ class Scene(Record):
     def limit(self, probe: Probe) -> float:
         """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""
         return self.verdict_limit if probe.verdict_limit is None else probe.verdict_limit
+
+    def probes_in(self, stage: str) -> tuple[Probe, ...]:
+        """The probes that are asked in a stage."""
+        return tuple(probe for probe in self.probes if probe.asked_in(stage))
+
+    def holds(self, drive: Drive, stage: str) -> bool:
+        """True if a drive prescribes its motion in a stage; False in stages before the drive's ``from``."""
+        names = [each.name for each in self.stages]
+        return drive.begins not in names[names.index(stage) + 1 :]
 
     def stepped(self, stage: Stage) -> Load | Drive:
         """The stepped load or drive of a stage.
