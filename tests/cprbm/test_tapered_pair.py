@@ -6,7 +6,7 @@ import pytest
 import cprbm
 from cprbm import wells
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import equilibrium
+from cprbm.first_equilibrium import equilibrium
 from cprbm.feet import distance_along
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
