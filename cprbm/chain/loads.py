@@ -1,0 +1,83 @@
+"""Rows of loads.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+F        value of a load
+f        what the load works on: its energy is −F f(z)
+C(s)     neutral line, a sum of weights and nodes
+=======  ====================================================================================
+
+A force on a beam works on the displacement of C(s), a distributed load on the integral of that, and a moment on the
+section's angle at s.  All three are linear in the unknowns of the chain.
+"""
+
+from __future__ import annotations
+
+from math import hypot
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from cprbm.chain.beam import BeamChain
+from cprbm.chain.form import Form
+from cprbm.chain.mechanism import Mechanism, Row
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.statement import BeamForce, BeamMoment, Force, Load, Moment
+
+GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(2)
+"""Exact for the cubic weights of one link."""
+
+
+def load_row(m: Mechanism, name: str, load: Load) -> Row:
+    """Row of one load."""
+    per_force, per_moment = -1.0 / m.units.force, -1.0 / m.units.moment
+    match load:
+        case Moment():
+            return Row(name, m.rotation(load.body), driven=False, unit=per_moment)
+        case Force():
+            size = hypot(*load.direction)
+            form = m.displacement(load.point, (load.direction[0] / size, load.direction[1] / size))
+            return Row(name, form, driven=False, unit=per_force)
+        case BeamMoment():
+            chain = m.chains[load.beam]
+            weights = chain.angle_weights(np.array([load.at * chain.length]))
+            return Row(
+                name, _weighted(m.beam_angles(load.beam), chain.link_angle, weights), driven=False, unit=per_moment
+            )
+        case BeamForce():
+            chain = m.chains[load.beam]
+            weights = chain.weights(np.array([load.at * chain.length]))
+            return Row(name, _displaced(m, load.beam, weights, load.direction), driven=False, unit=per_force)
+        case _:
+            chain = m.chains[load.beam]
+            weights = integrated_weights(chain, load.along[0] * chain.length, load.along[1] * chain.length)
+            unit = per_force * m.units.length
+            return Row(name, _displaced(m, load.beam, weights, load.direction), driven=False, unit=unit)
+
+
+def integrated_weights(chain: BeamChain, begin: float, end: float) -> csr_matrix:
+    """Weights (1, N + 2) of the nodes in the integral of C from one arc length to another."""
+    inner = chain.arcs[(chain.arcs > begin) & (chain.arcs < end)]
+    places = np.concatenate([[begin], inner, [end]])
+    half = 0.5 * np.diff(places)
+    s = 0.5 * (places[1:] + places[:-1])[:, None] + half[:, None] * GAUSS_NODES
+    return csr_matrix((half[:, None] * GAUSS_WEIGHTS).reshape(1, -1)) @ chain.weights(s.ravel())
+
+
+def _displaced(m: Mechanism, beam: str, weights: csr_matrix, direction: tuple[float, float]) -> Form:
+    """Weighted displacement of a beam's nodes along a direction."""
+    size, nodes = hypot(*direction), m.beam_nodes(beam)
+    parts = [
+        _weighted(nodes + axis, m.chains[beam].nodes[:, axis], weights) * (direction[axis] / size) for axis in (0, 1)
+    ]
+    return parts[0] + parts[1]
+
+
+def _weighted(indices: Ints, rest: Array, weights: csr_matrix) -> Form:
+    """Weighted change of unknowns from their values at rest."""
+    used, factors = weights.indices, weights.data
+    return Form(
+        -float(rest[used] @ factors),
+        tuple((int(indices[i]), float(a)) for i, a in zip(used, factors, strict=True) if a != 0.0),
+    )

@@ -1,0 +1,42 @@
+"""Forces of rows that repeat others, in rigid links the limit of a small axial compliance.
+
+A repeated row's unit force is balanced by the other rows and the chains' forces, in any amount.  A small axial
+compliance chooses the amounts with the least energy of stretching, Σ L N²/EA, with the same EA of all links.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import lstsq
+
+from cprbm.chain import add_row_gradient
+from cprbm.equilibrium.newton import Solved
+from cprbm_scene.answer import Array
+
+
+def shared_multipliers(solved: Solved) -> Array:
+    """Unknowns (size,) of a solved state whose repeated rows take their share."""
+    system, state = solved.system, solved.state
+    z, rows = state.z.copy(), np.flatnonzero(state.repeated)
+    if not len(rows):
+        return z
+    balanced = []
+    for r in rows:
+        load, weight = np.zeros(system.size), np.zeros(len(system.rows.constant))
+        weight[r] = 1.0
+        add_row_gradient(z, system.rows, weight, load)
+        reaction = -solved.factors.solve(load)
+        reaction[system.rows.first + r] = 1.0
+        balanced.append(reaction)
+    motions = np.array(balanced)
+    indices = system.links.first[:, None] + [2, 3]
+    direction = np.column_stack([np.cos(z[system.angles]), np.sin(z[system.angles])])
+    weight = np.sqrt(system.links.length)
+
+    def stretch(vector: Array) -> Array:
+        return np.asarray(weight * np.einsum("ij,ij->i", vector[indices], direction))
+
+    share = lstsq(np.array([stretch(each) for each in motions]).T, -stretch(z))[0]
+    forces = np.concatenate([indices.ravel(), np.arange(system.rows.first, system.size)])
+    z[forces] += (share @ motions)[forces]
+    return z
