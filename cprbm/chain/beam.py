@@ -27,11 +27,10 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from scipy.sparse import csr_matrix
 
-from cprbm.chain.spline import linear_weights, nodes_through, spline_weights
+from cprbm.chain.spline import NeutralLine, nodes_through, polygon_line, spline_line
 from cprbm_scene import Beam, Material
-from cprbm_scene.answer import Array
+from cprbm_scene.answer import Array, Ints
 from cprbm_scene.geometry import arc_length, points_on, tangents_on
 
 Theory = Literal["bending", "stretch", "shear"]
@@ -103,6 +102,7 @@ class BeamChain:
         stiffness, bend, skew: k, b, m of the joints; ``skew`` is zero for the plain chain.
         growth: links' lengths that grow with a joint's turn, before and behind it (N, 2); zero for the plain chain.
         end_angles: angles of the neutral line's tangent at rest at start and end.
+        line: the neutral line by the nodes.
         corrected: whether the chain has the corrections of fourth order.
     """
 
@@ -122,6 +122,7 @@ class BeamChain:
     skew: Array
     growth: Array
     end_angles: tuple[float, float]
+    line: NeutralLine
     corrected: bool
 
     @property
@@ -134,17 +135,14 @@ class BeamChain:
         """Arc length of the beam."""
         return float(self.arcs[-1])
 
-    def weights(self, s: Array, order: int = 0) -> csr_matrix:
-        """Weights (k, N + 2) of the nodes in the neutral line at arc lengths ``s``, or in its derivative."""
-        return (spline_weights if self.corrected else linear_weights)(self.arcs, s, order)
+    def angle_weights(self, s: Array) -> tuple[Ints, Array]:
+        """Links (k, 4) and weights (k, 4) of their angles in the section's angle at arc lengths ``s``.
 
-    def angle_weights(self, s: Array) -> csr_matrix:
-        """Weights (k, N + 1) of the links' angles in the section's angle at arc lengths ``s``.
-
-        The cubic through the nearest four angles, which stand at borders of elements and at the beam's ends.
+        The cubic through the nearest four angles, which stand at borders of elements and at the beam's ends; of a plain
+        chain the line through two.
         """
         places = np.concatenate([self.arcs[:1], 0.5 * (self.arcs[2:-1] + self.arcs[1:-2]), self.arcs[-1:]])
-        order = min(4, len(places)) if self.corrected else min(2, len(places))
+        order = min(4 if self.corrected else 2, len(places))
         first = np.clip(np.searchsorted(places, s) - order // 2, 0, len(places) - order)
         columns = first[:, None] + np.arange(order)
         at = places[columns]
@@ -153,8 +151,7 @@ class BeamChain:
             for j in range(order):
                 if i != j:
                     weights[:, i] *= (s - at[:, j]) / (at[:, i] - at[:, j])
-        rows = np.repeat(np.arange(len(s)), order)
-        return csr_matrix((weights.ravel(), (rows, columns.ravel())), shape=(len(s), self.links))
+        return columns, weights
 
     def leaving_angle(self, end: Literal["start", "end"]) -> float:
         """Angle at rest at which the neutral line leaves one of its ends."""
@@ -200,6 +197,7 @@ def beam_chain(
         skew=np.zeros(links),
         growth=np.zeros((links, 2)),
         end_angles=(float(angles[0]), float(angles[-1])),
+        line=polygon_line(arcs),
         corrected=False,
     )
     return _corrected(plain, knots) if corrected else _with_chords(plain, plain.nodes)
@@ -207,7 +205,8 @@ def beam_chain(
 
 def _corrected(chain: BeamChain, knots: Array) -> BeamChain:
     """The chain with the corrections of fourth order."""
-    chain = _with_chords(chain, nodes_through(chain.nodes))
+    line = spline_line(chain.arcs)
+    chain = _with_chords(chain, nodes_through(chain.nodes, line.control))
     h, L = chain.borders[1] - chain.borders[0], chain.link_length
 
     def flexibility(s: Array) -> Array:
@@ -229,6 +228,7 @@ def _corrected(chain: BeamChain, knots: Array) -> BeamChain:
         half_lean=half_lean,
         skew=first - middles / chain.stiffness,
         growth=np.column_stack([grown[:-1], grown[1:]]),
+        line=line,
         corrected=True,
     )
 

@@ -40,14 +40,14 @@ def load_row(m: Mechanism, name: str, load: Load) -> Row:
             form = m.displacement(load.point, (load.direction[0] / size, load.direction[1] / size))
             return Row(name, form, driven=False, unit=per_force)
         case BeamMoment():
-            chain = m.chains[load.beam]
-            weights = chain.angle_weights(np.array([load.at * chain.length]))
-            return Row(
-                name, _weighted(m.beam_angles(load.beam), chain.link_angle, weights), driven=False, unit=per_moment
-            )
+            chain, at = m.chains[load.beam], load.at * m.chains[load.beam].length
+            links, weights = (each[0] for each in chain.angle_weights(np.array([at])))
+            form = _weighted(m.beam_angles(load.beam), chain.link_angle, links, weights)
+            softness = _moment_softness(chain, at, links, weights)
+            return Row(name, form, driven=False, unit=per_moment, softness=softness)
         case BeamForce():
             chain = m.chains[load.beam]
-            weights = chain.weights(np.array([load.at * chain.length]))
+            weights = chain.line.weights(np.array([load.at * chain.length]))
             return Row(name, _displaced(m, load.beam, weights, load.direction), driven=False, unit=per_force)
         case _:
             chain = m.chains[load.beam]
@@ -62,22 +62,31 @@ def integrated_weights(chain: BeamChain, begin: float, end: float) -> csr_matrix
     places = np.concatenate([[begin], inner, [end]])
     half = 0.5 * np.diff(places)
     s = 0.5 * (places[1:] + places[:-1])[:, None] + half[:, None] * GAUSS_NODES
-    return csr_matrix((half[:, None] * GAUSS_WEIGHTS).reshape(1, -1)) @ chain.weights(s.ravel())
+    return csr_matrix((half[:, None] * GAUSS_WEIGHTS).reshape(1, -1)) @ chain.line.weights(s.ravel())
 
 
 def _displaced(m: Mechanism, beam: str, weights: csr_matrix, direction: tuple[float, float]) -> Form:
     """Weighted displacement of a beam's nodes along a direction."""
     size, nodes = hypot(*direction), m.beam_nodes(beam)
-    parts = [
-        _weighted(nodes + axis, m.chains[beam].nodes[:, axis], weights) * (direction[axis] / size) for axis in (0, 1)
-    ]
+    rest, used, factors = m.chains[beam].nodes, weights.indices, weights.data
+    parts = [_weighted(nodes + axis, rest[:, axis], used, factors) * (direction[axis] / size) for axis in (0, 1)]
     return parts[0] + parts[1]
 
 
-def _weighted(indices: Ints, rest: Array, weights: csr_matrix) -> Form:
-    """Weighted change of unknowns from their values at rest."""
-    used, factors = weights.indices, weights.data
+def _weighted(indices: Ints, rest: Array, used: Ints, factors: Array) -> Form:
+    """Weighted change of the ``used`` unknowns from their values at rest."""
     return Form(
         -float(rest[used] @ factors),
         tuple((int(indices[i]), float(a)) for i, a in zip(used, factors, strict=True) if a != 0.0),
     )
+
+
+def _moment_softness(chain: BeamChain, at: float, links: Ints, weights: Array) -> float:
+    """Turn at ``at`` under a unit moment there, less the turn that the chain shows.
+
+    The moment acts before the place, and turns the beam by ∫ ds/EI; joint i of the chain has the share W_i, the sum of
+    the weights of all angles behind it.
+    """
+    behind = np.cumsum(np.bincount(links, weights, minlength=chain.links)[::-1])[::-1][1:]
+    share = np.clip((at - chain.borders[:-1]) / np.diff(chain.borders), 0.0, 1.0)
+    return float((share - behind**2) @ (1.0 / chain.stiffness))

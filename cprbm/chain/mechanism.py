@@ -43,6 +43,7 @@ class Row:
         driven: whether the value is prescribed at first.
         limit: whether the row is a stop: f ≥ 0, and the force only pushes.
         unit: f per unit (SI) of the load or drive that steps the row; of a load, μ per unit, with the sign of μ.
+        softness: change of f by a unit of its own force that the chain does not show; the energy is −softness μ²/2.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Row:
     driven: bool = True
     limit: bool = False
     unit: float = 0.0
+    softness: float = 0.0
 
 
 @dataclass(eq=False)

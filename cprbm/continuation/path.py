@@ -6,7 +6,8 @@ symbol   meaning
 t        fraction of the way, from 0 to 1
 f*, μ*   targets of the rows, linear in t
 Π        potential energy: strain energy and energy of the rows with prescribed force
-Π′       dΠ/dt of equilibria: Σ −μ df*/dt of prescribed values, Σ f dμ*/dt of prescribed forces
+Π′       dΠ/dt of equilibria: Σ −μ df*/dt of prescribed values, Σ (f − c μ) dμ*/dt of prescribed forces
+c        softness of a row, which the chain does not show
 =======  ====================================================================================
 """
 
@@ -16,7 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm.chain import add_row_gradient, strain_energy
+from cprbm.chain import add_row_gradient, row_values, strain_energy
 from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array
@@ -55,11 +56,9 @@ class Reached:
 
 def potential(system: System, state: State) -> float:
     """Π in units of moment."""
-    forced = ~state.driven & ~state.repeated
-    energy = float(strain_energy(state.z, system.links, system.joints))
-    for r in np.flatnonzero(forced & (state.multipliers(system) != 0.0)):
-        energy += float(state.multipliers(system)[r]) * system.mechanism.rows[r].form.value(state.z)
-    return energy
+    mu = np.where(state.driven | state.repeated, 0.0, state.multipliers(system))
+    acting = mu @ row_values(state.z, system.rows) - 0.5 * (system.softness @ mu**2)
+    return float(strain_energy(state.z, system.links, system.joints) + acting)
 
 
 def tangent(solved: Solved, change: Array) -> Array:
@@ -75,7 +74,8 @@ def tangent(solved: Solved, change: Array) -> Array:
 
 def power(solved: Solved, change: Array) -> float:
     """Π′."""
-    of_row = np.where(solved.state.driven, -solved.state.multipliers(solved.system), solved.values)
+    mu = solved.state.multipliers(solved.system)
+    of_row = np.where(solved.state.driven, -mu, solved.values - solved.system.softness * mu)
     return float(of_row @ change)
 
 
@@ -84,7 +84,8 @@ def power_rate(solved: Solved, change: Array, rate: Array) -> float:
     system, state = solved.system, solved.state
     slope = np.zeros(system.size)
     add_row_gradient(state.z, system.rows, np.where(state.driven, 0.0, change), slope)
-    return float(slope @ rate - np.where(state.driven, change, 0.0) @ rate[system.rows.first :])
+    forced = np.where(state.driven, 0.0, change)
+    return float(slope @ rate - (change - forced) @ rate[system.rows.first :] - system.softness @ forced**2)
 
 
 def turned(before: Solved, after: Solved) -> float:

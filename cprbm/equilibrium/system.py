@@ -27,6 +27,7 @@ class System:
         angles, nodes: indices of all links' angles, and of the x and y of all nodes.
         metric: lengths of the links, the weights of their angles in a mode.
         limits: which rows are stops.
+        softness: of the rows, which the chain does not show.
         lengthening: whether links have an axial compliance.
     """
 
@@ -40,6 +41,7 @@ class System:
     nodes: Ints
     metric: Array
     limits: Flags
+    softness: Array
     lengthening: bool
 
     @property
@@ -79,6 +81,7 @@ def system_of(mechanism: Mechanism) -> System:
         nodes=np.stack([nodes, nodes + 1], axis=1),
         metric=links.length,
         limits=np.array([row.limit for row in mechanism.rows], dtype=bool),
+        softness=np.array([row.softness for row in mechanism.rows], dtype=float),
         lengthening=bool(np.any(links.stretch)),
     )
 

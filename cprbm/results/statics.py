@@ -19,12 +19,9 @@ With shear α differs from θ by the angle of (1 + N/EA, Q/GA_s); in the other t
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
-from scipy.sparse import vstack
 
-from cprbm.chain.loads import integrated_weights
 from cprbm.results.forces import end_force, stop_moment
 from cprbm.results.view import View
 from cprbm_scene.answer import Array, BeamState, frozen_array
@@ -139,13 +136,9 @@ def _distributed(view: View, load: DistributedLoad, value: float, s: Array, plac
     until = np.clip(s, begin, end)
     direction = np.array(load.direction) / np.hypot(*load.direction)
     q = value * units.length / units.force * direction
-    # integrals between neighbouring cuts, summed up
-    stations, which = np.unique(np.append(until, begin), return_inverse=True)
-    parts = [integrated_weights(chain, a, b) for a, b in pairwise(stations)]
-    steps = vstack(parts) @ view.nodes(load.beam) if parts else np.zeros((0, 2))
-    integral = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])[which[:-1]]
+    integral = chain.line.integral(view.nodes(load.beam), np.append(until, begin))
     span = until - begin
-    return span[:, None] * q, _cross(integral - span[:, None] * places, q)
+    return span[:, None] * q, _cross(integral[:-1] - integral[-1] - span[:, None] * places, q)
 
 
 def _cross(arms: Array, force: Array) -> Array:

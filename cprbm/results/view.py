@@ -54,11 +54,12 @@ class View:
 
     def line(self, beam: str, s: Array) -> Array:
         """Positions (k, 2) of the neutral line at arc lengths ``s``, in units."""
-        return np.asarray(self.chain(beam).weights(s) @ self.nodes(beam))
+        return self.chain(beam).line.place(self.nodes(beam), s)
 
     def angles(self, beam: str, s: Array) -> Array:
         """Angles of the sections (k,) at arc lengths ``s``."""
-        return np.asarray(self.chain(beam).angle_weights(s) @ self.z[self.mechanism.beam_angles(beam)])
+        links, weights = self.chain(beam).angle_weights(s)
+        return np.asarray((weights * self.z[self.mechanism.beam_angles(beam)][links]).sum(axis=1))
 
     def multiplier(self, row: str) -> float:
         """μ of a row; zero for a row that does not exist."""
