@@ -107,7 +107,7 @@ def solution(
                 **_places(scene, probe),
             }
             for station in answer.stations
-            for probe in scene.probes
+            for probe in scene.probes_in(station.stage)
         ],
     }
 

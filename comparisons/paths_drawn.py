@@ -65,9 +65,9 @@ def _ways(compared: Comparison) -> dict[str, list[Stage]]:
     }
 
 
-def _ordinates(scene: Scene, stage: Stage) -> Iterator[_Ordinate]:
-    asked = {probe.name for probe in scene.probes}
-    stepped = scene.stepped(stage)
+def _ordinates(scene: Scene, stages: list[Stage]) -> Iterator[_Ordinate]:
+    asked = {probe.name for probe in scene.probes if all(probe.asked_in(stage.name) for stage in stages)}
+    stepped = scene.stepped(stages[0])
 
     def value(probe: Probe) -> Callable[[StationAnswer], float]:
         return lambda station: float(station.values[probe.name][0])
@@ -84,14 +84,14 @@ def _ordinates(scene: Scene, stage: Stage) -> Iterator[_Ordinate]:
         probe = reaction_probe(stepped)
         if probe.name in asked:
             what = "reaction moment" if probe.quantity == "reaction_moment" else "reaction force"
-            yield _Ordinate(what, UNITS[probe.quantity], lambda station: multiplier(scene, stage, station))
+            yield _Ordinate(what, UNITS[probe.quantity], lambda station: multiplier(scene, stages[0], station))
     if ENERGY.name in asked:
         yield _Ordinate("potential energy", "J", value(ENERGY))
 
 
 def _drawn(compared: Comparison, stepped: str, stages: list[Stage]) -> Picture | None:
     scene, runs = compared.scene, compared.runs
-    shown = list(_ordinates(scene, stages[0]))
+    shown = list(_ordinates(scene, stages))
     if not shown:
         return None
     axis = load_unit(scene, stages[0])

@@ -244,10 +244,10 @@ def smooth_intervals(scene: Scene, stage: Stage, cprbm: Answer, perturbed: Answe
     beside = cprbm if is_long(stage) else perturbed
     answers = [answer for answer in (cprbm, beside) if answer is not None]
     passed = [point.end.value for answer in answers for point in answer.gone_over if point.end.stage == stage.name]
-    steps = _steps(stage)
+    steps, asked = _steps(stage), {probe.name for probe in scene.probes_in(stage.name)}
     found = []
     for d in stage.stations:
-        if d not in steps or beside is None or (is_long(stage) and ENERGY.name not in cprbm.stations[0].values):
+        if d not in steps or beside is None or (is_long(stage) and ENERGY.name not in asked):
             found.append(Interval((), absence=Absence.NOT_PERTURBED))
             continue
         h = steps[d]
@@ -291,7 +291,7 @@ def multiplier(scene: Scene, stage: Stage, station: StationAnswer) -> float:
 
 def _has_reaction(scene: Scene, stage: Stage) -> bool:
     """Whether a stage moves a drive whose reaction is a probe of the scene."""
-    probes = {probe.name for probe in scene.probes}
+    probes = {probe.name for probe in scene.probes_in(stage.name)}
     moves = stage.steps in scene.drives and any(stage.stations)
     return moves and reaction_probe(scene.drives[stage.steps]).name in probes
 

@@ -426,7 +426,7 @@ def _answered(scene: Scene, answer: Answer, stage: Stage) -> Sheet:
     stations = [station for station in answer.stations if station.stage == stage.name]
     scales = probe_scales(scene, (answer,))
     columns: dict[str, list[str]] = {}
-    for probe in scene.probes:
+    for probe in scene.probes_in(stage.name):
         found = [station.values[probe.name] for station in stations]
         largest = max((norm(probe.quantity, values) for values in found), default=0.0)
         factor, unit = scaled_unit(unit_of(scene, probe, stage), largest)

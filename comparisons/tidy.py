@@ -38,7 +38,7 @@ def numbers(scene: Scene, answer: Answer) -> Iterator[Number]:
     """Every number of an answer, station by station and probe by probe; of what has no value there is none."""
     stages = {stage.name: stage for stage in scene.stages}
     for station in answer.stations:
-        for probe in scene.probes:
+        for probe in scene.probes_in(station.stage):
             values = station.values[probe.name]
             for component, arc_length, value in _parts(scene, probe, values):
                 yield Number(

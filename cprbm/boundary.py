@@ -44,6 +44,7 @@ from cprbm.once import once
 from cprbm.related import related_joints
 from cprbm_scene import BeamContact, Mistake, Scene, SceneError
 from cprbm_scene.answer import Array, Ints
+from cprbm_scene.check_overlaps import overlap_at_rest
 
 FEWEST_POINTS = 3
 FEW = 100  # related joints, whose derivatives are products with a small matrix
@@ -300,7 +301,7 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
         along_x=along_x,
         sense=1.0 if gap[1 if along_x else 0] > 0.0 else -1.0,
         side=1.0 if tangent.real * gap[1] - tangent.imag * gap[0] > 0.0 else -1.0,
-        offset=half,
+        offset=half - overlap_at_rest(scene, contact) / model.unit_length,
         joints=constrained.first_joint + joints,
         points=boundary.first_joint + points,
         links=boundary.first_link + np.arange(points[0] - 1, points[-1] + 1),

@@ -328,7 +328,7 @@ class March:
         return StationAnswer(
             stage=stage.name,
             value=value,
-            values=probed(self.scene, mechanism, point, self.closed_at),
+            values=probed(self.scene, mechanism, point, self.closed_at, stage.name),
             shapes=shapes(mechanism, point),
             touching=places,
             certificate=replace(certificate, iterations=spent),

@@ -77,6 +77,7 @@ from cprbm.once import once
 from cprbm.pairs import Pressed
 from cprbm_scene import BeamContact, Scene
 from cprbm_scene.answer import Array, Flags, Ints
+from cprbm_scene.check_overlaps import overlap_at_rest
 
 ARCHING = 1.0  # of what the largest force bends one element by: unlike elements of two beams arch by as much
 DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even
@@ -584,7 +585,7 @@ def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:
         b=b,
         side=standing.side,
         across=standing.across,
-        offset=0.5 * sum(thinnest) if contact.thick else 0.0,
+        offset=0.5 * sum(thinnest) - overlap_at_rest(scene, contact) / model.unit_length if contact.thick else 0.0,
         unit_length=model.unit_length,
         tapered=contact.thick and (a.thickness, b.thickness) != thinnest,
         clamps=standing.clamps,

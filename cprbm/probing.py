@@ -17,10 +17,15 @@ from cprbm_scene.answer import Array, frozen_array
 from cprbm_scene.statement import DisplacementDrive, PinnedEnd, WeldedEnd
 
 
-def probed(scene: Scene, mechanism: Mechanism, point: Point, closed_at: dict[str, float]) -> dict[str, Array]:
-    """Every probe's value at a state; ``closed_at`` holds the load at which contacts closed."""
+def probed(
+    scene: Scene, mechanism: Mechanism, point: Point, closed_at: dict[str, float], stage: str
+) -> dict[str, Array]:
+    """Every probe's value at a state in a stage; ``closed_at`` holds the load at which contacts closed."""
     return {
-        probe.name: frozen_array(_value(scene, mechanism, point, probe, closed_at)).ravel() for probe in scene.probes
+        probe.name: frozen_array(
+            _value(scene, mechanism, point, probe, closed_at) if probe.asked_in(stage) else []
+        ).ravel()
+        for probe in scene.probes
     }
 
 

@@ -9,6 +9,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.frozendict import frozendict
+from cprbm_scene.requirements import refuse
 
 FEWEST_LINKS = 2
 
@@ -56,30 +57,22 @@ class Settings(BaseModel):
         return self.model_dump(mode="json")
 
     def check(self, scene: Scene) -> None:
-        """Refuse numbers of links that fit no beam of ``scene``.
+        """Refuse numbers of links that fit no beam of ``scene``, and requirements that the CPRBM does not meet.
 
         Raises:
-            SceneError: a beam has no number, a number has no beam, or one is too small.
+            SceneError: a beam has no number, a number has no beam, a number is too small, or the scene
+                requires more.
         """
-        mistakes = []
+        refuse(scene, "the CPRBM", "overlap at rest")
         named: Mapping[str, int] = dict.fromkeys(scene.beams, self.links) if isinstance(self.links, int) else self.links
-        for beam in named:
-            if beam not in scene.beams:
-                mistakes.append(Mistake(f"settings.links.{beam}", "no such beam", " or ".join(scene.beams), scene.file))
-        for beam in scene.beams:
-            if beam not in named:
-                mistakes.append(Mistake(f"settings.links.{beam}", "nothing", "a number of links", scene.file))
-            elif named[beam] < FEWEST_LINKS:
-                mistakes.append(
-                    Mistake(
-                        f"settings.links.{beam}",
-                        f"{named[beam]}",
-                        f"at least {FEWEST_LINKS} elements per beam",
-                        scene.file,
-                    )
-                )
-        if mistakes:
-            raise SceneError(mistakes)
+        known, fewest = " or ".join(scene.beams), f"at least {FEWEST_LINKS} elements per beam"
+        unknown = [(beam, "no such beam", known) for beam in named if beam not in scene.beams]
+        few = [beam for beam in scene.beams if named.get(beam, 0) < FEWEST_LINKS]
+        wrong = [*unknown, *((beam, str(named.get(beam, "nothing")), fewest) for beam in few)]
+        if wrong:
+            raise SceneError(
+                [Mistake(f"settings.links.{beam}", found, allowed, scene.file) for beam, found, allowed in wrong]
+            )
 
 
 def _doubled(links: int | Mapping[str, int]) -> int | Mapping[str, int]:

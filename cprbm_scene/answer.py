@@ -221,7 +221,7 @@ class StationAnswer:
     Attributes:
         stage: name of the stage.
         value: of the stepped load or drive, SI.
-        values: by probe name.
+        values: by probe name; empty (0,) for a probe that is not asked in the stage.
         shapes: deformed neutral lines by beam name.
         touching: by the name of a closed contact the places where the beams touch, (k, 2), m.
         certificate: of this station.

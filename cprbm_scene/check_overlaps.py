@@ -30,9 +30,12 @@ from cprbm_scene.mistakes import Mistake, written_place
 from cprbm_scene.statement import Arc, BeamContact, RigidContact, Scene, Spline
 
 OVERLAP = 1e-6
-"""Overlap that counts as touching, of the mean thickness where both beams are thinnest."""
-HELD_OVERLAP = 1e-3
-"""The same beside ends on the same body, with a constant gap: coordinates are rounded."""
+"""Overlap that counts as round-off, of the mean thickness where both beams are thinnest."""
+TOUCHING = 1e-3
+"""Overlap of beams of constant thickness that counts as touching, of their mean: coordinates are rounded.
+
+Of other beams so much may overlap beside ends that are welded side by side to one body.
+"""
 CROSSING_ANGLE = 1e-3
 """Angle, rad, below which two lines that meet are tangent."""
 JOINED = 5.0
@@ -64,40 +67,50 @@ def repeated_contacts(scene: Scene) -> Iterator[Mistake]:
 
 
 def overlapping_beams(scene: Scene) -> Iterator[Mistake]:
-    """Overlap (thick beams) or crossing (lines) of the beams of a contact as drawn.
-
-    Stretches beside shared ends are left out.  Beside ends on the same body a larger overlap counts as touching.
-    """
+    """Overlap (thick beams) or crossing (lines) of the beams of a contact as drawn; not beside shared ends."""
     for name, contact in scene.contacts.items():
         if not isinstance(contact, BeamContact) or contact.between[0] == contact.between[1]:
             continue
         first, second = (scene.beams.get(beam) for beam in contact.between)
         if first is None or second is None or not (first.sound and second.sound):
             continue
-        found = _overlap(scene, first, second) if contact.thick else _crossing(first, second)
+        found = _too_deep(scene, first, second) if contact.thick else _crossing(first, second)
         if found is not None:
             beams = f"{contact.between[0]!r} and {contact.between[1]!r}"
             yield Mistake(f"contacts.{name}", f"{beams} {found[0]}", found[1])
 
 
-def _overlap(scene: Scene, first: Beam, second: Beam) -> tuple[str, str] | None:
-    """Values found and allowed for thick beams; None without an overlap."""
+def overlap_at_rest(scene: Scene, contact: BeamContact) -> float:
+    """Overlap of thick beams as drawn, m; 0 for round-off, for lines, and for an overlap only beside shared ends.
+
+    Beside ends welded side by side to the same body an overlap up to :data:`TOUCHING` is left out.  Solvers subtract
+    the overlap from the distance at which the beams touch.
+    """
+    first, second = (scene.beams[beam] for beam in contact.between)
+    return _overlap(scene, first, second) if contact.thick else 0.0
+
+
+def _overlap(scene: Scene, first: Beam, second: Beam) -> float:
     mean, largest = 0.5 * (first.thinnest + second.thinnest), 0.5 * (first.thickest + second.thickest)
     ranges = _apart_from_shared(first, second, JOINED * largest)
-    if ranges is None:
-        return None
-    depth = -closest_pair(first, second, *ranges).gap
-    if depth <= OVERLAP * mean:
-        return None
-    if depth <= HELD_OVERLAP * mean:
+    depth = 0.0 if ranges is None else -closest_pair(first, second, *ranges).gap
+    if ranges is not None and OVERLAP * mean < depth <= TOUCHING * mean:
         beside = _apart_from_held(scene, (first, second), largest, ranges)
         if not all(low < high for low, high in beside):
-            return None
-        if beside != ranges and -closest_pair(first, second, *beside).gap <= OVERLAP * mean:
-            return None
+            return 0.0
+        depth = -closest_pair(first, second, *beside).gap
+    return depth if depth > OVERLAP * mean else 0.0
+
+
+def _too_deep(scene: Scene, first: Beam, second: Beam) -> tuple[str, str] | None:
+    """Values found and allowed for thick beams; None without an overlap beyond touching."""
+    mean, depth = 0.5 * (first.thinnest + second.thinnest), _overlap(scene, first, second)
+    allowed = OVERLAP if first.tapered or second.tapered else TOUCHING
+    if depth <= allowed * mean:
+        return None
     return (
         f"that overlap at the start by {depth:.3g} m, {depth / mean:.3g} of their mean thickness",
-        f"beams that touch or are apart (overlap at most {OVERLAP:g} of the mean thickness)",
+        f"beams that touch or are apart (overlap at most {allowed:g} of the mean thickness)",
     )
 
 

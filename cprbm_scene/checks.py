@@ -7,7 +7,6 @@ from dataclasses import replace
 from itertools import chain
 
 from cprbm_scene.actions import wrong_actions
-from cprbm_scene.check_closing import open_linkages
 from cprbm_scene.check_overlaps import overlapping_beams, overlapping_themselves, repeated_contacts
 from cprbm_scene.check_rigid import overlapping_rigid_shapes
 from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
@@ -46,9 +45,6 @@ _CHECKS = (
     wrong_claims,
 )
 
-_LAST = (open_linkages,)
-"""Checks of a scene without other mistakes."""
-
 
 def mistakes_in(question: Scene | OffsetQuestion) -> list[Mistake]:
     """All mistakes of a question; empty for a valid question.
@@ -56,7 +52,4 @@ def mistakes_in(question: Scene | OffsetQuestion) -> list[Mistake]:
     A check is silent on parts with other mistakes: a slip has a single message.
     """
     between = (check(question) for check in _CHECKS) if isinstance(question, Scene) else ()
-    found = first_of(chain(broken_rules(question), *between))
-    if not found and isinstance(question, Scene):
-        found = first_of(mistake for check in _LAST for mistake in check(question))
-    return [replace(mistake, file=question.file) for mistake in found]
+    return [replace(mistake, file=question.file) for mistake in first_of(chain(broken_rules(question), *between))]

@@ -16,6 +16,7 @@ about the foot of the perpendicular, with the kinks of both thicknesses.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,6 +55,7 @@ def half_thickness(beam: Beam, u: Array, *, thick: bool) -> Array:
     return 0.5 * beam.thickness_at(u) if thick else np.zeros(len(u))
 
 
+@lru_cache(maxsize=512)
 def closest_pair(
     first: Beam, second: Beam, range1: Range = WHOLE, range2: Range = WHOLE, *, thick: bool = True
 ) -> ClosestPair:

@@ -51,12 +51,13 @@ def repeated_names(scene: Scene) -> Iterator[Mistake]:
 
 
 def unknown_names(scene: Scene) -> Iterator[Mistake]:
-    """References to materials, points, bodies, beams, loads and drives without a definition."""
+    """References to materials, points, bodies, beams, loads, drives and stages without a definition."""
     known: dict[str, Iterable[str]] = {
         "material": scene.materials,
         "point": point_names(scene),
         "body": scene.bodies,
         "beam": scene.beams,
+        "stage": [stage.name for stage in scene.stages],
         "load or drive": (*scene.loads, *scene.drives),
         "beam or contact with a rigid edge": [
             *scene.beams,

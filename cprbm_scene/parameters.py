@@ -11,7 +11,7 @@ from pydantic import Field, ValidationInfo, ValidatorFunctionWrapHandler
 
 from cprbm_scene.expressions import FUNCTIONS, ExpressionError, Value, evaluated
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, unknown_name
+from cprbm_scene.mistakes import unknown_name
 from cprbm_scene.record import Record
 from cprbm_scene.units import ANGLE, FORCE, LENGTH, STRESS, Measured, Reading, Unit, Units, mistake
 
@@ -70,7 +70,8 @@ def register(reading: Reading, parameters: Mapping[str, Parameter]) -> Mapping[s
     """
     for name in reading.settings:
         if name not in parameters:
-            raise _as_error(unknown_name(name, name, "parameter", parameters))
+            unknown = unknown_name(name, name, "parameter", parameters)
+            raise mistake(unknown.found, unknown.allowed, unknown.key)
     resolved = _Resolved(reading, parameters)
     found = {name: resolved.in_si(name) for name in parameters}
     reading.evaluate = resolved.evaluate
@@ -172,7 +173,3 @@ def _unit_of(text: str, key: str) -> tuple[float, Unit]:
     except ExpressionError as error:
         raise mistake(f"{text!r}: {error}", f"a product of {', '.join(_NAMED)}", key) from None
     return value.number, value.unit or Unit()
-
-
-def _as_error(found: Mistake) -> Exception:
-    return mistake(found.found, found.allowed, found.key)

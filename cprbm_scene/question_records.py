@@ -136,12 +136,18 @@ class Probe(Record):
 
     ``of`` is the name of a body's point, a body, a beam, a contact, a stop, or ``scene``.  ``points`` is the number of
     places, equally spaced in arc length, of a beam's stress.  ``verdict_limit`` replaces the scene's for this probe.
+    With ``stages`` the probe is asked in these stages only; answers of other stages have an empty value.
     """
 
     of: Name
     quantity: Quantity
     points: Annotated[int, Field(ge=3, le=10_001)] = 81
     verdict_limit: PositiveShare | None = None
+    stages: Annotated[Annotated[tuple[Name, ...], Field(min_length=1)] | None, Of("stage")] = None
+
+    def asked_in(self, stage: str) -> bool:
+        """True if the probe is asked in a stage."""
+        return self.stages is None or stage in self.stages
 
     @property
     def name(self) -> str:
@@ -166,7 +172,7 @@ class Claim(Record):
     """
 
     probe: str
-    stage: Name | None = None
+    stage: Annotated[Name | None, Of("stage")] = None
     station: Annotated[float, Following(_of_stations)] | None = None
     value: Annotated[float, Following(_of_value)] | None = None
     bound: Positive

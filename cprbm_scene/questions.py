@@ -79,7 +79,7 @@ def wrong_probes(scene: Scene) -> Iterator[Mistake]:
 def wrong_claims(scene: Scene) -> Iterator[Mistake]:
     """Claims on unknown probes, stages or stations, and a single value for a probe of several numbers."""
     probes = {probe.name: probe for probe in scene.probes}
-    stages = [stage.name for stage in scene.stages]
+    stages = {stage.name for stage in scene.stages}
     ascending = {stage.name: sorted(stage.stations) for stage in scene.stages}
     for i, claim in enumerate(scene.claims):
         key = f"claims[{i}]"
@@ -87,8 +87,8 @@ def wrong_claims(scene: Scene) -> Iterator[Mistake]:
             yield unknown_name(f"{key}.probe", claim.probe, "probe", [*probes, CRITICAL])
         elif claim.value is not None and claim.probe != CRITICAL and probes[claim.probe].quantity in _SEVERAL:
             yield Mistake(f"{key}.value", f"a value of {claim.probe!r}, which has several", "a probe of one number")
-        if claim.stage is not None and claim.stage not in stages:
-            yield unknown_name(f"{key}.stage", claim.stage, "stage", stages)
+        if claim.probe in probes and claim.stage in stages and not probes[claim.probe].asked_in(claim.stage):
+            yield Mistake(f"{key}.stage", f"{claim.stage!r}, in which {claim.probe!r} is not asked", "another stage")
         elif claim.station is not None and claim.probe == CRITICAL:
             allowed = f"none: of {CRITICAL!r} the first of a stage is meant"
             yield Mistake(f"{key}.station", f"{claim.station:g}", allowed)

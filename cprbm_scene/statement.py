@@ -10,7 +10,7 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Protocol, TypeVar
+from typing import Annotated, Literal, Protocol, TypeVar
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
@@ -144,12 +144,14 @@ class Scene(Record):
     ``may_cross`` lists pairs that may pass through each other without a contact: two beams, or a beam and a contact
     with a rigid edge.  ``verdict_limit`` is the largest total uncertainty, a fraction of a probe's scale, for the
     verdict AGREE; a probe may have another limit.  ``units`` are those of a file; a scene from a file has SI units.
+    ``theory`` is the beam theory of the CPRBM: bending alone, with stretch, or with stretch and shear.
     """
 
     name: Name
     title: Title = ""
     source: Text = ""
     units: Units = Units()
+    theory: Literal["bending", "stretch", "shear"] = "bending"
     parameters: Named[Parameter] = Field(default_factory=frozendict)
     materials: Named[Material]
     beams: Annotated[Named[Beam], Field(min_length=1, max_length=256)]
@@ -225,6 +227,10 @@ class Scene(Record):
     def limit(self, probe: Probe) -> float:
         """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""
         return self.verdict_limit if probe.verdict_limit is None else probe.verdict_limit
+
+    def probes_in(self, stage: str) -> tuple[Probe, ...]:
+        """The probes that are asked in a stage."""
+        return tuple(probe for probe in self.probes if probe.asked_in(stage))
 
     def stepped(self, stage: Stage) -> Load | Drive:
         """The stepped load or drive of a stage.

@@ -17,6 +17,7 @@ import math
 import time
 
 from cprbm_scene import Answer, Ending, Scene, StationAnswer
+from cprbm_scene.requirements import requirements
 from cprbm_scene.statement import BeamContact, BeamMoment, EdgeContact, SelfContact, TurningBody
 from cprbm_scene.told import station_reached
 from elastica_reference.changes import open_first, reform, slide_onto_end
@@ -94,25 +95,28 @@ def _covered(scene: Scene) -> None:
     Raises:
         NotCoveredError: the scene has stops, an assembly, a body on a pivot, bodies that are pinned to each other,
             contact with a line, a half-plane or a function, of a beam with itself or of two beams by edges whose
-            distance from the neutral line varies, or a moment on a beam, or it is asked what a slide does.
+            distance from the neutral line varies, or a moment on a beam, or it is asked what a slide does, or it has
+            another requirement than a theory.
     """
-    pivots = any(isinstance(body, TurningBody) for body in scene.bodies.values())
-    edges = any(isinstance(contact, EdgeContact) for contact in scene.contacts.values())
-    selves = any(isinstance(contact, SelfContact) for contact in scene.contacts.values())
+    contacts = scene.contacts.values()
     tapered = any(
         isinstance(contact, BeamContact) and contact.thick and any(scene.beams[beam].tapered for beam in contact.beams)
-        for contact in scene.contacts.values()
+        for contact in contacts
     )
     for what, there in (
         ("stops", scene.stops),
         ("assembly", scene.assembly is not None),
-        ("bodies on pivots", pivots),
+        ("bodies on pivots", any(isinstance(body, TurningBody) for body in scene.bodies.values())),
         ("pins between bodies", scene.pins),
-        ("contact with lines, half-planes and functions", edges),
-        ("contact of a beam with itself", selves),
+        (
+            "contact with lines, half-planes and functions",
+            any(isinstance(contact, EdgeContact) for contact in contacts),
+        ),
+        ("contact of a beam with itself", any(isinstance(contact, SelfContact) for contact in contacts)),
         ("contact of two beams by their edges where a thickness varies", tapered),
         ("what a slide does", any(probe.of in scene.bodies and probe.quantity == "reaction" for probe in scene.probes)),
         ("moments on beams", any(isinstance(load, BeamMoment) for load in scene.loads.values())),
+        *((f"{mistake.key}: {mistake.found}", kind != "theory") for kind, mistake in requirements(scene)),
     ):
         if there:
             raise NotCoveredError(f"there are no equations for {what} here")

@@ -47,7 +47,9 @@ def answered(way: Way, value: float, finer: float) -> StationAnswer:
         value=value,
         values=frozendict(
             {
-                probe.name: frozen_array(_value(scene, model, state, probe, way.closed_at)).ravel()
+                probe.name: frozen_array(
+                    _value(scene, model, state, probe, way.closed_at) if probe.asked_in(way.stage) else []
+                ).ravel()
                 for probe in scene.probes
             }
         ),

@@ -48,6 +48,7 @@ from typing import Literal
 import numpy as np
 
 from cprbm_scene.answer import Array, Ints
+from cprbm_scene.check_overlaps import overlap_at_rest
 from cprbm_scene.statement import BeamContact, BeamEnd, FreeEnd, Scene, SelfContact
 from fea_reference.carrying import cut_off, joined, shared_out
 from fea_reference.edge import edge_of
@@ -96,7 +97,7 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         if turned:
             i, j = j, i
         first, second = model.beams[i], model.beams[j]
-        mean = 0.5 * (first.thickness + second.thickness)
+        mean = 0.5 * (first.thickness + second.thickness) - overlap_at_rest(scene, contact) / model.units.length
         least = 0.5 * (first.record.thinnest + second.record.thinnest) / model.units.length
         lines = [model.line(beam, model.start) for beam in (first, second)]
         side, side_m = side_of(lines[0], lines[1]), side_of(lines[1], lines[0])

@@ -19,6 +19,7 @@ from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLi
 
 from cprbm_scene.answer import Array
 from cprbm_scene.joints import is_apart
+from cprbm_scene.requirements import refuse
 from cprbm_scene.statement import (
     Beam,
     BeamEnd,
@@ -406,6 +407,7 @@ def build(scene: Scene, settings: Settings) -> Model:
     Raises:
         SceneError: the settings do not fit the scene.
     """
+    refuse(scene, "the finite elements", "theory", "overlap at rest")
     counts = settings.elements_of(scene.beams)
     lengths = {name: length(beam.curve) for name, beam in scene.beams.items()}
     largest = max(

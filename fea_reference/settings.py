@@ -46,7 +46,6 @@ class Settings:
     iteration_limit: int = 1000
 
     def __post_init__(self) -> None:
-        mistakes = []
         if isinstance(self.elements, Mapping):
             object.__setattr__(self, "elements", frozendict(self.elements))
             counts: list[tuple[str, object]] = [(f"elements.{k}", n) for k, n in self.elements.items()]
@@ -57,16 +56,17 @@ class Settings:
             ("newton_limit", self.newton_limit),
             ("iteration_limit", self.iteration_limit),
         ]
-        for key, count in counts:
-            if not isinstance(count, int) or isinstance(count, bool) or count < 1:
-                mistakes.append(Mistake(f"settings.{key}", repr(count), "a whole number of at least 1"))
-        for key, value in (
-            ("penetration", self.penetration),
-            ("residual", self.residual),
-            ("correction", self.correction),
-        ):
-            if not (math.isfinite(value) and 0.0 < value < 1.0):
-                mistakes.append(Mistake(f"settings.{key}", repr(value), "a number between 0 and 1"))
+        mistakes = [
+            Mistake(f"settings.{key}", repr(count), "a whole number of at least 1")
+            for key, count in counts
+            if not isinstance(count, int) or isinstance(count, bool) or count < 1
+        ]
+        shares = {"penetration": self.penetration, "residual": self.residual, "correction": self.correction}
+        mistakes += [
+            Mistake(f"settings.{key}", repr(value), "a number between 0 and 1")
+            for key, value in shares.items()
+            if not (math.isfinite(value) and 0.0 < value < 1.0)
+        ]
         if self.kinematics not in get_args(Kinematics):
             allowed = ", ".join(get_args(Kinematics))
             mistakes.append(Mistake("settings.kinematics", repr(self.kinematics), f"one of {allowed}"))

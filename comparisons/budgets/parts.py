@@ -130,7 +130,7 @@ def budgets_of(scene: Scene, runs: BudgetRuns) -> tuple[Budget, ...]:
         _budget(scene, runs, probe, stage, value, scales[stage.name, probe.name])
         for stage in scene.stages
         for value in stage.stations
-        for probe in scene.probes
+        for probe in scene.probes_in(stage.name)
     )
     return tuple(each for each in found if each is not None)
 

@@ -241,7 +241,7 @@ def _families(scene: Scene, series: Sequence[Series], exact: Answer | None) -> t
         )
         for stage in scene.stages
         for value in stage.stations
-        for probe in scene.probes
+        for probe in scene.probes_in(stage.name)
         for places in (_places(scene, probe, stage, value, finest, sizes),)
         for one in present
     )

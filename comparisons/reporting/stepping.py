@@ -390,5 +390,7 @@ def _cells(
     words: Mapping[tuple[str, str, float], tuple[str, str]],
 ) -> tuple[str, ...]:
     said = words.get((probe.name, stage.name, fea.value), ("–", "–"))
-    both = (signed(vector(each.values[probe.name], factor)) for each in (cprbm, fea))
+    both = (
+        signed(vector(each.values[probe.name], factor)) if probe.asked_in(stage.name) else "–" for each in (cprbm, fea)
+    )
     return (*both, *said)

@@ -124,7 +124,7 @@ def build_rows(table: RunsTable, events: Mapping[tuple[str, float], StationEvent
         stations = table.at(where)
         exact = _exact_station(table.runs, where, events[where].branch)
         missing = tuple(name for name in table.answers if name not in stations)
-        for probe in scene.probes:
+        for probe in scene.probes_in(where[0]):
             pair = stations[first], stations[second]
             row = bare_row(scene, pair, probe, stages[where[0]], where[1], scales[where[0], probe.name])
             found.append(_measured(table, replace(row, events=events[where], missing=missing), stations, exact))

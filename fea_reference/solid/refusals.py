@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cprbm_scene.mistakes import Mistake, SceneError
+from cprbm_scene.requirements import refuse as refuse_requirements
 from cprbm_scene.statement import Scene
 from fea_reference.solid.areas import too_curved
 
@@ -13,6 +14,7 @@ def refuse(scene: Scene) -> None:
     Raises:
         SceneError: it does not.
     """
+    refuse_requirements(scene, "the solid", "theory")
     mistakes = too_curved(scene)
     for name, contact in scene.contacts.items():
         if not contact.thick:

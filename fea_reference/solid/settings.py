@@ -41,7 +41,6 @@ class Settings:
     iteration_limit: int = 2000
 
     def __post_init__(self) -> None:
-        mistakes = []
         if isinstance(self.elements, Mapping):
             object.__setattr__(self, "elements", frozendict(self.elements))
             counts: list[tuple[str, object]] = [(f"elements.{k}", n) for k, n in self.elements.items()]
@@ -53,13 +52,17 @@ class Settings:
             ("newton_limit", self.newton_limit),
             ("iteration_limit", self.iteration_limit),
         ]
-        for key, count in counts:
-            least = _LEAST if key.startswith("elements") else 1
-            if not isinstance(count, int) or isinstance(count, bool) or count < least:
-                mistakes.append(Mistake(f"settings.{key}", repr(count), f"a whole number of at least {least}"))
-        for key, value in (("penetration", self.penetration), ("residual", self.residual)):
-            if not (math.isfinite(value) and 0.0 < value < 1.0):
-                mistakes.append(Mistake(f"settings.{key}", repr(value), "a number between 0 and 1"))
+        least = {key: _LEAST if key.startswith("elements") else 1 for key, _ in counts}
+        mistakes = [
+            Mistake(f"settings.{key}", repr(count), f"a whole number of at least {least[key]}")
+            for key, count in counts
+            if not isinstance(count, int) or isinstance(count, bool) or count < least[key]
+        ]
+        mistakes += [
+            Mistake(f"settings.{key}", repr(value), "a number between 0 and 1")
+            for key, value in (("penetration", self.penetration), ("residual", self.residual))
+            if not (math.isfinite(value) and 0.0 < value < 1.0)
+        ]
         if not (math.isfinite(self.stiffness) and self.stiffness > 0.0):
             mistakes.append(Mistake("settings.stiffness", repr(self.stiffness), "a number greater than 0"))
         if mistakes:

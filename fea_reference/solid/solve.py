@@ -6,7 +6,7 @@ import logging
 import time
 from dataclasses import dataclass
 
-from cprbm_scene.answer import Answer, Ending, Event, StationAnswer
+from cprbm_scene.answer import Answer, Ending, Event, StationAnswer, frozen_array
 from cprbm_scene.contact_states import openings
 from cprbm_scene.statement import Scene, Stage
 from cprbm_scene.threads import one_thread
@@ -133,7 +133,10 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float) -> Stat
     return StationAnswer(
         stage=stage.name,
         value=station,
-        values={probe.name: probed(scene, march, probe) for probe in scene.probes},
+        values={
+            probe.name: probed(scene, march, probe) if probe.asked_in(stage.name) else frozen_array([])
+            for probe in scene.probes
+        },
         shapes=shapes(march),
         touching=places,
         certificate=certificate,

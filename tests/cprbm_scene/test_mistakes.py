@@ -46,7 +46,9 @@ RECORDS = [
     ("stages", [3], "stages[0]", "a table"),
     ("may_cross", ["beam1"], "may_cross[0]", "a list"),
     ("probes/0/points", 2.5, "probes[0].points", "a whole number"),
+    ("probes/0/stages", [], "probes[0].stages", "at least 1"),
     ("probes/0/quantity", "speed", "probes[0].quantity", "'rotation'"),
+    ("theory", "plastic", "theory", "'bending', 'stretch' or 'shear'"),
     ("file", "x.toml", "file", "no key here"),
 ]
 
@@ -59,6 +61,7 @@ TIES = [
     ("stages/0/steps", "N", "stages[0].steps", "names no load"),
     ("may_cross", [["beam1", "beam3"]], "may_cross[0][1]", "a beam or contact with a rigid edge: 'beam1', 'beam2'"),
     ("may_cross", [["beam1", "beam1"]], "may_cross[0]", "two different names"),
+    ("probes/0/stages", ["loud"], "probes[0].stages[0]", "the name of a stage: 'load'"),
     ("probes/0/of", "b", "probes[0].of", "names no point, body, beam, contact or stop"),
     ("loads/A", {"kind": "moment", "body": "BD"}, "loads.A", "bodies.AC.points.A has too"),
     ("bodies/BD/points/scene", [0.0, 0.0], "bodies.BD.points.scene", "the scene itself"),

@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator, Philox
 
-from cprbm_scene import SceneError, scene_from
+from cprbm_scene import SceneError
 from tests.robustness.actions import ENERGY, Action, drawn_action, drawn_turn, led, stations_to
 from tests.robustness.chance import RedrawError, between, happens, rounded, weighted
 from tests.robustness.contacts import put_in_the_way
+from tests.robustness.dead_points import without_dead_point
 from tests.robustness.draft import Draft, started
 from tests.robustness.estimate import Estimate, State
 from tests.robustness.mechanisms import MECHANISMS
@@ -53,7 +54,7 @@ def drawn(seed: int, index: int) -> Drawn:
     for draws in range(1, _MOST_DRAWS + 1):
         try:
             data = _scene(rng, name)
-            scene_from(data)
+            without_dead_point(data)
         except (RedrawError, SceneError):
             continue
         return Drawn(name, data, toml_of(data), draws)
@@ -119,7 +120,7 @@ def _led(draft: Draft, number: int, turn: float) -> tuple[Estimate, list[Action]
         draft.data[action.group][action.name] = action.data
     stages = [{"name": f"stage{i + 1}", "steps": action.name, "stations": [1.0]} for i, action in enumerate(actions)]
     draft.data |= {"stages": stages, "probes": ENERGY}
-    model = Estimate(scene_from(draft.data))
+    model = Estimate(without_dead_point(draft.data))
     states, state = list[State](), State(np.zeros(model.unknowns), {})
     for i, action in enumerate(actions):
         states += led(model, state, action, turn * (i + 1) / number)

@@ -1,4 +1,4 @@
-"""Linkages of pins, guides and drives alone: the stations that no motion of the bodies reaches.
+"""Linkages of pins, guides and drives alone without dead points before their stations.
 
 ======  ===================================================================================
 symbol  meaning
@@ -15,13 +15,13 @@ a solution is halved.  A value of v that no step passes is a dead point.  This i
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cprbm_scene import Mistake, SceneError, scene_from
 from cprbm_scene.freedoms import AXES, Freedoms, unit
-from cprbm_scene.mistakes import Mistake
 from cprbm_scene.statement import Point, RotationDrive, Scene, SlidingBody, TurningBody
 
 Array = NDArray[np.float64]
@@ -102,22 +102,24 @@ class Linkage:
         return float(q[self._columns[body] + 2]), np.eye(q.size)[self._columns[body] + 2]
 
 
-def open_linkages(scene: Scene) -> Iterator[Mistake]:
-    """The first station that a linkage of pins, guides and drives alone does not reach, in a scene without mistakes."""
+def without_dead_point(data: dict[str, Any]) -> Scene:
+    """The scene of plain ``data``.
+
+    Raises:
+        SceneError: the data are no valid scene, or pins, guides and drives alone do not let a drive reach a station.
+    """
+    scene = scene_from(data)
     if not scene.pins or not scene.drives:
-        return
+        return scene
     linkage = Linkage(scene)
     _, by = linkage.closing(linkage.q)
     if by.shape[0] != by.shape[1] or np.linalg.svd(by, compute_uv=False).min() < _SINGULAR:
-        return
-    for i, stage in enumerate(scene.stages):
-        for j, station in enumerate(stage.stations if stage.steps in scene.drives else ()):
-            reached = _followed(linkage, stage.steps, station)
-            if reached != station:
-                found = f"{station:g}, where the linkage cannot close: {stage.steps} comes to {reached:.6g} from before"
-                allowed = "what pins, guides and the other drives let it reach, without a dead point on the way"
-                yield Mistake(f"stages[{i}].stations[{j}]", found, allowed)
-                return
+        return scene
+    for stage in scene.stages:
+        for station in stage.stations if stage.steps in scene.drives else ():
+            if _followed(linkage, stage.steps, station) != station:
+                raise SceneError([Mistake("stages", f"{station:g} of {stage.steps}", "no dead point before it")])
+    return scene
 
 
 def _followed(linkage: Linkage, drive: str, station: float) -> float:

@@ -1,0 +1,55 @@
+"""What stages ask and hold, and which solver answers."""
+
+import json
+
+import pytest
+
+import cprbm
+import elastica_reference
+import fea_reference
+from comparisons.cli.main import run
+from cprbm_scene import scene_from
+from fea_reference import solid
+from tests.robustness.toml import toml_of
+from tests.together.features import CIRCLE, FORCE, held_by, probes
+
+SOLVERS = {
+    "cprbm": lambda scene: cprbm.answer(scene, cprbm.Settings(links=10)),
+    "fea": lambda scene: fea_reference.answer(scene, fea_reference.Settings(elements=8)),
+    "exact": elastica_reference.answer,
+    "solid": lambda scene: solid.answer(scene, solid.Settings(elements=8, across=1)),
+}
+
+
+def two_stages(**stages):
+    """A cantilever that is pressed on a circle and then pulled; ``stages`` in which the probes of a name are asked."""
+    data = held_by(CIRCLE) | {"probes": probes("T.displacement", "c.force", "R.reaction", "beam.bending_stress")}
+    data["loads"] |= {"H": {"kind": "force", "point": "T", "direction": [1.0, 0.0]}}
+    steps = {"down": ("F", 1.5 * FORCE), "pull": ("H", FORCE)}
+    data["stages"] = [{"name": name, "steps": load, "stations": [value]} for name, (load, value) in steps.items()]
+    for probe in data["probes"]:
+        if probe["of"] in stages:
+            probe["stages"] = [stages[probe["of"]]]
+    return data
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_probe_is_asked_in_some_stages(solver):
+    # reference: the same scene without the key, whose values are the same to the last bit
+    all_, some = (SOLVERS[solver](scene_from(data)) for data in (two_stages(), two_stages(c="pull", beam="down")))
+    assert some.completed
+    for whole, part in zip(all_.stations, some.stations, strict=True):
+        for name, value in part.values.items():
+            asked = name.split(".")[0] != {"down": "c", "pull": "beam"}[part.stage]
+            assert value.tolist() == (whole.values[name].tolist() if asked else []), name
+
+
+def test_rows_of_a_comparison_are_those_asked(tmp_path, capsys):
+    path = tmp_path / "stages.toml"
+    path.write_text(toml_of(two_stages(c="pull", beam="down")), encoding="utf-8")
+    run(["compare", str(path), "-n", "8", "--elements", "8", "--no-exact", "--json", "-"])
+    rows = json.loads(capsys.readouterr().out)["cases"][0]["rows"]
+    asked = {"down": ["T.displacement", "R.reaction", "beam.bending_stress"]}
+    asked["pull"] = ["T.displacement", "c.force", "R.reaction"]
+    expected = [(stage, probe) for stage, names in asked.items() for probe in names]
+    assert [(row["stage"], row["probe"]) for row in rows] == expected

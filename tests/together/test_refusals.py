@@ -1,0 +1,70 @@
+"""What solvers refuse by name, and what they take that looks like a mistake."""
+
+import re
+from math import asin, hypot
+from pathlib import Path
+
+import pytest
+
+import cprbm
+import elastica_reference
+import fea_reference
+from comparisons import cases
+from comparisons.cli.main import run
+from cprbm_scene import Ending, SceneError, scene_from
+from fea_reference import solid
+from tests.cprbm_scene.editing import edited, two_lines
+from tests.cprbm_scene.test_pins import LINKAGE
+
+TAPERED = Path(cases.__file__).parent / "tapered.toml"
+T = 0.002
+
+
+def test_the_cprbm_refuses_a_theory_that_the_finite_elements_ignore(tmp_path, capsys):
+    path = tmp_path / "shear.toml"
+    path.write_text('theory = "shear"\n' + TAPERED.read_text(encoding="utf-8"), encoding="utf-8")
+    assert run(["solve", str(path), "--solver", "cprbm"]) == 2
+    assert f"{path}: theory: found 'shear'; allowed: 'bending'" in capsys.readouterr().err
+    assert run(["solve", str(path), "--solver", "fea", "--elements", "8"]) == 0
+
+
+def stacked(share):
+    """Two parallel cantilevers that overlap by a ``share`` of their thickness; a force lifts the lower one."""
+    data = edited(("probes/1", {"of": "touch", "quantity": "force"}), base=two_lines(T * (1 - share)))
+    hints = {"boundary": "upper", "related": {"lower": {"x": [0.01, 0.09]}, "upper": {"x": [0.0, 0.1]}}}
+    data["contacts"]["touch"]["paper"] = hints
+    return scene_from(data)
+
+
+@pytest.mark.parametrize(
+    "solve",
+    [
+        lambda scene: cprbm.answer(scene, cprbm.Settings(links=20)),
+        lambda scene: cprbm.answer(scene, cprbm.Settings(links=20, formulation="paper")),
+        lambda scene: fea_reference.answer(scene, fea_reference.Settings(elements=10)),
+    ],
+    ids=["auto", "paper", "fea"],
+)
+def test_beams_that_overlap_by_rounding_answer_as_beams_that_touch(solve):
+    # reference: the same beams, drawn in touch; 0.1 % of the thickness moves them by less than 1e-5 of the length
+    touching, overlapping = (solve(stacked(share)).stations[0].values for share in (0.0, 0.99e-3))
+    for name, value in touching.items():
+        assert overlapping[name] == pytest.approx(value, rel=1e-3, abs=1e-6), name
+
+
+def test_the_exact_solution_and_the_solid_do_not_answer_an_overlap():
+    answer = elastica_reference.answer(stacked(0.99e-3))
+    assert (answer.ending, "contacts.touch" in answer.sentence) == (Ending.NOT_COVERED, True)
+    with pytest.raises(SceneError, match=r"contacts\.touch: found beams that overlap .* for the solid"):
+        solid.answer(stacked(0.99e-3))
+
+
+@pytest.mark.parametrize("solver", [cprbm, fea_reference])
+def test_a_solver_ends_at_the_dead_point_of_a_linkage(solver):
+    # reference: at its farthest angle the rocker makes a triangle with the ground, and crank and coupler in one line
+    far = asin((0.15**2 + 0.1**2 - (0.05 + hypot(0.15, 0.05)) ** 2) / (2 * 0.15 * 0.1))
+    drive = [("loads", {}), ("drives/phi", {"kind": "rotation", "body": "rocker"})]
+    turn = {"name": "turn", "steps": "phi", "stations": [-0.2, -1.0]}
+    answer = solver.answer(scene_from(edited(*drive, ("stages/0", turn), base=LINKAGE)))
+    assert (answer.ending, len(answer.stations)) == (Ending.STEP_TOO_SMALL, 1)
+    assert float(re.search(r"phi (?:is|=) (-?[\d.]+\d)", answer.sentence)[1]) == pytest.approx(far, abs=1e-4)
