@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cprbm.chain import Theory, add_rows, mechanism_of
+from cprbm.chain import add_rows, mechanism_of
 from cprbm.continuation.assembly import assembled
 from cprbm.continuation.driver import Driver, Passed, StepError
 from cprbm.continuation.path import Way, potential, turned
@@ -37,7 +37,7 @@ class Run:
     """A scene with its mechanism, before and while it is solved.
 
     Attributes:
-        scene, settings, theory: the question.
+        scene, settings: the question.
         driver: at the first state once the run has begun.
         loads: present values (SI) of loads and drives.
         stations, critical, gone_over, notes: of the answer.
@@ -45,7 +45,6 @@ class Run:
 
     scene: Scene
     settings: Settings
-    theory: Theory
     driver: Driver | None = None
     values: dict[str, float] = field(default_factory=dict)
     stations: list[StationAnswer] = field(default_factory=list)
@@ -57,7 +56,7 @@ class Run:
     def __post_init__(self) -> None:
         began = time.perf_counter()
         links = {beam: self.settings.links_of(beam) for beam in self.scene.beams}
-        mechanism = mechanism_of(self.scene, links, self.theory, corrected=self.settings.formulation == "auto")
+        mechanism = mechanism_of(self.scene, links, self.scene.theory, corrected=self.settings.formulation == "auto")
         add_rows(mechanism)
         self.system = system_of(mechanism)
         self.seconds = time.perf_counter() - began
@@ -153,12 +152,12 @@ class Run:
 
     def _station(self, driver: Driver, stage: Stage, station: float, certificate: Certificate) -> StationAnswer:
         """Answer at a station."""
-        view = View(driver.solved, dict(self.values), self.theory == "shear")
+        view = View(driver.solved, dict(self.values), self.scene.theory == "shear")
         units = self.system.mechanism.units
         return StationAnswer(
             stage=stage.name,
             value=station,
-            values=probe_values(view),
+            values=probe_values(view, stage.name),
             shapes=_shapes(view),
             touching={},
             certificate=certificate,
