@@ -28,6 +28,7 @@ class System:
         metric: lengths of the links, the weights of their angles in a mode.
         limits: which rows are stops.
         softness: of the rows, which the chain does not show.
+        lean: shear compliance β of the links that stands for their odd moment.
         lengthening: whether links have an axial compliance.
     """
 
@@ -42,6 +43,7 @@ class System:
     metric: Array
     limits: Flags
     softness: Array
+    lean: Array
     lengthening: bool
 
     @property
@@ -82,6 +84,7 @@ def system_of(mechanism: Mechanism) -> System:
         metric=links.length,
         limits=np.array([row.limit for row in mechanism.rows], dtype=bool),
         softness=np.array([row.softness for row in mechanism.rows], dtype=float),
+        lean=np.concatenate([chain.lean for chain in mechanism.chains.values()]),
         lengthening=bool(np.any(links.stretch)),
     )
 

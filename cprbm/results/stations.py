@@ -14,7 +14,7 @@ from cprbm.continuation.assembly import assembled
 from cprbm.continuation.driver import Driver, Passed, StepError
 from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
-from cprbm.equilibrium.system import system_of
+from cprbm.equilibrium.system import System, system_of
 from cprbm.results.forces import point_forces
 from cprbm.results.probes import displacement, probe_values
 from cprbm.results.statics import beam_state
@@ -30,6 +30,11 @@ LOGGER = logging.getLogger("cprbm.stations")
 
 LINE_POINTS = 2
 """Points of a shape per link."""
+
+PLAIN = (
+    "elements are longer than the bends that the forces in them allow: the values are those of the plain chain, "
+    "of second order in 1/N"
+)
 
 
 @dataclass(eq=False)
@@ -55,17 +60,26 @@ class Run:
 
     def __post_init__(self) -> None:
         began = time.perf_counter()
-        links = {beam: self.settings.links_of(beam) for beam in self.scene.beams}
-        mechanism = mechanism_of(self.scene, links, self.scene.theory, corrected=self.settings.formulation == "auto")
-        add_rows(mechanism)
-        self.system = system_of(mechanism)
+        self.system = self._system(corrected=self.settings.formulation == "auto")
         self.seconds = time.perf_counter() - began
+
+    def _system(self, *, corrected: bool) -> System:
+        links = {beam: self.settings.links_of(beam) for beam in self.scene.beams}
+        mechanism = mechanism_of(self.scene, links, self.scene.theory, corrected=corrected)
+        add_rows(mechanism)
+        return system_of(mechanism)
 
     def answer(self) -> Answer:
         """Solve the scene."""
         began = time.perf_counter()
         with one_thread():
             ending, sentence = self._solve()
+            if ending is Ending.TURNED_TOO_FAR and self.settings.formulation == "auto":
+                # elements longer than the bends between them have no corrections
+                self.system = self._system(corrected=False)
+                self.stations, self.critical, self.gone_over, self.values = [], [], [], {}
+                self.notes = [PLAIN]
+                ending, sentence = self._solve()
         return Answer(
             solver="cprbm",
             scene=self.scene.name,
@@ -112,7 +126,7 @@ class Run:
         finally:
             self._note(stage, driver.passed)
         self.values[stage.steps] = station
-        certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent)
+        certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent, driver.acting)
         if ending is not Ending.COMPLETED:
             raise StepError(ending, certificate.failures[0])
         self.stations.append(self._station(driver, stage, station, certificate))
