@@ -33,6 +33,26 @@ PER_LINK = 5
 """Unknowns of a link: force (2), angle, position of the node behind it (2)."""
 
 
+@dataclass(frozen=True, eq=False)
+class UnitLoad:
+    """A unit moment or a unit force across a straight beam, at a place.
+
+    Attributes:
+        beam, at: the beam's name and the arc length.
+        power: of the distance from the place in the moment along the beam: 0 of a moment, 1 of a force.
+        moments, shear: of the chain's joints (N,) and links (N + 1,) before the place.
+        angle: index of the link's angle, −1 of a moment; direction: of the force.
+    """
+
+    beam: str
+    at: float
+    power: int
+    moments: Array
+    shear: Array
+    angle: int = -1
+    direction: tuple[float, float] = (0.0, 0.0)
+
+
 @dataclass(frozen=True, slots=True)
 class Row:
     """A row.
@@ -43,8 +63,7 @@ class Row:
         driven: whether the value is prescribed at first.
         limit: whether the row is a stop: f ≥ 0, and the force only pushes.
         unit: f per unit (SI) of the load or drive that steps the row; of a load, μ per unit, with the sign of μ.
-        softness: change of f by a unit of its own force that the chain does not show; the energy is −softness μ²/2.
-        across: index of the angle and direction (2,) of a force on a beam, whose softness acts across the link alone.
+        unit_load: of a force or moment at a place of a beam.
     """
 
     name: str
@@ -52,8 +71,7 @@ class Row:
     driven: bool = True
     limit: bool = False
     unit: float = 0.0
-    softness: float = 0.0
-    across: tuple[int, float, float] | None = None
+    unit_load: UnitLoad | None = None
 
 
 @dataclass(eq=False)
