@@ -155,6 +155,14 @@ class BeamChain:
                     weights[:, i] *= (s - at[:, j]) / (at[:, i] - at[:, j])
         return columns, weights
 
+    def rest_angle(self, s: Array) -> Array:
+        """Angle of the neutral line's tangent at rest at arc lengths ``s`` (k,), continuous along the beam."""
+        tangents = tangents_on(self.section.beam.curve, s / self.length)
+        exact = np.arctan2(tangents[:, 1], tangents[:, 0])
+        links, weights = self.angle_weights(s)
+        near = (weights * self.link_angle[links]).sum(axis=1)
+        return np.asarray(near + np.remainder(exact - near + np.pi, 2.0 * np.pi) - np.pi)
+
     def flexibility(self, borders: Array, weight: Callable[[Array], Array]) -> Array:
         """Integrals (k,) of weight(s)/EI between ``borders`` (k + 1,)."""
         return _integrals(lambda s: weight(s) / self.section.rigidity(s), borders, self.knots)

@@ -25,12 +25,11 @@ independent directions in which the energy falls.
 
 from __future__ import annotations
 
-from math import cos, sin
+from math import cos, isfinite, sin
 from typing import NamedTuple
 
-from numba import njit
-
 from cprbm.chain import Blocks, RowArrays
+from cprbm.chain.compiled import compiled
 from cprbm.chain.mechanism import PER_LINK
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -72,9 +71,9 @@ class Border(NamedTuple):
     entry_value: Array
 
 
-@njit(cache=True)
+@compiled
 def factor_chains(beams: Beams, blocks: Blocks, pivot: Array, ratio: Array) -> int:  # pragma: no cover
-    """Factor T of all chains in place of ``pivot`` and ``ratio``; the number of negative pivots."""
+    """Write the inverse pivots of T of all chains, and their ratios; the number of negative pivots."""
     negative = 0
     for beam in range(beams.first.size):
         start = beams.first_link[beam]
@@ -83,15 +82,16 @@ def factor_chains(beams: Beams, blocks: Blocks, pivot: Array, ratio: Array) -> i
             if j == start:
                 pivot[j] += beams.springs[beam, 2]
             else:
-                ratio[j] = blocks.next_turn[j - 1] / pivot[j - 1]
+                ratio[j] = blocks.next_turn[j - 1] * pivot[j - 1]
                 pivot[j] -= ratio[j] * blocks.next_turn[j - 1]
             if pivot[j] == 0.0:
                 pivot[j] = LEAST_PIVOT
             negative += pivot[j] < 0.0
+            pivot[j] = 1.0 / pivot[j]
     return negative
 
 
-@njit(cache=True)
+@compiled
 def solve_chain(
     beams: Beams, beam: int, blocks: Blocks, pivot: Array, ratio: Array, x: Array
 ) -> None:  # pragma: no cover
@@ -113,9 +113,9 @@ def solve_chain(
         ny += x[i + 1]
     for j in range(1, m):
         x[5 * j + 4] -= ratio[start + j] * x[5 * j - 1]
-    x[5 * m - 1] /= pivot[start + m - 1]
+    x[5 * m - 1] *= pivot[start + m - 1]
     for j in range(m - 2, -1, -1):
-        x[5 * j + 4] = x[5 * j + 4] / pivot[start + j] - ratio[start + j + 1] * x[5 * j + 9]
+        x[5 * j + 4] = x[5 * j + 4] * pivot[start + j] - ratio[start + j + 1] * x[5 * j + 9]
     px, py = nx / beams.springs[beam, 0], ny / beams.springs[beam, 1]
     x[0], x[1] = px, py
     bx, by = 0.0, 0.0
@@ -136,7 +136,7 @@ def solve_chain(
         bx, by = nx, ny
 
 
-@njit(cache=True)
+@compiled
 def border_block(z: Array, rows: RowArrays, driven: Flags, border: Border, G: Array) -> None:  # pragma: no cover
     """Write D: rows beside bodies and carried nodes, second derivatives by rotations, springs."""
     first, at = border.first, border.rows
@@ -160,7 +160,7 @@ def border_block(z: Array, rows: RowArrays, driven: Flags, border: Border, G: Ar
             G[i, at + r] += B * a - A * b
 
 
-@njit(cache=True)
+@compiled
 def eliminate(
     beams: Beams, blocks: Blocks, pivot: Array, ratio: Array, driven: Flags, border: Border, X: Array, G: Array
 ) -> int:  # pragma: no cover
@@ -187,7 +187,21 @@ def eliminate(
     return negative
 
 
-@njit(cache=True)
+@compiled
+def negative_pivots(factored: Array, order: Ints) -> int:  # pragma: no cover
+    """Number of negative eigenvalues of LAPACK's factors after Bunch and Kaufman; −1 if a pivot is not finite."""
+    negative, doubles = 0, 0
+    for i in range(order.size):
+        if not isfinite(factored[i, i]):
+            return -1
+        if order[i] < 0:
+            doubles += 1
+        elif factored[i, i] < 0.0:
+            negative += 1
+    return negative + doubles // 2
+
+
+@compiled
 def reduce_load(
     beams: Beams, blocks: Blocks, pivot: Array, ratio: Array, driven: Flags, border: Border, load: Array, reduced: Array
 ) -> None:  # pragma: no cover
@@ -201,7 +215,7 @@ def reduce_load(
             reduced[border.pair_column[border.entry_pair[t]]] -= border.entry_value[t] * load[border.entry_index[t]]
 
 
-@njit(cache=True)
+@compiled
 def restore(beams: Beams, border: Border, X: Array, solution: Array, load: Array) -> None:  # pragma: no cover
     """Subtract X times the border's solution from the chains' part."""
     for q in range(border.pair_column.size):

@@ -58,8 +58,10 @@ class View:
 
     def angles(self, beam: str, s: Array) -> Array:
         """Angles of the sections (k,) at arc lengths ``s``."""
-        links, weights = self.chain(beam).angle_weights(s)
-        return np.asarray((weights * self.z[self.mechanism.beam_angles(beam)][links]).sum(axis=1))
+        chain = self.chain(beam)
+        links, weights = chain.angle_weights(s)
+        turned = self.z[self.mechanism.beam_angles(beam)] - chain.link_angle
+        return np.asarray(chain.rest_angle(s) + (weights * turned[links]).sum(axis=1))
 
     def multiplier(self, row: str) -> float:
         """μ of a row; zero for a row that does not exist."""
