@@ -6,7 +6,7 @@ import numpy as np
 
 from cprbm.boundary import FittedBoundary
 from cprbm.energy import turns
-from cprbm.equilibrium import Equilibrium
+from cprbm.first_equilibrium import Equilibrium
 from cprbm.forces import balances
 from cprbm.mechanism import Mechanism
 from cprbm.model import Model

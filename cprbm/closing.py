@@ -19,7 +19,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from cprbm.contact import Rows
-from cprbm.equilibrium import equilibrium
+from cprbm.first_equilibrium import equilibrium
 from cprbm.kinematics import most_turned
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.point import Point, point_at

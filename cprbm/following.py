@@ -19,8 +19,8 @@ import numpy as np
 from cprbm.certifying import certify
 from cprbm.critical import Minimum, foreseen
 from cprbm.edge import Edge
-from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import KEPT, continued
+from cprbm.first_equilibrium import Equilibrium, equilibrium
 from cprbm.kinematics import most_turned
 from cprbm.locking import Locked, between_ends, drawn_taut, locked_on, pressed_on, taut
 from cprbm.mechanism import Mechanism

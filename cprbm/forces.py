@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from cprbm.closure import closure_forces
-from cprbm.equilibrium import largest_moment
+from cprbm.first_equilibrium import largest_moment
 from cprbm.holding import Held, held
 from cprbm.kinematics import place
 from cprbm.model import Chain

@@ -23,7 +23,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm.certifying import certify
-from cprbm.equilibrium import Equilibrium, equilibrium
+from cprbm.first_equilibrium import Equilibrium, equilibrium
 from cprbm.kinematics import State, most_turned
 from cprbm.mechanism import Mechanism
 from cprbm.point import Drag, Point, point_at, point_under, potential_energy

@@ -18,7 +18,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cprbm.equilibrium import Equilibrium, equilibrium
+from cprbm.first_equilibrium import Equilibrium, equilibrium
 from cprbm.kinks import kinks_at
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.model import Fit, Kinks

@@ -10,7 +10,7 @@
     [ H_θθ + W   ·    Cᵀ ] [ dθ, dp, db ]   [ −∂PE        ]
     [            C     0 ] [ ρ, μ, λ    ] = [ 0, −Z, −c   ]
 
-Eliminating dp and ρ gives the system of :mod:`cprbm.equilibrium`; here nothing is eliminated, no row has
+Eliminating dp and ρ gives the system of :mod:`cprbm.first_equilibrium`; here nothing is eliminated, no row has
 more than a few entries, and the factors grow with the number of links. Which contacts press is found by
 changing all wrong ones at once; the factorisation is repeated for each change.
 """

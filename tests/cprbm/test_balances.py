@@ -8,7 +8,7 @@ import pytest
 import cprbm
 from cprbm.closure import closure_values
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import equilibrium, measure
+from cprbm.first_equilibrium import equilibrium, measure
 from cprbm.forces import balances
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of

@@ -7,7 +7,7 @@ import cprbm
 import elastica_reference
 from cprbm.contact import NO_ROWS
 from cprbm.crossing import cross
-from cprbm.equilibrium import equilibrium
+from cprbm.first_equilibrium import equilibrium
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import point_at

@@ -9,7 +9,7 @@ import cprbm
 from comparisons import cases
 from cprbm import following
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import equilibrium
+from cprbm.first_equilibrium import equilibrium
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import point_at

@@ -8,7 +8,7 @@ import pytest
 import cprbm
 from cprbm.contact import NO_ROWS
 from cprbm.energy import spring_moments
-from cprbm.equilibrium import _settled, equilibrium, measure
+from cprbm.first_equilibrium import _settled, equilibrium, measure
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.newton import newton_step, own_system

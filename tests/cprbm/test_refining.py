@@ -9,7 +9,7 @@ import pytest
 import cprbm
 from cprbm import Settings
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import equilibrium
+from cprbm.first_equilibrium import equilibrium
 from cprbm.kinematics import State, rest_state
 from cprbm.levelling import levelled
 from cprbm.march import March

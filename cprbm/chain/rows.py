@@ -1,0 +1,145 @@
+"""Rows of a scene: guides of bodies, joints of beams, pins between bodies, drives, stops, loads, and the assembly.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+β        angle from the line between a stop's two points to the direction in which the beam leaves its pin
+β₀       β as drawn, in (−π, π]
+=======  ====================================================================================
+
+A stop has the rows β − β_least ≥ 0 and β_most − β ≥ 0.  The names of a joint's rows are ``beam@start.x``, ``.y``,
+``.turn``; a stop's rows are ``stop.least`` and ``stop.most``; a load's and a drive's row has its name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import hypot, pi, remainder, tau
+from typing import Literal
+
+import numpy as np
+
+from cprbm.chain.form import X_AXIS, Y_AXIS, Direction, Form, node_coordinate
+from cprbm.chain.loads import load_row
+from cprbm.chain.mechanism import Mechanism, Row
+from cprbm_scene import FreeEnd, Scene, WeldedEnd
+from cprbm_scene.statement import BeamEnd, DisplacementDrive, PinnedEnd, SlidingBody, TurningBody
+
+APART = 1e-6
+"""Distance of an end from its point, over the beam's length, from which the end is drawn apart (the scene's limit)."""
+
+STRAIGHT = 1e-9
+"""Distance of β₀ from −π, rad, below which it is π: round-off decides between the two."""
+
+AXES: tuple[tuple[str, Direction], ...] = (("x", X_AXIS), ("y", Y_AXIS))
+END: tuple[Literal["start"], Literal["end"]] = ("start", "end")
+
+
+def add_rows(m: Mechanism) -> None:
+    """Add all rows of the scene to its mechanism."""
+    for rows in (_guides, _beam_ends, _body_pins, _drives, _stops, _loads, _assembly):
+        m.rows.extend(rows(m))
+
+
+def ends_of(scene: Scene, beam: str) -> tuple[BeamEnd, BeamEnd]:
+    """Records of a beam's start and end."""
+    return scene.beams[beam].start, scene.beams[beam].end
+
+
+def apart_ends(m: Mechanism) -> list[tuple[str, str]]:
+    """Beams and their ends that are drawn apart from their points, in a scene with an assembly."""
+    found = []
+    for beam in m.scene.beams if m.scene.assembly is not None else ():
+        nodes = m.chains[beam].nodes[[0, -1]]
+        for end, node, record in zip(END, nodes, ends_of(m.scene, beam), strict=True):
+            if isinstance(record, PinnedEnd):
+                gap = node - m.units.place(m.scene.place_of(record.point))
+                if hypot(*gap) > APART * m.chains[beam].length:
+                    found.append((beam, end))
+    return found
+
+
+def _guides(m: Mechanism) -> Iterator[Row]:
+    for name, body in m.scene.bodies.items():
+        if isinstance(body, TurningBody):
+            for axis, direction in AXES:
+                yield Row(f"{name}.pivot.{axis}", m.displacement(body.about, direction))
+        elif isinstance(body, SlidingBody):
+            point = body.pin or next(iter(body.points))
+            along = unit_direction(body.along)
+            yield Row(f"{name}.slide", m.displacement(point, (-along[1], along[0])))
+            if not body.turns:
+                yield Row(f"{name}.level", m.rotation(name))
+
+
+def _beam_ends(m: Mechanism) -> Iterator[Row]:
+    for beam in m.scene.beams:
+        nodes = m.beam_nodes(beam)[[0, -1]]
+        for end, node, link, record in zip(END, nodes, (0, -1), ends_of(m.scene, beam), strict=True):
+            if isinstance(record, FreeEnd):
+                continue
+            for axis, direction in AXES:
+                form = node_coordinate(int(node), direction) - m.point(record.point, direction)
+                yield Row(f"{beam}@{end}.{axis}", form)
+            if isinstance(record, WeldedEnd):
+                body = m.scene.body_of(record.point)
+                yield Row(f"{beam}@{end}.turn", m.angle(beam, link) - m.rotation(body))
+
+
+def _body_pins(m: Mechanism) -> Iterator[Row]:
+    for name, pin in m.scene.pins.items():
+        for axis, direction in AXES:
+            yield Row(
+                f"{name}.{axis}", m.displacement(pin.points[0], direction) - m.displacement(pin.points[1], direction)
+            )
+
+
+def _drives(m: Mechanism) -> Iterator[Row]:
+    for name, drive in m.scene.drives.items():
+        if isinstance(drive, DisplacementDrive):
+            form = m.displacement(drive.point, unit_direction(drive.direction))
+            yield Row(name, form, unit=1.0 / m.units.length)
+        else:
+            yield Row(name, m.rotation(drive.body), unit=1.0)
+
+
+def _loads(m: Mechanism) -> Iterator[Row]:
+    for name, load in m.scene.loads.items():
+        yield load_row(m, name, load)
+
+
+def _stops(m: Mechanism) -> Iterator[Row]:
+    for name, stop in m.scene.stops.items():
+        form = stop_angle(m, name)
+        if stop.least is not None:
+            yield Row(f"{name}.least", form - Form(stop.least), driven=False, limit=True)
+        if stop.most is not None:
+            yield Row(f"{name}.most", Form(stop.most) - form, driven=False, limit=True)
+
+
+def stop_angle(m: Mechanism, name: str) -> Form:
+    """β of a stop, rad."""
+    stop = m.scene.stops[name]
+    joint = ends_of(m.scene, stop.beam)[END.index(stop.end)]
+    assert not isinstance(joint, FreeEnd)
+    line = np.subtract(m.scene.place_of(stop.towards), m.scene.place_of(joint.point))
+    drawn = remainder(m.chains[stop.beam].leaving_angle(stop.end) - float(np.arctan2(line[1], line[0])), tau)
+    drawn += tau if drawn < STRAIGHT - pi else 0.0
+    turned = m.angle(stop.beam, 0 if stop.end == "start" else -1)
+    return turned - m.rotation(m.scene.body_of(joint.point)) + Form(drawn)
+
+
+def _assembly(m: Mechanism) -> Iterator[Row]:
+    """Moments on ends that are drawn apart; a beam without such an end takes the moment at its end."""
+    if m.scene.assembly is None:
+        return
+    apart = dict(apart_ends(m))
+    for beam in m.scene.assembly.moments:
+        form = m.angle(beam, 0 if apart.get(beam) == "start" else -1)
+        yield Row(f"assembly.{beam}", form, driven=False, unit=-1.0 / m.units.moment)
+
+
+def unit_direction(direction: Direction) -> Direction:
+    """Unit vector of a direction."""
+    size = hypot(*direction)
+    return direction[0] / size, direction[1] / size

@@ -1,0 +1,1 @@
+"""Path following: load steps, stops, critical points, energy descent, assembly."""

@@ -1,0 +1,107 @@
+"""Critical points: where a branch of minima ends, and how.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+κ, φ     smallest curvature of the energy and its mode
+τ        tangent dθ/dt of the branch
+t_c      fraction of the way at the critical point
+=======  ====================================================================================
+
+At a fold the branch turns back: τ grows along φ, and κ² is linear in t_c − t.  At a bifurcation another branch
+crosses: τ has no part in φ, and κ is linear in t_c − t.  A stop that opens may leave a state that is no minimum: κ is
+positive just before, and the moment of the stop vanishes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cprbm.continuation.path import Reached, tangent
+from cprbm.equilibrium.newton import Solved
+from cprbm.equilibrium.stability import Mode, softest
+from cprbm_scene import Loss
+from cprbm_scene.answer import Array
+
+FOLDING = 0.5
+"""Part of τ along φ from which the branch turns back: a fold has all of it, a bifurcation nothing."""
+
+STILL = 1e-6
+"""Turn of a link over the way, rad, below which the branch does not move: a fold moves ever faster."""
+
+NEAR = 50.0
+"""Times as far as the bracket is wide: farther away no zero of κ explains the end of the branch."""
+
+APART = 2.0
+"""Times as far as the bracket is wide: the earlier state from which κ is extrapolated."""
+
+
+@dataclass(frozen=True, eq=False)
+class CriticalPoint:
+    """End of a branch.
+
+    Attributes:
+        t, width: fraction of the way, and the width of its bracket.
+        loss, what: how stability is lost, and of which stop.
+        last: the last minimum.
+        mode: smallest curvature there, and the mode in which stability is lost.
+        left: smallest curvature once a stop holds no more; of a fold or a bifurcation the curvature itself.
+    """
+
+    t: float
+    width: float
+    loss: Loss
+    what: str
+    last: Solved
+    mode: Mode
+    left: float
+
+    @property
+    def sentence(self) -> str:
+        """How the branch ends, for people."""
+        return f"{self.loss.value} ('{self.what}')" if self.what else self.loss.value
+
+
+def opened_stop(before: Solved, after: Solved, t: float, what: str) -> CriticalPoint:
+    """Critical point at a stop that opens, with the states before and after it opens."""
+    mode = softest(after.factors)
+    kept = softest(before.factors).curvature
+    return CriticalPoint(t, 0.0, Loss.STOP, what, before, Mode(kept, mode.change), mode.curvature)
+
+
+def critical_point(trail: list[Reached], beyond: float, change: Array) -> CriticalPoint | None:
+    """The fold or bifurcation between the last minimum of a branch and ``beyond``; None where none explains its end.
+
+    Args:
+        trail: last minima on the branch in order.
+        beyond: fraction of the way at which no minimum was found that continues the branch.
+        change: of the targets on the whole way.
+    """
+    last, width = trail[-1], beyond - trail[-1].t
+    mode = softest(last.solved.factors)
+    earlier = next((one for one in reversed(trail) if last.t - one.t >= APART * width), None)
+    earlier = earlier or (trail[0] if len(trail) > 1 else None)
+    fold = _along(last.solved, mode, change) > FOLDING
+    if earlier is None:
+        return None
+    power = 2.0 if fold else 1.0
+    now, before = mode.curvature**power, softest(earlier.solved.factors).curvature ** power
+    if not now < before < np.inf:
+        return None
+    zero = last.t + now * (last.t - earlier.t) / (before - now)
+    if not zero - last.t <= NEAR * width:
+        return None
+    loss = Loss.FOLD if fold else Loss.BIFURCATION
+    return CriticalPoint(zero, width, loss, "", last.solved, mode, mode.curvature)
+
+
+def _along(solved: Solved, mode: Mode, change: Array) -> float:
+    """Part of the branch's tangent along the mode, from 0 to 1."""
+    system = solved.system
+    tau, phi = tangent(solved, change)[system.angles], mode.change[system.angles]
+    if float(np.abs(tau).max()) < STILL or not np.any(phi):
+        return 0.0
+    sizes = np.sqrt((system.metric @ tau**2) * (system.metric @ phi**2))
+    return float(abs(system.metric @ (tau * phi)) / sizes)

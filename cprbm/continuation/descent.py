@@ -1,0 +1,137 @@
+"""Energy descent from a state that is no minimum to a minimum.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+α        strength of the springs that hold the links to the last state, energy α/2 Σ L (θ − θ_k)²
+κ, φ     smallest curvature and its mode
+=======  ====================================================================================
+
+Each step minimises Π plus the energy of the springs, so that Π falls from step to step.  The descent begins with the
+mode φ, in either sense, and follows the lower of both.  With α = 2|κ| the distance from the saddle doubles in a step.
+The springs soften while steps are short, stiffen where a step fails, and vanish near the minimum.
+
+Where both senses lead equally low, as at a symmetric bifurcation, the sense with ∫ (1 + s/ℓ) φ ds > 0 counts, with s
+along the beams in the scene's order: neither the mesh nor the order of assembly decides.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from cprbm.continuation.limits import with_stops
+from cprbm.continuation.path import potential
+from cprbm.equilibrium.factors import Springs
+from cprbm.equilibrium.newton import NotConvergedError, Solved
+from cprbm.equilibrium.stability import Mode, softest
+from cprbm.equilibrium.system import State, System
+from cprbm_scene.answer import Array, Flags
+
+STEPS = 300
+"""Steps of a descent."""
+
+KICK = 2e-3
+"""Largest turn of the first motion, rad."""
+
+LONGEST = 0.3
+"""Largest turn in one step, rad."""
+
+STIFFER = 4.0
+SOFTER = 0.5
+STIFFEST = 1e12
+"""Largest strength of the springs over the first: beyond it nothing moves."""
+
+NEAR = 0.05
+"""Turn of a step, rad, after which a decreasing motion may end without springs."""
+
+STILL = 1e-9
+"""Turn of a step, rad, below which the motion has ended."""
+
+KICKS = 5
+"""Saddles that a descent may come to."""
+
+SAME = 1e-6
+"""Relative difference of two energies' decreases that counts as none."""
+
+
+def descend(system: System, saddle: Solved, mode: Mode, target: Array, acting: Flags, iterations: int) -> Solved:
+    """The minimum under ``target`` to which the energy's decrease leads from a state at or beyond a critical point.
+
+    Raises:
+        NotConvergedError: the descent does not end.
+    """
+    start = replace(saddle.state, target=target)
+    state, strength = _kicked(system, start, mode, acting, iterations)
+    energy, last, kicks = potential(system, state), 0.0, 0
+    stiffest = STIFFEST * strength
+    for _ in range(STEPS):
+        step = _step(system, state, strength, acting, iterations)
+        moved = _moved(system, state, step.state) if step is not None else np.inf
+        if step is None or moved > LONGEST or potential(system, step.state) > energy + 1e-12 * abs(energy):
+            strength *= STIFFER
+            if strength > stiffest:
+                break
+            continue
+        state, energy = step.state, potential(system, step.state)
+        if (moved < NEAR and moved <= last) or moved < STILL:
+            found = _step(system, state, 0.0, acting, iterations)
+            near = found is not None and _moved(system, state, found.state) < LONGEST
+            if found is not None and near and found.factors.lost == 0:
+                return found
+            if found is not None and near and kicks < KICKS:
+                kicks += 1
+                state, strength = _kicked(system, found.state, softest(found.factors), acting, iterations)
+                energy, last = potential(system, state), 0.0
+                continue
+            if moved < STILL:
+                break
+        strength *= SOFTER if moved < 0.5 * LONGEST else 1.0
+        last = moved
+    raise NotConvergedError("the descent does not end in a minimum")
+
+
+def _kicked(system: System, start: State, mode: Mode, acting: Flags, iterations: int) -> tuple[State, float]:
+    """The lower of the states after a first step in either sense of the mode, and the springs of that step.
+
+    Raises:
+        NotConvergedError: no step works.
+    """
+    strength = 2.0 * abs(mode.curvature) + 1e-6
+    change = mode.change.copy()
+    change[system.rows.first :] = 0.0
+    favoured = 1.0 if _first_moment(system, change) >= 0.0 else -1.0
+    for _ in range(20):
+        steps = []
+        for sense in (favoured, -favoured):
+            kicked = replace(start, z=start.z + sense * KICK * change)
+            step = _step(system, kicked, strength, acting, iterations)
+            if step is not None and _moved(system, kicked, step.state) <= LONGEST:
+                steps.append(step.state)
+        if steps:
+            energies = [potential(system, state) for state in steps]
+            fallen = potential(system, start) - min(energies)
+            return steps[int(energies[0] - min(energies) > SAME * abs(fallen))], strength
+        strength *= STIFFER
+    raise NotConvergedError("the descent does not begin")
+
+
+def _step(system: System, state: State, strength: float, acting: Flags, iterations: int) -> Solved | None:
+    """Minimum of Π plus the springs' energy near a state; None where none is found."""
+    springs = Springs(strength, state.z[system.angles]) if strength else None
+    try:
+        return with_stops(system, state, acting, iterations, springs)
+    except NotConvergedError:
+        return None
+
+
+def _moved(system: System, before: State, after: State) -> float:
+    """Largest turn of a link between two states."""
+    return float(np.abs(after.z - before.z)[system.angles].max())
+
+
+def _first_moment(system: System, change: Array) -> float:
+    """Integral of (1 + s/ℓ) φ over the beams."""
+    arcs = np.cumsum(system.metric)
+    return float((system.metric * (1.0 + arcs)) @ change[system.angles])

@@ -1,0 +1,265 @@
+"""Load steps from one station to the next.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+t        fraction of the way to the next station
+κ        smallest curvature of the energy
+=======  ====================================================================================
+
+A step starts Newton's method at the last state under the next targets.  A step is accepted if the equilibrium has a
+certificate and loses no direction, no stop changes in it, and the test for jumps finds the same branch.  Otherwise the
+step is halved; after an accepted step the next one is twice as long.  A step ends where a stop closes or opens.
+
+A step that is refused at the smallest size means that the branch ends.  The zero of κ then tells a fold from a
+bifurcation.  The stage says what follows: the end of the solve, or a descent to the minimum that the energy's decrease
+leads to.  Without a word of the stage only a fold is passed, and only to a state beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Literal
+
+import numpy as np
+
+from cprbm.continuation.critical import CriticalPoint, critical_point, opened_stop
+from cprbm.continuation.descent import descend
+from cprbm.continuation.jumps import jumped
+from cprbm.continuation.limits import changed, first_event
+from cprbm.continuation.locking import ASKED, elongation, locked_beam, taut_value
+from cprbm.continuation.path import Reached, Way, turned, under
+from cprbm.equilibrium.certificate import certify
+from cprbm.equilibrium.newton import NotConvergedError, Solved, equilibrium
+from cprbm.equilibrium.stability import softest
+from cprbm.equilibrium.system import State, System
+from cprbm.settings import Settings
+from cprbm_scene import Ending, Loss
+from cprbm_scene.answer import Array, Flags
+
+CAREFUL_TURN = 0.2
+"""Largest turn in a step, rad, where no critical point may be passed."""
+
+BESIDE = 0.3
+"""Largest turn, rad, to a state beside a critical point that no stage asks for."""
+
+AHEAD = (0.01, 0.03, 0.1)
+"""Fractions of the rest of the way at which a minimum beyond a critical point is sought (nearby minima are soft)."""
+
+ENDS = 10
+"""Branches that may end between two stations."""
+
+TRAIL = 30
+"""Minima that are kept."""
+
+Beyond = Literal["stop", "jump"] | None
+
+
+class StepError(Exception):
+    """No step leads on; ``ending`` and the sentence say why."""
+
+    def __init__(self, ending: Ending, sentence: str) -> None:
+        super().__init__(sentence)
+        self.ending = ending
+
+
+@dataclass(frozen=True, eq=False)
+class Passed:
+    """A critical point on the way, its ``value`` and uncertainty (SI), and the minimum to which the descent led."""
+
+    point: CriticalPoint
+    value: float
+    width: float
+    landed: Solved | None
+
+
+@dataclass(eq=False)
+class Driver:
+    """Load stepping of one system.
+
+    Attributes:
+        system, settings: what is solved.
+        solved: the present minimum.
+        acting: which stops act.
+        reached: fraction of the way to the present station.
+        spent: Newton iterations since the last station.
+        passed: critical points on the way to the present station.
+    """
+
+    system: System
+    settings: Settings
+    solved: Solved
+    acting: Flags
+    reached: float = 0.0
+    spent: int = 0
+    passed: list[Passed] = field(default_factory=list)
+
+    def follow(self, way: Way, beyond: Beyond = None) -> None:
+        """Follow the equilibria along a way.
+
+        Raises:
+            StepError: no step leads to the end of the way.
+        """
+        self.passed, self.reached = [], 0.0
+        trail = [Reached(0.0, self.solved)]
+        step, events = 1.0, 0
+        while self.reached < 1.0:
+            t = min(1.0, self.reached + step)
+            trial = self._trial(way, t, careful=beyond is not None)
+            if isinstance(trial, StepError):
+                if self.spent > self.settings.iteration_limit:
+                    raise StepError(Ending.STEP_TOO_SMALL, f"{self.spent} iterations did not lead to the next station")
+                step = 0.5 * (t - self.reached)
+                if step < self.settings.smallest_step:
+                    trail = self._ended(way, trail, t, beyond, trial)
+                    step = max(step, AHEAD[0])
+                continue
+            at, solved, row = trial
+            events = 0 if at > self.reached else events + 1
+            if events > 2 * len(self.acting):
+                raise StepError(Ending.STEP_TOO_SMALL, "stops close and open again without a step")
+            step = 2.0 * (t - self.reached)
+            self._accept(at, solved, trail)
+            if row is not None:
+                trail = self._at_stop(way, at, row, trail, beyond)
+
+    def _trial(self, way: Way, t: float, *, careful: bool) -> tuple[float, Solved, int | None] | StepError:
+        """Fraction, state and stop's row at the end of the next step, or why there is none."""
+        begin = self.reached
+        state = under(self.solved.state, way.target(t))
+        largest = min(CAREFUL_TURN, self.settings.largest_turn) if careful else self.settings.largest_turn
+
+        def solve(share: float) -> Solved:
+            target = way.target(begin + share * (t - begin))
+            return self._equilibrium(replace(state, target=self._held(target)))
+
+        try:
+            solved = solve(1.0)
+            event = first_event(self.solved, solved, self.acting, solve)
+            row, at = None, t
+            if event is not None:
+                share, row = event
+                at = begin + share * (t - begin)
+                solved = solve(share) if share else self.solved
+        except (NotConvergedError, ValueError) as failure:
+            return StepError(Ending.STEP_TOO_SMALL, str(failure))
+        turn = turned(self.solved, solved)
+        if turn > largest:
+            return StepError(Ending.STEP_TOO_SMALL, f"a link turned by {turn:.2f} rad in one load step")
+        certificate, ending = certify(solved, self.settings.tolerance, 0, self.acting, with_curvature=False)
+        if ending is not Ending.COMPLETED:
+            return StepError(ending, certificate.failures[0])
+        if jumped(self.solved, solved, (at - begin) * self._moving(way)):
+            return StepError(Ending.STEP_TOO_SMALL, "the links went another way than the path's tangents")
+        return at, solved, row
+
+    def _equilibrium(self, state: State) -> Solved:
+        solved = equilibrium(self.system, state, self.settings.iterations)
+        self.spent += solved.iterations
+        return solved
+
+    def _held(self, target: Array) -> Array:
+        """Targets with those of stops at zero: a closed stop holds its limit, an open one has no force."""
+        return np.where(self.system.limits, 0.0, target)
+
+    def _moving(self, way: Way) -> Array:
+        return np.where(self.system.limits, 0.0, way.change)
+
+    def _accept(self, t: float, solved: Solved, trail: list[Reached]) -> None:
+        self.reached, self.solved = t, solved
+        trail.append(Reached(t, solved))
+        del trail[:-TRAIL]
+
+    def _at_stop(self, way: Way, t: float, row: int, trail: list[Reached], beyond: Beyond) -> list[Reached]:
+        """Close or open a stop; the trail from there on.
+
+        Raises:
+            StepError: the branch ends there.
+        """
+        before = self.solved
+        try:
+            after = self._equilibrium(changed(before.state, row, self.system))
+        except NotConvergedError as failure:
+            raise StepError(Ending.STEP_TOO_SMALL, f"a stop changes and {failure}") from failure
+        if after.factors.lost:
+            stop = self.system.mechanism.rows[row].name.rpartition(".")[0]
+            return self._leave(way, opened_stop(before, after, t, stop), after, beyond)
+        self.solved = after
+        return [Reached(t, after)]
+
+    def _ended(self, way: Way, trail: list[Reached], t: float, beyond: Beyond, refused: StepError) -> list[Reached]:
+        """Leave a branch whose next step is refused at the smallest size; the trail from there on.
+
+        Raises:
+            StepError: the solve ends.
+        """
+        point = critical_point(trail, t, self._moving(way))
+        if point is None:
+            point = self._locked(way, t, trail, refused)
+        return self._leave(way, point, point.last, beyond)
+
+    def _locked(self, way: Way, t: float, trail: list[Reached], refused: StepError) -> CriticalPoint:
+        """The bifurcation of a straight beam that must become shorter.
+
+        Raises:
+            StepError: something else keeps the step from being made.
+        """
+        if self.system.lengthening:
+            raise refused
+        solved, beam = self.solved, locked_beam(self.solved)
+        limit = taut_value(trail, way, t)
+        if limit is not None:
+            where = f"forces grow without limit as {way.name} comes to {limit:.6g}"
+            raise StepError(Ending.STEP_TOO_SMALL, f"{where}, where beams would have to become longer")
+        if not beam:
+            raise refused
+        longer = elongation(solved, self._moving(way))
+        if abs(longer) < ASKED:
+            held = f"beam '{beam}' is straight between ends that are held"
+            raise StepError(Ending.STEP_TOO_SMALL, f"{held}, and cannot give way from there by bending")
+        if longer > 0.0:
+            straight = f"beam '{beam}' is straight between its ends, and cannot become longer by bending"
+            raise StepError(Ending.STEP_TOO_SMALL, straight)
+        mode = softest(solved.factors)
+        return CriticalPoint(self.reached, 0.0, Loss.BIFURCATION, "", solved, mode, mode.curvature)
+
+    def _leave(self, way: Way, point: CriticalPoint, start: Solved, beyond: Beyond) -> list[Reached]:
+        """Go down from a critical point to a minimum, if the stage goes on; the trail from there on.
+
+        Raises:
+            StepError: the branch ends.
+        """
+        passed = partial(Passed, point, way.value(point.t), abs(way.value(point.width) - way.value(0.0)))
+        if beyond == "stop" or (beyond is None and point.loss is Loss.BIFURCATION) or len(self.passed) >= ENDS:
+            self.passed.append(passed(None))
+            raise StepError(Ending.BRANCH_ENDS, self._told(way, point))
+        furthest = max(point.t, self.reached) + 10.0 * point.width
+        for ahead in AHEAD:
+            t = min(1.0, furthest + ahead * max(0.0, 1.0 - furthest))
+            target = self._held(way.target(t))
+            descent = partial(descend, self.system, start, point.mode, target, self.acting)
+            landed = self._landed(descent, point, beside=beyond is None)
+            if landed is not None:
+                self.passed.append(passed(landed))
+                self.solved, self.reached = landed, t
+                return [Reached(t, landed)]
+        self.passed.append(passed(None))
+        if beyond == "jump":
+            raise StepError(Ending.STEP_TOO_SMALL, f"no minimum found to which {self._told(way, point)} leads")
+        raise StepError(Ending.BRANCH_ENDS, self._told(way, point))
+
+    def _told(self, way: Way, point: CriticalPoint) -> str:
+        return f"{point.sentence} at {way.name} = {way.value(point.t):.6g}" if way.name else point.sentence
+
+    def _landed(self, descent: Callable[[int], Solved], point: CriticalPoint, *, beside: bool) -> Solved | None:
+        """The minimum of a descent with its certificate; None without one, or where it is not beside as it must be."""
+        try:
+            landed = descent(self.settings.iterations)
+        except NotConvergedError:
+            return None
+        self.spent += landed.iterations
+        _, ending = certify(landed, self.settings.tolerance, 0, self.acting, with_curvature=False)
+        far = beside and turned(point.last, landed) > BESIDE
+        return landed if ending is Ending.COMPLETED and not far else None

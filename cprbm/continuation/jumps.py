@@ -1,0 +1,53 @@
+"""The test for a step from one branch of minima to another.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+Δθ       turns of the links in a step
+τ₀, τ₁   tangents dθ of the step at both ends
+Π₀′, Π₁′ power of the step at both ends; Π″ their rates
+=======  ====================================================================================
+
+On one branch Δθ is near the mean of both tangents, and the change of Π near Hermite's quadrature
+(Π₀′ + Π₁′)/2 + (Π₀″ − Π₁″)/12.  Steps on one branch reached 0.43 and 0.18 of the two limits' units in all built-in
+cases, steps to another branch 0.69 and 0.23 at least: one of the two tests is enough for an alarm.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cprbm.continuation.path import potential, power, power_rate, tangent
+from cprbm.equilibrium.newton import Solved
+from cprbm_scene.answer import Array
+
+BENT = 0.5
+"""Largest distance of the turns from the mean of both tangents, over the largest turn."""
+
+MISSED = 0.25
+"""Largest error of the quadrature, over half the change of the power in the step."""
+
+SMALLEST_TURN = 1e-4
+"""Turn in a step, rad, below which tangents are not compared: such a step cannot lead to another branch."""
+
+SMALLEST_WORK = 1e-9
+"""Power, and its change over the power, below which the energy is not compared: round-off of its sum is near."""
+
+
+def jumped(before: Solved, after: Solved, change: Array) -> bool:
+    """True if a step between two minima, in which the targets ``change``, left the branch."""
+    system = before.system
+    rates = tangent(before, change), tangent(after, change)
+    angles = system.angles
+    turn = after.state.z[angles] - before.state.z[angles]
+    largest = float(np.abs(turn).max())
+    mean = 0.5 * (rates[0][angles] + rates[1][angles])
+    if max(largest, float(np.abs(mean).max())) > SMALLEST_TURN and float(np.abs(turn - mean).max()) > BENT * largest:
+        return True
+    powers = power(before, change), power(after, change)
+    scale, spread = max(abs(powers[0]), abs(powers[1])), abs(powers[1] - powers[0])
+    if scale < SMALLEST_WORK or spread < SMALLEST_WORK * scale or largest < SMALLEST_TURN:
+        return False
+    curved = power_rate(before, change, rates[0]) - power_rate(after, change, rates[1])
+    gained = potential(system, after.state) - potential(system, before.state)
+    return abs(gained - 0.5 * (powers[0] + powers[1]) - curved / 12.0) > MISSED * 0.5 * spread

@@ -1,0 +1,84 @@
+"""Stops within a load step: event functions of frozen rows, and their location.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+e        event function of a stop: f within its limits, −μ at a limit; both are positive or zero
+=======  ====================================================================================
+
+A step is solved with the rows frozen.  Where e < 0 at its end, the first zero of e is located by Brent's method; the
+step ends there, and the stop closes or opens.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from cprbm.equilibrium.factors import Springs
+from cprbm.equilibrium.newton import NotConvergedError, Solved, equilibrium
+from cprbm.equilibrium.system import State, System
+from cprbm_scene.answer import Array, Flags
+
+TOUCHING = 1e-10
+"""Event function, in rad or units of moment, below which an event has happened."""
+
+LOCATED = 1e-12
+"""Accuracy of the fraction of a step."""
+
+CHANGES = 20
+"""Changes of the stops after which their search ends."""
+
+
+def event_values(solved: Solved, acting: Flags) -> Array:
+    """e of all rows; infinite for rows that are no acting stops."""
+    state = solved.state
+    values = np.where(state.driven, -state.multipliers(solved.system), solved.values)
+    return np.where(solved.system.limits & acting, values, np.inf)
+
+
+def first_event(
+    before: Solved, after: Solved, acting: Flags, solve: Callable[[float], Solved]
+) -> tuple[float, int] | None:
+    """Fraction of a step at the first event, and the number of its row; None without one.
+
+    Args:
+        before, after: the step.
+        acting: which stops act.
+        solve: state at a fraction of the step.
+    """
+    begin, end = event_values(before, acting), event_values(after, acting)
+    found = []
+    for row in np.flatnonzero(end < -TOUCHING):
+        if begin[row] <= TOUCHING:
+            return 0.0, int(row)
+        share = brentq(lambda share, row=row: float(event_values(solve(share), acting)[row]), 0.0, 1.0, xtol=LOCATED)
+        found.append((float(share), int(row)))
+    return min(found, default=None)
+
+
+def changed(state: State, row: int, system: System) -> State:
+    """The state with one stop closed or opened."""
+    driven, z = state.driven.copy(), state.z.copy()
+    driven[row] = not driven[row]
+    z[system.rows.first + row] = 0.0
+    return replace(state, driven=driven, z=z)
+
+
+def with_stops(system: System, state: State, acting: Flags, iterations: int, springs: Springs | None = None) -> Solved:
+    """Equilibrium near a state in which no stop is passed and none pulls.
+
+    Raises:
+        NotConvergedError: no equilibrium was found.
+    """
+    for _ in range(CHANGES):
+        solved = equilibrium(system, state, iterations, springs)
+        values = event_values(solved, acting)
+        worst = int(np.argmin(values)) if len(values) else 0
+        if not len(values) or values[worst] >= -TOUCHING:
+            return solved
+        state = changed(solved.state, worst, system)
+    raise NotConvergedError("the stops do not settle")

@@ -1,0 +1,1 @@
+"""Equilibria of a mechanism: Newton's method, exact elimination with inertia, certificate, stability."""

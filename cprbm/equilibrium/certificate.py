@@ -1,0 +1,182 @@
+"""Certificate of an equilibrium, and the Ending that a failure means.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+r        unbalanced generalised force over the largest moment that balances
+ε        unit round-off
+=======  ====================================================================================
+
+The moments of joints are products of stiffness and angles, which round-off leaves uncertain by ε k |θ|; the sums of a
+chain add ε √m of the largest moment.  Four times both is the floor of r.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from cprbm.chain import add_row_gradient
+from cprbm.equilibrium.newton import Solved
+from cprbm.equilibrium.stability import softest
+from cprbm.equilibrium.system import System
+from cprbm_scene import Certificate, Ending
+from cprbm_scene.answer import Array, Flags
+
+EPSILON = float(np.finfo(float).eps)
+
+LARGEST_BEND = 1.0
+"""Turn of one joint, rad, beyond which a chord no longer stands for its element."""
+
+LARGEST_STRAIN = 0.25
+"""Largest β |N|, h² |N|/12EI: beyond 1 the correction of a link loses its stability; h is 1.7 times √(EI/N) here."""
+
+BALANCE = 1e-8
+"""Largest resultant over the largest force: supports and loads balance to far less."""
+
+LEAST_VIOLATION = 1e-13
+"""Violation of a row or a link equation, over the longest beam, that round-off of positions leaves."""
+
+SMALLEST_LOAD = 1e-12
+"""Force or moment, in units, below which everything counts as unloaded."""
+
+PULL = 1e-9
+"""Moment by which a stop may pull, over the largest moment."""
+
+
+@dataclass(frozen=True, slots=True)
+class Balance:
+    """Resultant force and moment of all supports and loads over the largest of them."""
+
+    force: float
+    moment: float
+
+
+def certify(
+    solved: Solved, tolerance: float, iterations: int, acting: Flags, *, with_curvature: bool = True
+) -> tuple[Certificate, Ending]:
+    """Certificate of an equilibrium, and COMPLETED or the Ending of its first failure.
+
+    Args:
+        solved: the state.
+        tolerance: largest residual and violation; round-off may set a higher floor.
+        iterations: Newton iterations spent on it.
+        acting: which stops act.
+        with_curvature: whether the smallest curvature is computed; inertia alone tells whether the state is a minimum.
+    """
+    system, state = solved.system, solved.state
+    scale = max(_largest_moment(solved), SMALLEST_LOAD)
+    turned = float(np.abs(state.z[system.angles]).max())
+    stiffest = float(system.joints.stiffness.max())
+    floor = 4.0 * EPSILON * (stiffest * turned + sqrt(len(system.metric)) * scale) / scale
+    force_rows, equations = _parts(system)
+    residual = float(np.abs(solved.gradient[force_rows]).max()) / scale
+    violation = float(np.abs(solved.gradient[equations]).max())
+    complementarity = _complementarity(solved, acting) / scale
+    balance = _balance(solved)
+    strain = float(np.abs(system.lean * _pull(solved)).max())
+    bend = float(np.abs(_turns(solved)).max(initial=0.0))
+    curvature = softest(solved.factors).curvature if with_curvature else float("nan")
+    balance_limit = max(BALANCE, 100.0 * floor)
+    checks = (
+        (residual <= max(tolerance, floor), Ending.NOT_CERTIFIED, f"the residual is {residual:.1e}"),
+        (
+            violation <= max(tolerance, LEAST_VIOLATION),
+            Ending.NOT_CERTIFIED,
+            f"the joints are open by {violation:.1e} of the longest beam",
+        ),
+        (complementarity <= PULL, Ending.NOT_CERTIFIED, f"a stop pulls or is passed by {complementarity:.1e}"),
+        (bend <= LARGEST_BEND, Ending.TURNED_TOO_FAR, _bent(bend)),
+        (
+            strain <= LARGEST_STRAIN,
+            Ending.TURNED_TOO_FAR,
+            f"a link stretches its own bend by {strain:.2f}: use more links",
+        ),
+        (balance.force <= balance_limit, Ending.NOT_CERTIFIED, f"ΣF is {balance.force:.1e} of the largest force"),
+        (balance.moment <= balance_limit, Ending.NOT_CERTIFIED, f"ΣM is {balance.moment:.1e} of the largest moment"),
+        (
+            solved.factors.lost == 0,
+            Ending.NOT_A_MINIMUM,
+            f"the energy falls in {solved.factors.lost} independent directions",
+        ),
+    )
+    failures = [(ending, sentence) for holds, ending, sentence in checks if not holds]
+    certificate = Certificate(
+        residual=residual,
+        residual_floor=floor,
+        violation=violation,
+        penetration=0.0,
+        complementarity=complementarity,
+        force_balance=balance.force,
+        moment_balance=balance.moment,
+        smallest_curvature=curvature,
+        iterations=iterations,
+        failures=tuple(sentence for _, sentence in failures),
+    )
+    return certificate, failures[0][0] if failures else Ending.COMPLETED
+
+
+def _bent(bend: float) -> str:
+    return f"one element turns by {bend:.2f} rad, more than {LARGEST_BEND:.1f}: use more links"
+
+
+def _turns(solved: Solved) -> Array:
+    """Elastic turns of all joints."""
+    system, z = solved.system, solved.state.z
+    before = system.angles[system.joints.before]
+    return np.asarray(z[system.angles[system.joints.before + 1]] - z[before] - system.joints.rest)
+
+
+def _pull(solved: Solved) -> Array:
+    """Normal forces of all links."""
+    system, z = solved.system, solved.state.z
+    angles = z[system.angles]
+    return np.asarray(z[system.links.first + 2] * np.cos(angles) + z[system.links.first + 3] * np.sin(angles))
+
+
+def _largest_moment(solved: Solved) -> float:
+    """Largest moment of a joint, of a link's force on the link, or of a row."""
+    system, z = solved.system, solved.state.z
+    joints = np.abs(system.joints.stiffness * _turns(solved)).max(initial=0.0)
+    forces = np.hypot(z[system.links.first + 2], z[system.links.first + 3])
+    rows = np.abs(solved.state.multipliers(system)).max(initial=0.0)
+    return float(max(joints, (system.links.length * forces).max(), rows))
+
+
+def _parts(system: System) -> tuple[Array, Array]:
+    """Indices of generalised forces, and of link equations and rows, in a gradient."""
+    equations = np.concatenate(
+        [
+            (system.links.first[:, None] + [2, 3]).ravel(),
+            np.arange(system.rows.first, system.size),
+        ]
+    )
+    return np.setdiff1d(np.arange(system.size), equations), equations
+
+
+def _complementarity(solved: Solved, acting: Flags) -> float:
+    """Largest moment by which a stop pulls, or turn by which a stop within its limits is passed."""
+    system, state = solved.system, solved.state
+    pulls = np.where(state.driven, state.multipliers(system), -solved.values)[system.limits & acting]
+    return float(np.max(pulls, initial=0.0))
+
+
+def _balance(solved: Solved) -> Balance:
+    """Resultants of the forces of all rows on nodes and bodies, over the largest."""
+    system, z = solved.system, solved.state.z
+    acting = np.zeros(system.size)
+    add_row_gradient(z, system.rows, solved.state.multipliers(system), acting)
+    m = system.mechanism
+    bodies = np.array(list(m.bodies.values()), dtype=np.int64)
+    references = np.array([m.reference(name) for name in m.bodies]).reshape(-1, 2)
+    x = np.concatenate([z[system.nodes[:, 0]], references[:, 0] + z[bodies]])
+    y = np.concatenate([z[system.nodes[:, 1]], references[:, 1] + z[bodies + 1]])
+    fx = np.concatenate([acting[system.nodes[:, 0]], acting[bodies]])
+    fy = np.concatenate([acting[system.nodes[:, 1]], acting[bodies + 1]])
+    couples = np.concatenate([acting[system.angles], acting[bodies + 2]])
+    moments = np.concatenate([x * fy - y * fx, couples])
+    largest = max(float(np.hypot(fx, fy).max()), SMALLEST_LOAD)
+    turning = max(float(np.abs(moments).max()), largest)
+    return Balance(float(np.hypot(fx.sum(), fy.sum())) / largest, abs(float(moments.sum())) / turning)

@@ -1,0 +1,121 @@
+"""Newton's method for an equilibrium with fixed rows.
+
+The first iteration starts from the last state under new targets and so makes the prediction along the path's tangent.
+Later iterations converge quadratically; where round-off stops them, the last correction is as small as it gets.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from cprbm.chain import row_values
+from cprbm.equilibrium.factors import Factors, SingularError, Springs, factorise
+from cprbm.equilibrium.rank import repeated_rows
+from cprbm.equilibrium.system import State, System
+from cprbm_scene.answer import Array
+
+CLOSE = 1e-9
+"""Correction of angles (rad) and positions (longest beam) whose square is below round-off."""
+
+ROUNDED = 1e-6
+"""Largest correction that round-off leaves on the finest meshes."""
+
+SHRINKING = 0.25
+"""Ratio of corrections above which an iteration below ``ROUNDED`` no longer converges: round-off is reached."""
+
+LARGEST_TURN = 0.5
+"""Largest turn of a link in one iteration, rad."""
+
+REPEATED = 1e-9
+"""Largest violation of a row that repeats others, in units of length or rad."""
+
+
+class NotConvergedError(Exception):
+    """Newton's method found no equilibrium; ``locked`` names the row that the other rows contradict."""
+
+    def __init__(self, reason: str, locked: str = "") -> None:
+        super().__init__(reason)
+        self.locked = locked
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """An equilibrium, the Hessian's factors and the gradient there, and the Newton iterations it took."""
+
+    system: System
+    state: State
+    factors: Factors
+    gradient: Array
+    iterations: int
+
+    @cached_property
+    def values(self) -> Array:
+        """f of all rows."""
+        return np.asarray(row_values(self.state.z, self.system.rows))
+
+
+def equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Solved:
+    """Equilibrium near a state under its targets.
+
+    Args:
+        system: the mechanism.
+        start: state with targets.
+        iterations: largest number of Newton iterations.
+        springs: springs on the links' angles, of a descent.
+
+    Raises:
+        NotConvergedError: no equilibrium was found.
+    """
+    solved = _iterated(system, start, iterations, springs)
+    while (missed := _contradicted(solved)) is not None:
+        # a row that repeats others in a straight beam may tell more about a bent one
+        state = solved.state
+        repeated = repeated_rows(system, state)
+        if repeated.sum() >= state.repeated.sum():
+            name = system.mechanism.rows[missed].name
+            raise NotConvergedError(f"row {name} contradicts the others", locked=name)
+        counting = replace(state, driven=(state.driven | state.repeated) & ~repeated, repeated=repeated)
+        solved = _iterated(system, counting, iterations, springs)
+    return solved
+
+
+def _iterated(system: System, start: State, iterations: int, springs: Springs | None) -> Solved:
+    """Equilibrium with the rows that a state prescribes.
+
+    Raises:
+        NotConvergedError: no equilibrium was found.
+    """
+    z = start.z.copy()
+    forced = ~start.driven
+    z[system.rows.first :][forced] = start.target[forced] * ~start.repeated[forced]
+    state, last = replace(start, z=z), np.inf
+    try:
+        for iteration in range(1, iterations + 1):
+            factors, gradient = factorise(system, state, springs)
+            change = -factors.solve(gradient)
+            turn = float(np.abs(change[system.angles]).max())
+            size = max(turn, float(np.abs(change[system.nodes]).max()))
+            if not np.isfinite(size):
+                raise NotConvergedError("the correction is not finite")
+            share = min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0
+            change[system.rows.first :][forced] = 0.0
+            z += share * change
+            if size < CLOSE or (size < ROUNDED and size > SHRINKING * last):
+                return Solved(system, state, *factorise(system, state, springs), iteration)
+            last = size
+    except SingularError as singular:
+        raise NotConvergedError("the system is singular") from singular
+    raise NotConvergedError(f"{iterations} iterations did not converge")
+
+
+def _contradicted(solved: Solved) -> int | None:
+    """Number of a repeated row that does not hold, or None."""
+    state = solved.state
+    if not state.repeated.any():
+        return None
+    missed = np.where(state.repeated, np.abs(solved.values - state.target), 0.0)
+    worst = int(np.argmax(missed))
+    return worst if missed[worst] > REPEATED else None

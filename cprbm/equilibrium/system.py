@@ -1,0 +1,152 @@
+"""A mechanism as arrays, numbered once, and the states that the solver moves.
+
+A state names its unknowns z, which rows have a prescribed value, and the targets of the rows: the value f*, or the
+multiplier μ* of a row with prescribed force.  Rows that only repeat others are left out
+(:mod:`cprbm.equilibrium.rank`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cprbm.chain import Joints, Links, Mechanism, RowArrays, hidden_flexibility, link_arrays, row_arrays
+from cprbm.chain.mechanism import PER_LINK
+from cprbm.equilibrium.elimination import Beams, Border
+from cprbm_scene.answer import Array, Flags, Ints
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """Everything that does not change while a scene is solved.
+
+    Attributes:
+        mechanism: the numbering and the rows.
+        links, joints, rows, beams, border: arrays of the kernels.
+        angles, nodes: indices of all links' angles, and of the x and y of all nodes.
+        metric: lengths of the links, the weights of their angles in a mode.
+        limits: which rows are stops.
+        hidden: flexibility (rows, rows) of loads at places of beams that the chain does not show.
+        lean: shear compliance β of the links that stands for their odd moment.
+        lengthening: whether links have an axial compliance.
+    """
+
+    mechanism: Mechanism
+    links: Links
+    joints: Joints
+    rows: RowArrays
+    beams: Beams
+    border: Border
+    angles: Ints
+    nodes: Ints
+    metric: Array
+    limits: Flags
+    hidden: Array
+    lean: Array
+    lengthening: bool
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns, multipliers included."""
+        return self.rows.first + len(self.rows.constant)
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """Unknowns z, rows with a prescribed value, targets of all rows, and rows that repeat others."""
+
+    z: Array
+    driven: Flags
+    target: Array
+    repeated: Flags
+
+    def multipliers(self, system: System) -> Array:
+        """μ of all rows."""
+        return self.z[system.rows.first :]
+
+
+def system_of(mechanism: Mechanism) -> System:
+    """Number a mechanism whose rows are complete."""
+    links, joints = link_arrays(mechanism)
+    rows = row_arrays(mechanism)
+    beams = _beams(mechanism)
+    nodes = np.concatenate([mechanism.beam_nodes(name) for name in mechanism.chains])
+    return System(
+        mechanism=mechanism,
+        links=links,
+        joints=joints,
+        rows=rows,
+        beams=beams,
+        border=_border(mechanism, rows, beams),
+        angles=links.first + PER_LINK - 1,
+        nodes=np.stack([nodes, nodes + 1], axis=1),
+        metric=links.length,
+        limits=np.array([row.limit for row in mechanism.rows], dtype=bool),
+        hidden=hidden_flexibility(mechanism),
+        lean=np.concatenate([chain.lean for chain in mechanism.chains.values()]),
+        lengthening=bool(np.any(links.stretch)),
+    )
+
+
+def hidden_forces(system: System, z: Array, mu: Array) -> Array:
+    """Multipliers (rows,) of loads at places of beams at a state, of forces the parts across their links."""
+    loads = [row.unit_load for row in system.mechanism.rows]
+    across = [
+        0.0
+        if load is None
+        else 1.0
+        if load.angle < 0
+        else load.direction[1] * np.cos(z[load.angle]) - load.direction[0] * np.sin(z[load.angle])
+        for load in loads
+    ]
+    return np.asarray(across * mu)
+
+
+def rest_state(system: System) -> State:
+    """The state as drawn: ends that are drawn apart from their points violate their rows."""
+    rows = system.mechanism.rows
+    z = np.concatenate([system.mechanism.rest, np.zeros(len(rows))])
+    driven = np.array([row.driven for row in rows], dtype=bool)
+    return State(z, driven, np.zeros(len(rows)), np.zeros(len(rows), dtype=bool))
+
+
+def _beams(m: Mechanism) -> Beams:
+    """Chains with springs of the size of their own bending stiffness."""
+    counts = np.array([chain.links for chain in m.chains.values()], dtype=np.int64)
+    springs = []
+    for chain in m.chains.values():
+        turning = float(np.median(chain.stiffness))
+        pulling = turning / chain.links / chain.length**2
+        springs.append((pulling, pulling, turning))
+    first = np.array(list(m.starts.values()), dtype=np.int64)
+    return Beams(first, counts, np.cumsum(counts) - counts, np.array(springs))
+
+
+def _border(m: Mechanism, rows: RowArrays, beams: Beams) -> Border:
+    """Entries of the rows and the springs at the chains, and their pairs of a border column and a chain."""
+    first = int(beams.first[-1] + 2 + PER_LINK * beams.links[-1])
+    column = rows.first - first
+    size = column + len(rows.constant) + 3 * len(beams.first)
+    inner = rows.linear_index < first
+    springs = size - 3 * len(beams.first) + np.arange(3 * len(beams.first))
+    index = np.concatenate([rows.linear_index[inner], (beams.first[:, None] + [0, 1, PER_LINK - 1]).ravel()])
+    columns = np.concatenate([column + rows.linear_row[inner], springs])
+    row = np.concatenate([rows.linear_row[inner], np.full(len(springs), -1)])
+    value = np.concatenate([rows.linear_factor[inner], np.sqrt(beams.springs).ravel()])
+    beam = np.searchsorted(beams.first, index, side="right") - 1
+    pairs, entry_pair = np.unique(np.column_stack([beam, columns]), axis=0, return_inverse=True)
+    sizes = 2 + PER_LINK * beams.links[pairs[:, 0]]
+    return Border(
+        first=first,
+        size=size,
+        rows=column,
+        pair_column=pairs[:, 1].astype(np.int64),
+        pair_beam=pairs[:, 0].astype(np.int64),
+        pair_offset=np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64),
+        beam_pairs=np.searchsorted(pairs[:, 0], np.arange(len(beams.first) + 1)).astype(np.int64),
+        entry_pair=entry_pair.ravel().astype(np.int64),
+        entry_index=index.astype(np.int64),
+        entry_row=row.astype(np.int64),
+        entry_value=value,
+    )

@@ -1,0 +1,207 @@
+"""The run through all stages and stations, and the answer sheet."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from cprbm.chain import add_rows, mechanism_of
+from cprbm.continuation.assembly import assembled
+from cprbm.continuation.driver import Driver, Passed, StepError
+from cprbm.continuation.path import Way, potential, turned
+from cprbm.equilibrium.certificate import certify
+from cprbm.equilibrium.system import System, system_of
+from cprbm.results.forces import point_forces
+from cprbm.results.probes import displacement, probe_values
+from cprbm.results.statics import beam_state
+from cprbm.results.view import View
+from cprbm.settings import Settings
+from cprbm_scene import Answer, Certificate, Critical, Ending, GoneOver, Scene, Shape, Stage, StationAnswer
+from cprbm_scene.answer import Array, PointForces, frozen_array
+from cprbm_scene.threads import one_thread
+from cprbm_scene.told import station_reached
+
+LOGGER = logging.getLogger("cprbm.stations")
+"""Its first part is the solver's name in the message of progress."""
+
+LINE_POINTS = 2
+"""Points of a shape per link."""
+
+PLAIN = (
+    "elements are longer than the bends that the forces in them allow: the values are those of the plain chain, "
+    "of second order in 1/N"
+)
+
+
+@dataclass(eq=False)
+class Run:
+    """A scene with its mechanism, before and while it is solved.
+
+    Attributes:
+        scene, settings: the question.
+        driver: at the first state once the run has begun.
+        loads: present values (SI) of loads and drives.
+        stations, critical, gone_over, notes: of the answer.
+    """
+
+    scene: Scene
+    settings: Settings
+    driver: Driver | None = None
+    values: dict[str, float] = field(default_factory=dict)
+    stations: list[StationAnswer] = field(default_factory=list)
+    critical: list[Critical] = field(default_factory=list)
+    gone_over: list[GoneOver] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    seconds: float = 0.0
+
+    def __post_init__(self) -> None:
+        began = time.perf_counter()
+        self.system = self._system(corrected=self.settings.formulation == "auto")
+        self.seconds = time.perf_counter() - began
+
+    def _system(self, *, corrected: bool) -> System:
+        links = {beam: self.settings.links_of(beam) for beam in self.scene.beams}
+        mechanism = mechanism_of(self.scene, links, self.scene.theory, corrected=corrected)
+        add_rows(mechanism)
+        return system_of(mechanism)
+
+    def answer(self) -> Answer:
+        """Solve the scene."""
+        began = time.perf_counter()
+        with one_thread():
+            ending, sentence = self._solve()
+            if ending is Ending.TURNED_TOO_FAR and self.settings.formulation == "auto":
+                # elements longer than the bends between them have no corrections
+                self.system = self._system(corrected=False)
+                self.stations, self.critical, self.gone_over, self.values = [], [], [], {}
+                self.notes = [PLAIN]
+                ending, sentence = self._solve()
+        return Answer(
+            solver="cprbm",
+            scene=self.scene.name,
+            settings=self.settings.plain(),
+            ending=ending,
+            sentence=sentence,
+            stations=tuple(self.stations),
+            critical=tuple(self.critical),
+            gone_over=tuple(self.gone_over),
+            seconds=self.seconds + time.perf_counter() - began,
+            notes=tuple(self.notes),
+        )
+
+    def _solve(self) -> tuple[Ending, str]:
+        try:
+            self.driver = assembled(self.system, self.settings)
+        except StepError as failure:
+            return failure.ending, str(failure)
+        for stage in self.scene.stages:
+            for station in stage.stations:
+                try:
+                    self._go(self.driver, stage, station)
+                except StepError as failure:
+                    reached = self._value_reached(self.driver, stage, station)
+                    last = f"the last good value of {stage.steps} is {reached:.6g}"
+                    return failure.ending, f"{failure.ending.value}: {failure}; {last}"
+        return Ending.COMPLETED, Ending.COMPLETED.value
+
+    def _go(self, driver: Driver, stage: Stage, station: float) -> None:
+        """Follow the path to a station and add its answer.
+
+        Raises:
+            StepError: the station was not reached, or its certificate does not hold.
+        """
+        row = self.system.mechanism.row(stage.steps)
+        unit = self.system.mechanism.rows[row].unit
+        begin = driver.solved.state.target
+        before = self.values.get(stage.steps, 0.0)
+        end = begin.copy()
+        end[row] = station * unit
+        driver.spent = 0
+        try:
+            driver.follow(Way(begin, end, (before, station), stage.steps), stage.beyond)
+        finally:
+            self._note(stage, driver.passed)
+        self.values[stage.steps] = station
+        certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent, driver.acting)
+        if ending is not Ending.COMPLETED:
+            raise StepError(ending, certificate.failures[0])
+        self.stations.append(self._station(driver, stage, station, certificate))
+        station_reached(LOGGER, self.scene, len(self.stations), self.stations[-1])
+
+    def _value_reached(self, driver: Driver, stage: Stage, station: float) -> float:
+        before = self.values.get(stage.steps, 0.0)
+        return before + min(1.0, driver.reached) * (station - before)
+
+    def _note(self, stage: Stage, passed: list[Passed]) -> None:
+        """Add the critical points of the way to a station to the answer."""
+        system = self.system
+        unit = system.mechanism.units.moment
+        for each in passed:
+            point = each.point
+            landed = each.landed
+            critical = Critical(
+                stage=stage.name,
+                value=each.value,
+                uncertainty=each.width,
+                loss=point.loss,
+                what=point.what,
+                curvature=point.mode.curvature,
+                left=point.left,
+                energy=potential(system, point.last.state) * unit,
+                after=None if landed is None else potential(system, landed.state) * unit,
+            )
+            if landed is not None and stage.beyond is None:
+                self.gone_over.append(GoneOver(critical, turned(point.last, landed)))
+                where = f"{point.sentence} at {stage.steps} = {each.value:.6g}"
+                self.notes.append(
+                    f"the branch ends, {where}, and was left for the state beside it to which the decrease of the "
+                    "energy leads"
+                )
+            else:
+                self.critical.append(critical)
+
+    def _station(self, driver: Driver, stage: Stage, station: float, certificate: Certificate) -> StationAnswer:
+        """Answer at a station."""
+        view = View(driver.solved, dict(self.values), self.scene.theory == "shear")
+        units = self.system.mechanism.units
+        return StationAnswer(
+            stage=stage.name,
+            value=station,
+            values=probe_values(view, stage.name),
+            shapes=_shapes(view),
+            touching={},
+            certificate=certificate,
+            branch=len(self.critical),
+            beams={beam: beam_state(view, beam) for beam in self.scene.beams},
+            forces=PointForces.collected(
+                point_forces(view), units.length, units.force, (float(units.origin[0]), float(units.origin[1]))
+            ),
+            bodies=_motions(view),
+        )
+
+
+def _shapes(view: View) -> Mapping[str, Shape]:
+    """Deformed neutral lines, m."""
+    units, found = view.mechanism.units, {}
+    for beam, chain in view.mechanism.chains.items():
+        s = np.interp(np.arange(LINE_POINTS * chain.links + 1) / LINE_POINTS, np.arange(chain.links + 1), chain.arcs)
+        places = view.line(beam, s) * units.length + units.origin
+        found[beam] = Shape(frozen_array(s * units.length), frozen_array(places[:, 0]), frozen_array(places[:, 1]))
+    return found
+
+
+def _motions(view: View) -> Mapping[str, Array]:
+    """Displacement of the first point, m, and rotation of every moving body, (3,)."""
+    return {
+        name: frozen_array(
+            (
+                *displacement(view, next(iter(view.scene.bodies[name].points))),
+                view.mechanism.rotation(name).value(view.z),
+            )
+        )
+        for name in view.mechanism.bodies
+    }

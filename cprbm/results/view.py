@@ -1,0 +1,80 @@
+"""A solved state as its results read it: unknowns with the forces of all rows, and the beams in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from cprbm.chain import BeamChain, Mechanism
+from cprbm.continuation.path import potential
+from cprbm.equilibrium.newton import Solved
+from cprbm.equilibrium.sharing import shared_multipliers
+from cprbm_scene import Scene
+from cprbm_scene.answer import Array
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A solved state; ``theory`` is that of the links, ``loads`` the values (SI) of all loads."""
+
+    solved: Solved
+    loads: dict[str, float]
+    shearing: bool
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """Numbering and rows."""
+        return self.solved.system.mechanism
+
+    @property
+    def scene(self) -> Scene:
+        """The problem statement."""
+        return self.mechanism.scene
+
+    @cached_property
+    def z(self) -> Array:
+        """Unknowns, with the forces of rows that repeat others."""
+        return shared_multipliers(self.solved)
+
+    @cached_property
+    def numbers(self) -> dict[str, int]:
+        """Numbers of the rows by name."""
+        return {row.name: number for number, row in enumerate(self.mechanism.rows)}
+
+    def chain(self, beam: str) -> BeamChain:
+        """Chain of a beam."""
+        return self.mechanism.chains[beam]
+
+    def nodes(self, beam: str) -> Array:
+        """Positions (N + 2, 2) of a beam's nodes, in units."""
+        index = self.mechanism.beam_nodes(beam)
+        return np.column_stack([self.z[index], self.z[index + 1]])
+
+    def line(self, beam: str, s: Array) -> Array:
+        """Positions (k, 2) of the neutral line at arc lengths ``s``, in units."""
+        return self.chain(beam).line.place(self.nodes(beam), s)
+
+    def angles(self, beam: str, s: Array) -> Array:
+        """Angles of the sections (k,) at arc lengths ``s``."""
+        chain = self.chain(beam)
+        links, weights = chain.angle_weights(s)
+        turned = self.z[self.mechanism.beam_angles(beam)] - chain.link_angle
+        return np.asarray(chain.rest_angle(s) + (weights * turned[links]).sum(axis=1))
+
+    def multiplier(self, row: str) -> float:
+        """μ of a row; zero for a row that does not exist."""
+        number = self.numbers.get(row)
+        return 0.0 if number is None else float(self.z[self.solved.system.rows.first + number])
+
+    def place(self, point: str) -> Array:
+        """Position (2,) of a named point, in units."""
+        return np.array(
+            [self.mechanism.point(point, direction).value(self.z) for direction in ((1.0, 0.0), (0.0, 1.0))]
+        )
+
+    @cached_property
+    def potential_energy(self) -> float:
+        """Potential energy, J."""
+        return potential(self.solved.system, self.solved.state) * self.mechanism.units.moment
