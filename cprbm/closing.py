@@ -2,8 +2,8 @@
 
 ==========  ==================================================================================
 v           value of the stepped load or drive
-c(v)        largest constraint value of the contact, :mod:`cprbm.first_contact`, in the equilibrium without it, the others
-            in force: negative while it is open
+c(v)        largest constraint value of the contact, :mod:`cprbm.first_contact`, in the equilibrium without the
+            contact, the others in force: negative while the contact is open
 v_c         its first zero
 ==========  ==================================================================================
 
