@@ -1,0 +1,59 @@
+"""Contact of curves: geometry, gaps with derivatives, places, pairs of a scene.
+
+The equilibrium of the second edition does not use the package yet; the tests in ``tests/cprbm/contact`` do.
+
+* :mod:`cprbm.contact.curve`: pieces that are linear in the positions of nodes;
+* :mod:`cprbm.contact.compliance`: what a chain lacks under a point force;
+* :mod:`cprbm.contact.closest`: points, closest points, boxes; :mod:`cprbm.contact.gap`: the gap with its derivatives;
+* :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
+* :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.own_pin`, :mod:`cprbm.contact.candidates`: contacts of a scene.
+"""
+
+from cprbm.contact.candidates import (
+    Geometry,
+    contact_geometry,
+    fixed_places,
+    joined,
+    may_move,
+    sides_at_rest,
+    taken,
+)
+from cprbm.contact.curve import STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
+from cprbm.contact.gap import COUPLING, GRADIENT, LOCAL, SHIFT, TANGENT, TURN, Places, Row, gap_row, local_indices
+from cprbm.contact.pairs import Pair
+from cprbm.contact.settling import BOX_TESTS, GAPS, SEARCHES, find_feet, move_places, near_pairs, new_counters, settle
+
+__all__ = [
+    "BOX_TESTS",
+    "COUPLING",
+    "GAPS",
+    "GRADIENT",
+    "LOCAL",
+    "SEARCHES",
+    "SHIFT",
+    "STENCIL",
+    "TANGENT",
+    "TURN",
+    "Curve",
+    "CurveArrays",
+    "Frames",
+    "Geometry",
+    "Pair",
+    "Places",
+    "Row",
+    "beam_curve",
+    "contact_geometry",
+    "curve_arrays",
+    "find_feet",
+    "fixed_places",
+    "gap_row",
+    "joined",
+    "local_indices",
+    "may_move",
+    "move_places",
+    "near_pairs",
+    "new_counters",
+    "settle",
+    "sides_at_rest",
+    "taken",
+]
