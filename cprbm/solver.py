@@ -1,4 +1,8 @@
-"""From a scene to an answer."""
+"""From a scene to an answer.
+
+A scene without contacts is answered by the second edition (:mod:`cprbm.results.stations`), in every theory.  A scene
+with contacts is answered by the first edition (:mod:`cprbm.march`), in bending.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +11,7 @@ from dataclasses import dataclass
 
 from cprbm.march import March
 from cprbm.refining import coarser
+from cprbm.results.stations import Run
 from cprbm.settings import Settings
 from cprbm_scene import Answer, Ending, Scene
 from cprbm_scene.contact_states import openings
@@ -51,7 +56,7 @@ class Prepared:
         )
 
 
-def prepared(scene: Scene, settings: Settings | None = None) -> Prepared:
+def prepared(scene: Scene, settings: Settings | None = None) -> Prepared | Run:
     """Make a scene ready without solving anything: the set-up of an answer, for those who time it by itself.
 
     Args:
@@ -59,13 +64,16 @@ def prepared(scene: Scene, settings: Settings | None = None) -> Prepared:
         settings: as of :func:`answer`.
 
     Returns:
-        The march at the stress-free state; its ``answer`` goes the way once.
+        The mechanism at the stress-free state; its ``answer`` solves the scene once.
 
     Raises:
         SceneError: the settings do not fit the scene.
     """
     began = time.perf_counter()
     settings = settings or Settings()
+    settings.check(scene)
+    if not scene.contacts:
+        return Run(scene, settings)
     march = March(scene, coarser(settings))
     return Prepared(scene, settings, march, time.perf_counter() - began)
 

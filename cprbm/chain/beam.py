@@ -103,6 +103,7 @@ class BeamChain:
         growth: links' lengths that grow with a joint's turn, before and behind it (N, 2); zero for the plain chain.
         end_angles: angles of the neutral line's tangent at rest at start and end.
         line: the neutral line by the nodes.
+        knots: arc lengths between which sizes are linear.
         corrected: whether the chain has the corrections of fourth order.
     """
 
@@ -123,6 +124,7 @@ class BeamChain:
     growth: Array
     end_angles: tuple[float, float]
     line: NeutralLine
+    knots: Array
     corrected: bool
 
     @property
@@ -152,6 +154,10 @@ class BeamChain:
                 if i != j:
                     weights[:, i] *= (s - at[:, j]) / (at[:, i] - at[:, j])
         return columns, weights
+
+    def flexibility(self, borders: Array, weight: Callable[[Array], Array]) -> Array:
+        """Integrals (k,) of weight(s)/EI between ``borders`` (k + 1,)."""
+        return _integrals(lambda s: weight(s) / self.section.rigidity(s), borders, self.knots)
 
     def leaving_angle(self, end: Literal["start", "end"]) -> float:
         """Angle at rest at which the neutral line leaves one of its ends."""
@@ -198,26 +204,23 @@ def beam_chain(
         growth=np.zeros((links, 2)),
         end_angles=(float(angles[0]), float(angles[-1])),
         line=polygon_line(arcs),
+        knots=knots,
         corrected=False,
     )
-    return _corrected(plain, knots) if corrected else _with_chords(plain, plain.nodes)
+    return _corrected(plain) if corrected else _with_chords(plain, plain.nodes)
 
 
-def _corrected(chain: BeamChain, knots: Array) -> BeamChain:
+def _corrected(chain: BeamChain) -> BeamChain:
     """The chain with the corrections of fourth order."""
     line = spline_line(chain.arcs)
     chain = _with_chords(chain, nodes_through(chain.nodes, line.control))
     h, L = chain.borders[1] - chain.borders[0], chain.link_length
-
-    def flexibility(s: Array) -> Array:
-        return np.asarray(1.0 / chain.section.rigidity(s))
-
-    lean = h**2 / 12.0 * _integrals(flexibility, chain.arcs, knots) / np.diff(chain.arcs)
+    lean = h**2 / 12.0 * chain.flexibility(chain.arcs, np.ones_like) / np.diff(chain.arcs)
     half_lean = np.zeros(len(lean))
     half_lean[[0, -1]] = (lean * L)[[0, -1]]
     lean[[0, -1]] = 0.0
     middles = chain.arcs[1:-1]
-    first = _integrals(lambda s: s * flexibility(s), chain.borders, knots)
+    first = chain.flexibility(chain.borders, lambda s: s)
     # half of an inner link belongs to either joint beside it, an end link to its only joint
     share = np.ones(len(L))
     share[1:-1] = 0.5

@@ -46,9 +46,13 @@ def load_row(m: Mechanism, name: str, load: Load) -> Row:
             softness = _moment_softness(chain, at, links, weights)
             return Row(name, form, driven=False, unit=per_moment, softness=softness)
         case BeamForce():
-            chain = m.chains[load.beam]
-            weights = chain.line.weights(np.array([load.at * chain.length]))
-            return Row(name, _displaced(m, load.beam, weights, load.direction), driven=False, unit=per_force)
+            chain, at = m.chains[load.beam], load.at * m.chains[load.beam].length
+            weights, size = chain.line.weights(np.array([at])), hypot(*load.direction)
+            link = int(np.clip(np.searchsorted(chain.arcs, at) - 1, 0, chain.links - 1))
+            across = (int(m.beam_angles(load.beam)[link]), load.direction[0] / size, load.direction[1] / size)
+            form = _displaced(m, load.beam, weights, load.direction)
+            softness = _force_softness(chain, at, weights)
+            return Row(name, form, driven=False, unit=per_force, softness=softness, across=across)
         case _:
             chain = m.chains[load.beam]
             weights = integrated_weights(chain, load.along[0] * chain.length, load.along[1] * chain.length)
@@ -90,3 +94,20 @@ def _moment_softness(chain: BeamChain, at: float, links: Ints, weights: Array) -
     behind = np.cumsum(np.bincount(links, weights, minlength=chain.links)[::-1])[::-1][1:]
     share = np.clip((at - chain.borders[:-1]) / np.diff(chain.borders), 0.0, 1.0)
     return float((share - behind**2) @ (1.0 / chain.stiffness))
+
+
+def _force_softness(chain: BeamChain, at: float, weights: csr_matrix) -> float:
+    """Displacement across a straight beam at ``at`` under a unit force there, less the one that the chain shows.
+
+    A cantilever has the moment (at − s) before the place, ∫ M² ds/EI.  The chain has the moments of the weights about
+    the joints, and their sums as shear forces of the links.
+    """
+    arcs, joints = chain.arcs, chain.arcs[1:-1]
+    nodal = np.zeros(len(arcs))
+    nodal[weights.indices] = weights.data
+    shear = np.cumsum(nodal[::-1])[::-1][1:]
+    moments = np.cumsum((nodal * arcs)[::-1])[::-1][2:] - joints * shear[1:]
+    shown = moments @ (moments / chain.stiffness - chain.skew * (shear[:-1] + shear[1:]))
+    shown += float((chain.lean * chain.link_length + chain.half_lean) @ shear**2)
+    places = np.union1d(chain.borders[chain.borders < at], at)
+    return float(chain.flexibility(places, lambda s: (at - s) ** 2).sum() - shown)

@@ -44,6 +44,7 @@ class Row:
         limit: whether the row is a stop: f ≥ 0, and the force only pushes.
         unit: f per unit (SI) of the load or drive that steps the row; of a load, μ per unit, with the sign of μ.
         softness: change of f by a unit of its own force that the chain does not show; the energy is −softness μ²/2.
+        across: index of the angle and direction (2,) of a force on a beam, whose softness acts across the link alone.
     """
 
     name: str
@@ -52,6 +53,7 @@ class Row:
     limit: bool = False
     unit: float = 0.0
     softness: float = 0.0
+    across: tuple[int, float, float] | None = None
 
 
 @dataclass(eq=False)

@@ -4,7 +4,7 @@
 symbol   meaning
 =======  ====================================================================================
 P_j      node j of the chain: the beam's start, the joints, the beam's end
-D²P      second difference of the nodes, continued with its end values beyond both ends
+D²P      second difference of the nodes, continued beyond both ends so that C ends at the outer nodes
 Q        control polygon P − D²P/24
 C(s)     neutral line: the uniform cubic B-spline with the control polygon Q
 =======  ====================================================================================
@@ -110,7 +110,7 @@ def control_polygon(count: int) -> csr_matrix:
     inner[-1, -1], inner[-1, -2] = 2.0, -1.0
     polygon = inner.tocsr()
     second = polygon[2:] - 2.0 * polygon[1:-1] + polygon[:-2]
-    bends = vstack([second[:1], second[:1], second, second[-1:], second[-1:]])
+    bends = vstack([2.0 * second[:1] - second[1:2], second[:1], second, second[-1:], 2.0 * second[-1:] - second[-2:-1]])
     before = 2.0 * polygon[:1] - polygon[1:2] + second[:1]
     behind = 2.0 * polygon[-1:] - polygon[-2:-1] + second[-1:]
     return (vstack([before, polygon, behind]) - bends / 24.0).tocsr()

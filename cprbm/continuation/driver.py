@@ -29,9 +29,11 @@ from cprbm.continuation.critical import CriticalPoint, critical_point, opened_st
 from cprbm.continuation.descent import descend
 from cprbm.continuation.jumps import jumped
 from cprbm.continuation.limits import changed, first_event
+from cprbm.continuation.locking import ASKED, elongation, locked_beam, taut_value
 from cprbm.continuation.path import Reached, Way, turned, under
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.newton import NotConvergedError, Solved, equilibrium
+from cprbm.equilibrium.stability import softest
 from cprbm.equilibrium.system import State, System
 from cprbm.settings import Settings
 from cprbm_scene import Ending, Loss
@@ -146,7 +148,7 @@ class Driver:
         turn = turned(self.solved, solved)
         if turn > largest:
             return StepError(Ending.STEP_TOO_SMALL, f"a link turned by {turn:.2f} rad in one load step")
-        certificate, ending = certify(solved, self.settings.tolerance, 0, with_curvature=False)
+        certificate, ending = certify(solved, self.settings.tolerance, 0, self.acting, with_curvature=False)
         if ending is not Ending.COMPLETED:
             return StepError(ending, certificate.failures[0])
         if jumped(self.solved, solved, (at - begin) * self._moving(way)):
@@ -195,8 +197,33 @@ class Driver:
         """
         point = critical_point(trail, t, self._moving(way))
         if point is None:
-            raise refused
+            point = self._locked(way, t, trail, refused)
         return self._leave(way, point, point.last, beyond)
+
+    def _locked(self, way: Way, t: float, trail: list[Reached], refused: StepError) -> CriticalPoint:
+        """The bifurcation of a straight beam that must become shorter.
+
+        Raises:
+            StepError: something else keeps the step from being made.
+        """
+        if self.system.lengthening:
+            raise refused
+        solved, beam = self.solved, locked_beam(self.solved)
+        limit = taut_value(trail, way, t)
+        if limit is not None:
+            where = f"forces grow without limit as {way.name} comes to {limit:.6g}"
+            raise StepError(Ending.STEP_TOO_SMALL, f"{where}, where beams would have to become longer")
+        if not beam:
+            raise refused
+        longer = elongation(solved, self._moving(way))
+        if abs(longer) < ASKED:
+            held = f"beam '{beam}' is straight between ends that are held"
+            raise StepError(Ending.STEP_TOO_SMALL, f"{held}, and cannot give way from there by bending")
+        if longer > 0.0:
+            straight = f"beam '{beam}' is straight between its ends, and cannot become longer by bending"
+            raise StepError(Ending.STEP_TOO_SMALL, straight)
+        mode = softest(solved.factors)
+        return CriticalPoint(self.reached, 0.0, Loss.BIFURCATION, "", solved, mode, mode.curvature)
 
     def _leave(self, way: Way, point: CriticalPoint, start: Solved, beyond: Beyond) -> list[Reached]:
         """Go down from a critical point to a minimum, if the stage goes on; the trail from there on.
@@ -233,6 +260,6 @@ class Driver:
         except NotConvergedError:
             return None
         self.spent += landed.iterations
-        _, ending = certify(landed, self.settings.tolerance, 0, with_curvature=False)
+        _, ending = certify(landed, self.settings.tolerance, 0, self.acting, with_curvature=False)
         far = beside and turned(point.last, landed) > BESIDE
         return landed if ending is Ending.COMPLETED and not far else None

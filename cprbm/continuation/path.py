@@ -19,7 +19,7 @@ import numpy as np
 
 from cprbm.chain import add_row_gradient, row_values, strain_energy
 from cprbm.equilibrium.newton import Solved
-from cprbm.equilibrium.system import State, System
+from cprbm.equilibrium.system import State, System, softness_of
 from cprbm_scene.answer import Array
 
 
@@ -57,7 +57,7 @@ class Reached:
 def potential(system: System, state: State) -> float:
     """Π in units of moment."""
     mu = np.where(state.driven | state.repeated, 0.0, state.multipliers(system))
-    acting = mu @ row_values(state.z, system.rows) - 0.5 * (system.softness @ mu**2)
+    acting = mu @ row_values(state.z, system.rows) - 0.5 * (softness_of(system, state.z) @ mu**2)
     return float(strain_energy(state.z, system.links, system.joints) + acting)
 
 
@@ -75,7 +75,7 @@ def tangent(solved: Solved, change: Array) -> Array:
 def power(solved: Solved, change: Array) -> float:
     """Π′."""
     mu = solved.state.multipliers(solved.system)
-    of_row = np.where(solved.state.driven, -mu, solved.values - solved.system.softness * mu)
+    of_row = np.where(solved.state.driven, -mu, solved.values - softness_of(solved.system, solved.state.z) * mu)
     return float(of_row @ change)
 
 
@@ -85,7 +85,9 @@ def power_rate(solved: Solved, change: Array, rate: Array) -> float:
     slope = np.zeros(system.size)
     add_row_gradient(state.z, system.rows, np.where(state.driven, 0.0, change), slope)
     forced = np.where(state.driven, 0.0, change)
-    return float(slope @ rate - (change - forced) @ rate[system.rows.first :] - system.softness @ forced**2)
+    return float(
+        slope @ rate - (change - forced) @ rate[system.rows.first :] - softness_of(system, state.z) @ forced**2
+    )
 
 
 def turned(before: Solved, after: Solved) -> float:

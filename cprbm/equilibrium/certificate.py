@@ -23,12 +23,15 @@ from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.stability import softest
 from cprbm.equilibrium.system import System
 from cprbm_scene import Certificate, Ending
-from cprbm_scene.answer import Array
+from cprbm_scene.answer import Array, Flags
 
 EPSILON = float(np.finfo(float).eps)
 
 LARGEST_BEND = 1.0
 """Turn of one joint, rad, beyond which a chord no longer stands for its element."""
+
+LARGEST_STRAIN = 0.25
+"""Largest β |N|, h² |N|/12EI: beyond 1 the correction of a link loses its stability; h is 1.7 times √(EI/N) here."""
 
 BALANCE = 1e-8
 """Largest resultant over the largest force: supports and loads balance to far less."""
@@ -52,7 +55,7 @@ class Balance:
 
 
 def certify(
-    solved: Solved, tolerance: float, iterations: int, *, with_curvature: bool = True
+    solved: Solved, tolerance: float, iterations: int, acting: Flags, *, with_curvature: bool = True
 ) -> tuple[Certificate, Ending]:
     """Certificate of an equilibrium, and COMPLETED or the Ending of its first failure.
 
@@ -60,6 +63,7 @@ def certify(
         solved: the state.
         tolerance: largest residual and violation; round-off may set a higher floor.
         iterations: Newton iterations spent on it.
+        acting: which stops act.
         with_curvature: whether the smallest curvature is computed; inertia alone tells whether the state is a minimum.
     """
     system, state = solved.system, solved.state
@@ -70,8 +74,9 @@ def certify(
     force_rows, equations = _parts(system)
     residual = float(np.abs(solved.gradient[force_rows]).max()) / scale
     violation = float(np.abs(solved.gradient[equations]).max())
-    complementarity = _complementarity(solved) / scale
+    complementarity = _complementarity(solved, acting) / scale
     balance = _balance(solved)
+    strain = float(np.abs(system.lean * _pull(solved)).max())
     bend = float(np.abs(_turns(solved)).max(initial=0.0))
     curvature = softest(solved.factors).curvature if with_curvature else float("nan")
     balance_limit = max(BALANCE, 100.0 * floor)
@@ -84,6 +89,11 @@ def certify(
         ),
         (complementarity <= PULL, Ending.NOT_CERTIFIED, f"a stop pulls or is passed by {complementarity:.1e}"),
         (bend <= LARGEST_BEND, Ending.TURNED_TOO_FAR, _bent(bend)),
+        (
+            strain <= LARGEST_STRAIN,
+            Ending.TURNED_TOO_FAR,
+            f"a link stretches its own bend by {strain:.2f}: use more links",
+        ),
         (balance.force <= balance_limit, Ending.NOT_CERTIFIED, f"ΣF is {balance.force:.1e} of the largest force"),
         (balance.moment <= balance_limit, Ending.NOT_CERTIFIED, f"ΣM is {balance.moment:.1e} of the largest moment"),
         (
@@ -119,6 +129,13 @@ def _turns(solved: Solved) -> Array:
     return np.asarray(z[system.angles[system.joints.before + 1]] - z[before] - system.joints.rest)
 
 
+def _pull(solved: Solved) -> Array:
+    """Normal forces of all links."""
+    system, z = solved.system, solved.state.z
+    angles = z[system.angles]
+    return np.asarray(z[system.links.first + 2] * np.cos(angles) + z[system.links.first + 3] * np.sin(angles))
+
+
 def _largest_moment(solved: Solved) -> float:
     """Largest moment of a joint, of a link's force on the link, or of a row."""
     system, z = solved.system, solved.state.z
@@ -139,10 +156,10 @@ def _parts(system: System) -> tuple[Array, Array]:
     return np.setdiff1d(np.arange(system.size), equations), equations
 
 
-def _complementarity(solved: Solved) -> float:
+def _complementarity(solved: Solved, acting: Flags) -> float:
     """Largest moment by which a stop pulls, or turn by which a stop within its limits is passed."""
     system, state = solved.system, solved.state
-    pulls = np.where(state.driven, state.multipliers(system), -solved.values)[system.limits]
+    pulls = np.where(state.driven, state.multipliers(system), -solved.values)[system.limits & acting]
     return float(np.max(pulls, initial=0.0))
 
 

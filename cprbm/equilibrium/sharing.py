@@ -14,21 +14,24 @@ from cprbm.equilibrium.newton import Solved
 from cprbm_scene.answer import Array
 
 
+def balanced_forces(solved: Solved, row: int) -> Array:
+    """Changes (size,) of all unknowns that balance a unit force of a repeated row; only forces do not vanish."""
+    system = solved.system
+    load, weight = np.zeros(system.size), np.zeros(len(system.rows.constant))
+    weight[row] = 1.0
+    add_row_gradient(solved.state.z, system.rows, weight, load)
+    balanced = -solved.factors.solve(load)
+    balanced[system.rows.first + row] = 1.0
+    return balanced
+
+
 def shared_multipliers(solved: Solved) -> Array:
     """Unknowns (size,) of a solved state whose repeated rows take their share."""
-    system, state = solved.system, solved.state
-    z, rows = state.z.copy(), np.flatnonzero(state.repeated)
+    system, z = solved.system, solved.state.z.copy()
+    rows = np.flatnonzero(solved.state.repeated)
     if not len(rows):
         return z
-    balanced = []
-    for r in rows:
-        load, weight = np.zeros(system.size), np.zeros(len(system.rows.constant))
-        weight[r] = 1.0
-        add_row_gradient(z, system.rows, weight, load)
-        reaction = -solved.factors.solve(load)
-        reaction[system.rows.first + r] = 1.0
-        balanced.append(reaction)
-    motions = np.array(balanced)
+    motions = np.array([balanced_forces(solved, int(row)) for row in rows])
     indices = system.links.first[:, None] + [2, 3]
     direction = np.column_stack([np.cos(z[system.angles]), np.sin(z[system.angles])])
     weight = np.sqrt(system.links.length)

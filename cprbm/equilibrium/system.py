@@ -27,7 +27,8 @@ class System:
         angles, nodes: indices of all links' angles, and of the x and y of all nodes.
         metric: lengths of the links, the weights of their angles in a mode.
         limits: which rows are stops.
-        softness: of the rows, which the chain does not show.
+        softness: of the rows, which the chain does not show; the angle and direction (rows, 2) of a force on a beam.
+        lean: shear compliance β of the links that stands for their odd moment.
         lengthening: whether links have an axial compliance.
     """
 
@@ -41,7 +42,8 @@ class System:
     nodes: Ints
     metric: Array
     limits: Flags
-    softness: Array
+    softness: tuple[Array, Ints, Array]
+    lean: Array
     lengthening: bool
 
     @property
@@ -81,9 +83,25 @@ def system_of(mechanism: Mechanism) -> System:
         nodes=np.stack([nodes, nodes + 1], axis=1),
         metric=links.length,
         limits=np.array([row.limit for row in mechanism.rows], dtype=bool),
-        softness=np.array([row.softness for row in mechanism.rows], dtype=float),
+        softness=_softness(mechanism),
+        lean=np.concatenate([chain.lean for chain in mechanism.chains.values()]),
         lengthening=bool(np.any(links.stretch)),
     )
+
+
+def softness_of(system: System, z: Array) -> Array:
+    """Softness of all rows at a state; that of a force on a beam by its part across the link."""
+    softness, angle, direction = system.softness
+    turn = z[np.maximum(angle, 0)]
+    across = direction[:, 1] * np.cos(turn) - direction[:, 0] * np.sin(turn)
+    return np.asarray(softness * np.where(angle < 0, 1.0, across**2))
+
+
+def _softness(m: Mechanism) -> tuple[Array, Ints, Array]:
+    across = [row.across or (-1, 0.0, 0.0) for row in m.rows]
+    softness = np.array([row.softness for row in m.rows], dtype=float)
+    direction = np.array([each[1:] for each in across], dtype=float).reshape(-1, 2)
+    return softness, np.array([each[0] for each in across], dtype=np.int64), direction
 
 
 def rest_state(system: System) -> State:

@@ -16,9 +16,12 @@ from cprbm_scene.answer import Array, frozen_array
 from cprbm_scene.statement import DisplacementDrive
 
 
-def probe_values(view: View) -> dict[str, Array]:
-    """Values by the probes' names, SI."""
-    return {probe.name: frozen_array(np.ravel(_value(view, probe))) for probe in view.scene.probes}
+def probe_values(view: View, stage: str) -> dict[str, Array]:
+    """Values by the probes' names, SI; empty for a probe that is not asked in the stage."""
+    return {
+        probe.name: frozen_array(np.ravel(_value(view, probe) if probe.asked_in(stage) else []))
+        for probe in view.scene.probes
+    }
 
 
 def displacement(view: View, point: str) -> Array:

@@ -9,12 +9,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cprbm.chain import Theory, add_rows, mechanism_of
+from cprbm.chain import add_rows, mechanism_of
 from cprbm.continuation.assembly import assembled
 from cprbm.continuation.driver import Driver, Passed, StepError
 from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
-from cprbm.equilibrium.system import system_of
+from cprbm.equilibrium.system import System, system_of
 from cprbm.results.forces import point_forces
 from cprbm.results.probes import displacement, probe_values
 from cprbm.results.statics import beam_state
@@ -31,13 +31,18 @@ LOGGER = logging.getLogger("cprbm.stations")
 LINE_POINTS = 2
 """Points of a shape per link."""
 
+PLAIN = (
+    "elements are longer than the bends that the forces in them allow: the values are those of the plain chain, "
+    "of second order in 1/N"
+)
+
 
 @dataclass(eq=False)
 class Run:
     """A scene with its mechanism, before and while it is solved.
 
     Attributes:
-        scene, settings, theory: the question.
+        scene, settings: the question.
         driver: at the first state once the run has begun.
         loads: present values (SI) of loads and drives.
         stations, critical, gone_over, notes: of the answer.
@@ -45,7 +50,6 @@ class Run:
 
     scene: Scene
     settings: Settings
-    theory: Theory
     driver: Driver | None = None
     values: dict[str, float] = field(default_factory=dict)
     stations: list[StationAnswer] = field(default_factory=list)
@@ -56,17 +60,26 @@ class Run:
 
     def __post_init__(self) -> None:
         began = time.perf_counter()
-        links = {beam: self.settings.links_of(beam) for beam in self.scene.beams}
-        mechanism = mechanism_of(self.scene, links, self.theory, corrected=self.settings.formulation == "auto")
-        add_rows(mechanism)
-        self.system = system_of(mechanism)
+        self.system = self._system(corrected=self.settings.formulation == "auto")
         self.seconds = time.perf_counter() - began
+
+    def _system(self, *, corrected: bool) -> System:
+        links = {beam: self.settings.links_of(beam) for beam in self.scene.beams}
+        mechanism = mechanism_of(self.scene, links, self.scene.theory, corrected=corrected)
+        add_rows(mechanism)
+        return system_of(mechanism)
 
     def answer(self) -> Answer:
         """Solve the scene."""
         began = time.perf_counter()
         with one_thread():
             ending, sentence = self._solve()
+            if ending is Ending.TURNED_TOO_FAR and self.settings.formulation == "auto":
+                # elements longer than the bends between them have no corrections
+                self.system = self._system(corrected=False)
+                self.stations, self.critical, self.gone_over, self.values = [], [], [], {}
+                self.notes = [PLAIN]
+                ending, sentence = self._solve()
         return Answer(
             solver="cprbm",
             scene=self.scene.name,
@@ -113,7 +126,7 @@ class Run:
         finally:
             self._note(stage, driver.passed)
         self.values[stage.steps] = station
-        certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent)
+        certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent, driver.acting)
         if ending is not Ending.COMPLETED:
             raise StepError(ending, certificate.failures[0])
         self.stations.append(self._station(driver, stage, station, certificate))
@@ -153,12 +166,12 @@ class Run:
 
     def _station(self, driver: Driver, stage: Stage, station: float, certificate: Certificate) -> StationAnswer:
         """Answer at a station."""
-        view = View(driver.solved, dict(self.values), self.theory == "shear")
+        view = View(driver.solved, dict(self.values), self.scene.theory == "shear")
         units = self.system.mechanism.units
         return StationAnswer(
             stage=stage.name,
             value=station,
-            values=probe_values(view),
+            values=probe_values(view, stage.name),
             shapes=_shapes(view),
             touching={},
             certificate=certificate,

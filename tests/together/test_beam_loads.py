@@ -102,11 +102,12 @@ def errors(solve, case, n, *, bowed=False):
 
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("bowed", [False, True])
-def test_the_cprbms_second_order(case, bowed):
-    found = np.array([errors(cprbm_answer, case, n, bowed=bowed) for n in (20, 40, 80, 160)])
-    assert np.log2(found[0] / found[-1])[:4] / 3.0 == pytest.approx(np.full(4, 2.0), abs=0.12)
-    assert np.log2(found[0] / found[-1])[4] / 3.0 > 1.85
-    assert np.all(found[-1] < 3e-4)
+def test_the_cprbms_fourth_order(case, bowed):
+    """Under a force at a place, whose error is uneven in their number, and of third order where it is largest."""
+    found = np.array([errors(cprbm_answer, case, n, bowed=bowed) for n in (20, 160)])
+    order = 3.5 if case in ("weight", "part") else 2.4
+    assert np.all(np.log2(found[0] / found[-1]) / 3.0 > order)
+    assert np.all(found[-1] < 4e-7)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -124,16 +125,12 @@ def test_the_finite_elements_fourth_order(case, bowed):
 def test_a_force_beside_the_clamp(at, load):
     """It bends a short span, whose energy is all there is."""
     data, true = acting([point(at, 0.0, load)]), loaded(forces=[(at, 0.0, load)])
-    for solve, counts, order in ((cprbm_answer, (20, 80), 2.0), (fea_answer, (20, 80), 4.0)):
-        gaps = []
-        for n in counts:
-            found = solve(scene_from(data), n).stations[-1].values
-            tip = found["T.displacement"] / LENGTH + [1.0, 0.0] - true.tip
-            energy = found["scene.potential_energy"][0] * LENGTH / RIGIDITY
-            gaps.append([abs(energy / true.energy - 1.0), hypot(*tip) / true.tip[1]])
-        assert np.all(np.array(gaps[-1]) < [1e-3, 1e-4])
-        if order == 2.0:
-            assert np.log2(np.array(gaps[0]) / gaps[-1]) / 2.0 == pytest.approx([order, order], abs=0.1)
+    for solve in (cprbm_answer, fea_answer):
+        found = solve(scene_from(data), 80).stations[-1].values
+        tip = found["T.displacement"] / LENGTH + [1.0, 0.0] - true.tip
+        energy = found["scene.potential_energy"][0] * LENGTH / RIGIDITY
+        assert energy == pytest.approx(true.energy, rel=1e-3)
+        assert hypot(*tip) < 1e-4 * true.tip[1]
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -1,0 +1,1 @@
+"""The chain's second edition: formulas, elimination, truths, rates."""
