@@ -2,9 +2,9 @@
 
 The equilibrium of the second edition does not use the package yet; the tests in ``tests/cprbm/contact`` do.
 
-* :mod:`cprbm.contact.curve`: pieces that are linear in the positions of nodes;
-* :mod:`cprbm.contact.compliance`: what a chain lacks under a point force;
-* :mod:`cprbm.contact.closest`: points, closest points, boxes; :mod:`cprbm.contact.gap`: the gap with its derivatives;
+* :mod:`cprbm.contact.curve`: pieces, linear in the positions of nodes;
+* :mod:`cprbm.contact.compliance`: compliance lost by a chain under a point force;
+* :mod:`cprbm.contact.closest`: points, closest points, boxes; :mod:`cprbm.contact.gap`: gap and derivatives;
 * :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
 * :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.own_pin`, :mod:`cprbm.contact.candidates`: contacts of a scene.
 """

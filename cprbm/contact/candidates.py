@@ -1,14 +1,14 @@
-"""Places at which the curves of a pair are kept apart.
+"""Places of contact: joints, ends, and the rules for their use.
 
-Fixed places are the joints and ends of the first curve, and the ends of the second if that is a beam.
+Fixed places are the joints and ends of the first curve, and the ends of a second beam.
 
-* An end of a beam that moves with the body of its foot is no place: a joint holds the end there.
-* The first joint behind a weld on the body of its foot has the force of the second joint.  The share of clamp and
-  contact is not unique there; one row for the sum of both gaps keeps the pressure even.
-* A place may move everywhere but in an end link whose end moves with the body of the foot.
+* An end of a beam is no place on the body to which a joint holds the end.
+* The first joint behind a weld on the body of the foot has the force of the second joint.  The share of clamp and
+  contact is not unique there; a row for the sum of both gaps keeps the pressure even.
+* A place may move everywhere but in an end link held by the body of the foot.
 
-The side of two beams is where they are nearest as drawn.  A beam that touches itself has places only before their feet,
-so that no gap counts twice.
+The side of two beams is the side at the least distance as drawn.  In self-contact a place lies before the foot, so
+that no gap counts twice.
 """
 
 from __future__ import annotations
@@ -82,12 +82,12 @@ def taken(places: Places, which: Flags | Ints) -> Places:
 
 
 def joined(places: Places, others: Places) -> Places:
-    """Places and others behind them."""
+    """Both groups of places, in this order."""
     return Places._make(np.concatenate(columns) for columns in zip(places, others, strict=True))
 
 
 def fixed_places(geometry: Geometry, z: Array, sides: Array, near: Flags, counters: Ints) -> Places:
-    """Fixed places of the pairs that are ``near`` (pairs,), at their nearest feet.
+    """Fixed places of the pairs marked ``near`` (pairs,), at the nearest feet.
 
     Args:
         geometry: of the mechanism.
@@ -114,7 +114,7 @@ def fixed_places(geometry: Geometry, z: Array, sides: Array, near: Flags, counte
 
 
 def may_move(geometry: Geometry, places: Places) -> Flags:
-    """Whether every place, at its foot, may move along its curve."""
+    """Whether the places may move along their curves."""
     arrays = geometry.arrays
     first, last = arrays.first[places.curve], arrays.last[places.curve]
     start, end = _on_end_bodies(geometry, places)
@@ -123,9 +123,9 @@ def may_move(geometry: Geometry, places: Places) -> Flags:
 
 
 def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:
-    """Sides (pairs, 2) of a state as drawn: of rigid curves by the scene, of two beams where these are nearest.
+    """Sides (pairs, 2) of a state as drawn: of rigid curves by the scene, of two beams at the least distance.
 
-    Of two beams that run the same way one lies left, the other right; of beams against each other both lie alike.
+    Parallel beams lie left and right of each other, antiparallel beams both left or both right.
     """
     sides = np.array([(pair.side, pair.side) for pair in geometry.pairs], dtype=float)
     unknown = np.array([pair.side == 0 and not pair.itself for pair in geometry.pairs])

@@ -14,7 +14,7 @@ The closest point minimises R − T(η): Newton's method on
     R (R − T)' = (C − x)·C' − R T',    R (R − T)'' ≈ |C'|² + (C − x)·C'' − R T''.
 
 A step crosses the borders of pieces.  The search rests at the ends of an open curve, and at a convex corner of a
-polyline, where the steps of both pieces lead to the corner; there the closest point does not move along the curve.
+polyline.  There the steps of both pieces lead to the corner, and the closest point does not move along the curve.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Curves that can touch, as pieces that are linear in the positions of nodes.
+"""Curves for contact, as pieces linear in the positions of nodes.
 
 =========  =====================================================================================
 symbol     meaning
@@ -10,11 +10,11 @@ C(ξ)       position on the piece, Σ w_i(ξ) P_i
 T          half thickness, linear along a piece
 =========  =====================================================================================
 
-Complex weights add up to 1, so that C follows rigid motions exactly; C has no second derivative by the nodes.
+Complex weights add up to 1, and C follows rigid motions exactly; C has no second derivative by the nodes.
 
 1. A beam's curve is the neutral line of its chain, :mod:`cprbm.chain.spline`: real weights of at most six nodes,
-   continuous second derivative.  At rest the chain's nodes are those whose spline meets the rest line at the joints.
-2. A rigid curve moves with two nodes A and B of its body.  With w constant in time, P = A + w (B − A): the weights of a
+   continuous second derivative.  At rest the spline meets the rest line at the joints.
+2. A rigid curve moves with two nodes A and B of a body.  With w constant in time, P = A + w (B − A): the weights of a
    curve with positions p(ξ) at rest are 1 − w and w, w = (p − A)/(B − A).  A circle is a point with half thickness, a
    polyline has straight pieces, a smooth edge has the pieces of a cubic spline.
 """
@@ -47,7 +47,7 @@ CLOSED = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """One curve, by pieces; lengths are in the mechanism's units.
+    """A curve, by pieces; lengths are in the mechanism's units.
 
     Attributes:
         name: of the beam or the contact.
@@ -88,7 +88,7 @@ class CurveArrays(NamedTuple):
 
     ``first``, ``last`` (curves,) are the first and the last piece of a curve.  Per piece: ``stencil``; ``real``,
     ``imaginary`` parts of the weights; ``arc`` at the begin and arc length ``span``; ``thickness`` at the begin and
-    its change ``thickening``; ``lost`` compliance; ``angle``.
+    the change ``thickening``; ``lost`` compliance; ``angle``.
     """
 
     first: Ints
@@ -107,7 +107,7 @@ class CurveArrays(NamedTuple):
 
 
 def curve_arrays(curves: Sequence[Curve]) -> CurveArrays:
-    """Arrays of at least one curve, in the order of the curves."""
+    """Arrays of all curves, in the order of the curves."""
     count = np.array([curve.pieces for curve in curves], dtype=np.int64)
     weights = np.concatenate([curve.weights for curve in curves])
     return CurveArrays(
@@ -170,7 +170,7 @@ def _line_weights(chain: BeamChain) -> tuple[Ints, Array]:
 
 
 def _lost(m: Mechanism, chain: BeamChain) -> Array:
-    """Lost compliance of a beam's pieces; none for the plain chain, whose polygon spreads no force."""
+    """Lost compliance of a beam's pieces; none for the plain chain: a polygon spreads no force."""
     inner, held, free = lost_compliance()
     lost = np.tile(inner, (chain.links, 1))
     if not chain.corrected:
@@ -186,7 +186,7 @@ def _lost(m: Mechanism, chain: BeamChain) -> Array:
 
 @dataclass(eq=False)
 class Frames:
-    """Pairs of nodes, one unit apart, with which a body's rigid curves move; made at first use."""
+    """Pairs of nodes of bodies, a unit apart, that carry rigid curves; made at first use."""
 
     mechanism: Mechanism
     nodes: dict[str, tuple[int, int]] = field(default_factory=dict)
@@ -234,7 +234,7 @@ class Frames:
         )
 
     def smooth_edge(self, name: str, body: str, points: Array, tangents: Array, length: float) -> Curve:
-        """Cubic spline through ``points`` (k, 2) that are even by arc length, with the unit ``tangents`` at its ends.
+        """Cubic spline through ``points`` (k, 2), even by arc length, with unit ``tangents`` at both ends.
 
         Args:
             name, body: of the curve.

@@ -1,4 +1,4 @@
-"""The gap between two curves with its derivatives, compiled.
+"""The gap between two curves and the derivatives, compiled.
 
 =========  =====================================================================================
 symbol     meaning
@@ -9,20 +9,20 @@ c_A, c_B   lost compliance of a point force, :mod:`cprbm.contact.compliance`; ze
 T_A, T_B   half thickness, less F c/2 of a point force
 σ          side of B on which A lies, seen along B: +1 left, −1 right
 t, n       unit tangent of B, its left normal
-N, t̂       σ n and t, turned by the angle whose sine is T_B'/|C_B'|: N·C_B' = −T_B'
+N, t̂       σ n and t, turned by arcsin(T_B'/|C_B'|): N·C_B' = −T_B'
 r, R       C_A − C_B, and N·r
 λ          gap plus F (c_A + c_B)/2: R − T_A − T_B
 K, τ       N·C_B'', t̂·C_B'
 D          τ² − R (K + T_B'')
 =========  =====================================================================================
 
-**Energy.**  A place adds −F λ(u, ξ, η, F) to the Lagrangian, u the positions of the nodes.  By F it is −(g + F c), with
-the gap g and c = c_A + c_B: the curves sink into each other by the compliance that the chain lacks.  A point force
-changes the half thickness by −F c/2, so that the place and the foot, stationary points of λ, follow c as they
-follow the thickness of a tapered beam: both are variational.
+**Energy.**  A place adds −F λ(u, ξ, η, F) to the Lagrangian, u the positions of the nodes.  The derivative by F is
+−(g + F c), with the gap g and c = c_A + c_B: the curves overlap by the lost compliance.  A point force changes the half
+thickness by −F c/2.  Place and foot are stationary points of λ and follow c like the thickness of a tapered beam: both
+are variational.
 
-**Foot.**  λ as a distance, |r| − T_A − T_B with r = R N at the foot, has by η and by changes of the nodes, which make
-q = t̂·(dC_A − dC_B) and e = N·dC_B',
+**Foot.**  λ as a distance, |r| − T_A − T_B with r = R N at the foot, has the derivatives by η and by the nodes, with
+q = t̂·(dC_A − dC_B) and e = N·dC_B':
 
     λ_η = −N·C_B' − T_B' = 0,    λ_ηη = D/R,    λ_ηu = −(τ q/R + e),    λ_uu = q²/R,    λ_u = N·(dC_A − dC_B).
 
@@ -37,9 +37,9 @@ At an end of B, a convex corner and a circle the foot is a point: N = r/|r|, λ_
     λ_ξ  = N·C_A' − T_A',     λ_ξξ = s_qq q_ξ² + N·C_A'' − T_A'',    λ_ξF = (c_A' + c_B' η_ξ)/2,
     λ_ξu = N·dC_A' + q_ξ (s_qq q + s_qe e),
 
-s the coefficients of λ_uu.  A place that moves has λ_ξ = 0.  Newton's method eliminates its change by that equation:
-dξ = −(λ_ξ + λ_ξu + λ_ξF dF)/λ_ξξ.  What is left for the equilibrium is the :class:`Row` below and vectors over the
-nodes: λ_uu less λ_ξu²/λ_ξξ is a form of rank three in q, e and λ_ξu.
+s the coefficients of λ_uu.  A moving place has λ_ξ = 0.  Newton's method eliminates the change of the place:
+dξ = −(λ_ξ + λ_ξu + λ_ξF dF)/λ_ξξ.  The equilibrium takes the :class:`Row` below and vectors over the nodes; λ_uu
+less λ_ξu²/λ_ξξ is a form of rank three in q, e and λ_ξu.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ GRADIENT, COUPLING, TANGENT, TURN, SHIFT = range(5)
 
 
 class Places(NamedTuple):
-    """Places of contact, one entry for each.
+    """Places of contact; the entries are places.
 
     Attributes:
         pair: number of the pair of curves.
@@ -92,7 +92,7 @@ class Places(NamedTuple):
 
 
 class Frame(NamedTuple):
-    """Derivatives of λ at a place with its foot eliminated.
+    """Derivatives of λ at a place, the foot eliminated.
 
     ``value`` λ, ``gap`` g; N, t̂; coefficients ``qq``, ``qe``, ``ee`` of λ_uu; ``along`` q_ξ; ``slope`` λ_ξ,
     ``curvature`` λ_ξξ, ``slope_by_force`` λ_ξF; ``foot_q``, ``foot_e`` of dη; ``lost`` c, ``foot_lost`` c_B',
@@ -144,9 +144,9 @@ class Row(NamedTuple):
 
 @njit(cache=True)
 def gap_frame(z: Array, curves: CurveArrays, places: Places, k: int, weights: Array) -> Frame:  # pragma: no cover
-    """Derivatives at a place whose foot is found; ``weights`` (4, 2, STENCIL) keeps those of C_A, C_B, C_A', C_B'."""
+    """Derivatives at a place with known foot; ``weights`` (4, 2, STENCIL) keeps the weights of C_A, C_B, C_A', C_B'."""
     piece, xi, foot, eta, side = places.piece[k], places.xi[k], places.foot[k], places.eta[k], places.side[k]
-    # second derivatives first: their weights are not kept
+    # second derivatives first: the weights are not kept
     wx, wy = curve_point(z, curves, piece, xi, 2, weights[0])
     kx, ky = curve_point(z, curves, foot, eta, 2, weights[1])
     ax, ay = curve_point(z, curves, piece, xi, 0, weights[0])
@@ -194,7 +194,7 @@ def gap_frame(z: Array, curves: CurveArrays, places: Places, k: int, weights: Ar
 def _lost(
     curves: CurveArrays, places: Places, k: int
 ) -> tuple[float, float, float, float, float, float]:  # pragma: no cover
-    """c_A, c_A', c_A'' and c_B, c_B', c_B''; zeros for a place that does not move."""
+    """c_A, c_A', c_A'' and c_B, c_B', c_B''; zeros for a fixed place."""
     if not places.moves[k]:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     piece, xi, foot, eta = places.piece[k], places.xi[k], places.foot[k], places.eta[k]
@@ -221,7 +221,7 @@ def _add(out: Array, begin: int, weights: Array, vx: float, vy: float, factor: f
 def gap_row(
     z: Array, curves: CurveArrays, places: Places, k: int, vectors: Array, weights: Array
 ) -> Row:  # pragma: no cover
-    """Row of a place; writes its vectors (5, LOCAL). ``weights`` (4, 2, STENCIL) is scratch space."""
+    """Row of a place; writes vectors (5, LOCAL). ``weights`` (4, 2, STENCIL) is scratch space."""
     f = gap_frame(z, curves, places, k, weights)
     at_b, force = 2 * STENCIL, places.force[k]
     vectors[:] = 0.0

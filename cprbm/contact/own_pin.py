@@ -1,14 +1,14 @@
-"""Angle stops of beams that are pinned on the edge that they may touch.
+"""Angle stops of beams pinned on the edge of a contact.
 
 =======  ====================================================================================
 symbol   meaning
 =======  ====================================================================================
-β        opening: angle from an edge's direction at the pin to the direction in which the beam leaves the pin
+β        opening: angle from an edge's direction at the pin to the direction of the beam
 =======  ====================================================================================
 
 At the pin the beam has no gap.  The edge limits the angle of the beam and holds the beam by a moment, like a stop.
 With the edge's direction away from the pin and the beam on the left, β ≥ 0.  Where the edge runs on behind the pin, the
-angle from the beam to that part of the edge is limited in the same way.
+angle from the beam to the rest of the edge is limited in the same way.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ STRAIGHT = 1e-9
 
 
 def pin_rows(m: Mechanism, name: str, contact: EdgeContact, points: Array, side: int) -> Iterator[Row]:
-    """Rows that limit the angles at which a contact's beam leaves pins on the edge through ``points`` (k, 2)."""
+    """Rows of the angles between a contact's beam and the edge through ``points`` (k, 2), at pins on the edge."""
     chain, record = m.chains[contact.beam], m.scene.beams[contact.beam]
     ends: tuple[tuple[Literal["start", "end"], int], ...] = (("start", 0), ("end", -1))
     for end, link in ends:

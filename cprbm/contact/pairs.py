@@ -1,8 +1,8 @@
-"""Curves of a scene's contacts, and the pairs of curves that may touch.
+"""Curves of a scene's contacts, and pairs of curves.
 
-A place lies on the first curve of a pair, its foot on the second; the ends of the second curve, if that is a beam, are
-places on the second curve too.  A contact's beam lies on the side +1 (left) or −1 (right) of a rigid curve by the
-scene; the side of two beams is 0 here and follows from the state as drawn, :mod:`cprbm.contact.candidates`.
+A place lies on the first curve of a pair, the foot on the second; the ends of a second beam are places too.
+A beam lies on the side +1 (left) or −1 (right) of a rigid curve, as the scene says.  The side of two beams is 0 here; the
+state as drawn decides, :mod:`cprbm.contact.candidates`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ REACH = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Two curves of the contact ``name`` by number, and the ``side`` of the second on which the first lies."""
+    """Two curves of the contact ``name`` by number, and the ``side`` of the first over the second."""
 
     name: str
     first: int
@@ -38,14 +38,14 @@ class Pair:
 
     @property
     def itself(self) -> bool:
-        """True for a beam that touches itself."""
+        """True for self-contact."""
         return self.first == self.second
 
 
 def contact_pairs(m: Mechanism) -> tuple[list[Curve], list[Pair]]:
     """Curves and pairs of all contacts, in the order of the contacts.
 
-    Adds the nodes of rigid curves and the angle stops of beams that are pinned on their edge to the mechanism's rows.
+    Adds the nodes of rigid curves and the angle stops of beams pinned on an edge to the mechanism's rows.
     """
     curves: dict[str, Curve] = {}
     frames, pairs = Frames(m), []

@@ -1,6 +1,6 @@
 """Feet and moving places on a frozen state, compiled, with counters.
 
-A foot is the closest point near the last foot.  A place that moves makes λ stationary; its change under a change of the
+A foot is the closest point near the last foot.  A moving place makes λ stationary; the change with the
 unknowns follows from the linear equation of :mod:`cprbm.contact.gap`.
 """
 
@@ -36,7 +36,7 @@ def new_counters() -> Ints:
 
 @njit(cache=True)
 def near_pairs(z: Array, curves: CurveArrays, pairs: Ints, reach: Array, counters: Ints) -> Flags:  # pragma: no cover
-    """Whether the boxes of two curves (pairs, 2) are nearer than ``reach`` (pairs,); one test for each pair."""
+    """Whether the boxes of two curves (pairs, 2) are nearer than ``reach`` (pairs,); one test per pair."""
     boxes, near = curve_boxes(z, curves), np.empty(len(pairs), np.bool_)
     for k in range(len(pairs)):
         a, b = boxes[pairs[k, 0]], boxes[pairs[k, 1]]
@@ -66,7 +66,7 @@ def find_feet(
 
 @njit(cache=True)
 def is_unturned(z: Array, curves: CurveArrays, places: Places, k: int) -> bool:  # pragma: no cover
-    """True if a beam has not turned back between a place and its foot on the same beam: no contact there."""
+    """True if a beam has not turned back between a place and a foot on the same beam: no contact there."""
     if places.curve[k] != places.other[k]:
         return False
     turn: float = abs(z[curves.angle[places.piece[k]]] - z[curves.angle[places.foot[k]]])
@@ -77,9 +77,9 @@ def is_unturned(z: Array, curves: CurveArrays, places: Places, k: int) -> bool: 
 def settle(
     z: Array, curves: CurveArrays, places: Places, gaps: Array, curvatures: Array, counters: Ints, steps: int
 ) -> None:  # pragma: no cover
-    """Move all feet, and in at most ``steps`` the places that move; write gaps and curvatures λ'' by arc length.
+    """Move all feet, and in at most ``steps`` the moving places; write gaps and curvatures λ'' by arc length.
 
-    Without steps the gap of a place that moves is the minimum of the parabola.
+    Without steps the gap of a moving place is the minimum of the parabola.
     """
     weights = np.empty((4, 2, STENCIL))
     for k in range(places.piece.size):

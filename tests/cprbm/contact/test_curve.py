@@ -33,7 +33,7 @@ def test_between_joints_the_curve_is_right_to_fourth_order():
         curve = named(geometry, "upper")
         s = np.linspace(0.3, 0.7, 401) * curve.arcs[-1]
         line = m.units.place(points_on(m.scene.beams["upper"].curve, s / curve.arcs[-1])) @ np.array([1.0, 1.0j])
-        # distance from the line, not along it: the curve's parameter is not exactly the arc length
+        # distance across the line: the curve's parameter is not exactly the arc length
         along = np.gradient(line)
         errors.append(np.abs(((at(curve, rest, s) - line) * np.conj(along / np.abs(along))).imag).max())
     assert errors[0] / errors[1] > 2.0**3.5
@@ -108,7 +108,7 @@ def simple_beam_compliance(weights, places, length):
 
 @pytest.mark.parametrize("xi", [0.0, 0.2, 0.5, 0.9])
 def test_inner_lost_compliance_does_not_depend_on_the_supports(xi):
-    """A beam between two pins, by statics; its exact compliance is a² b²/(3 (a + b))."""
+    """A beam between two pins, by statics; the exact compliance is a² b²/(3 (a + b))."""
     count = 30
     m, _, _ = mechanism(count)
     curve = beam_curve(m, "lower", thick=True)
@@ -121,7 +121,7 @@ def test_inner_lost_compliance_does_not_depend_on_the_supports(xi):
     chain = simple_beam_compliance(weights, curve.arcs / h, float(count))
     exact = place**2 * (count - place) ** 2 / (3.0 * count)
     assert np.polyval(lost_compliance()[INNER][::-1], xi) == pytest.approx(exact - chain, abs=1e-9)
-    # stored with h³/EI; the unit of EI is that of the upper beam where the beam is thickest
+    # stored with h³/EI; the unit of EI is the largest EI of the upper beam
     stiffer = (2.2 / 2.1) ** 3
     assert np.polyval(curve.lost[piece][::-1], xi) == pytest.approx((exact - chain) * h**3 * stiffer, rel=1e-6)
 

@@ -1,4 +1,4 @@
-"""Candidates of pairs, sides, places that may move, angle stops of beams pinned on their edge."""
+"""Candidates of pairs, sides, moving places, angle stops of beams pinned on their edge."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_ends_of_the_second_beam_are_places_too():
     places = all_places(geometry, rest, rest)
     lower = next(k for k, curve in enumerate(geometry.curves) if curve.name == "lower")
     mine = (places.pair == 0) & (places.curve == lower)
-    # the start is held by the body on which the upper beam's nearest end is held
+    # ground holds the start, and the end of the upper beam beside the start
     assert places.xi[mine].tolist() == [1.0]
 
 
@@ -57,7 +57,7 @@ def test_sides_follow_the_scene_and_the_drawing():
     _, geometry, rest = mechanism()
     sides = sides_at_rest(geometry, rest, new_counters())
     by_name = dict(zip((pair.name for pair in geometry.pairs), sides.tolist(), strict=True))
-    # the upper beam is left of the lower one, which is right of the upper; both run along x
+    # the upper beam is left of the lower beam, the lower right of the upper; both run along x
     assert by_name["beams"] == [1.0, -1.0]
     assert by_name["line"] == [-1.0, -1.0]
     assert by_name["graph"] == by_name["plane"] == [1.0, 1.0]
@@ -67,7 +67,7 @@ def test_a_beam_touches_itself_after_half_a_turn_and_each_gap_counts_once():
     m, geometry = built_in("rolled", 40)
     z = np.array(m.rest)
     assert not len(all_places(geometry, z, z).pair)
-    # roll the beam into a spiral of one and a half turns with half a millimetre between the layers
+    # roll the beam into a spiral of 1.5 turns with half a millimetre between the layers
     nodes = m.beam_nodes(next(iter(m.chains)))
     chain = next(iter(m.chains.values()))
     angle = 3.0 * np.pi * chain.arcs / chain.length
@@ -92,7 +92,7 @@ def test_a_beam_touches_itself_after_half_a_turn_and_each_gap_counts_once():
 
 
 def test_moving_places_follow_their_linear_change():
-    """A place moved by its linear change differs from the settled place by the square of the change."""
+    """A place moved by the linear change differs from the settled place by the square of the change."""
     m, geometry, rest = mechanism()
     z = random_state(m, geometry, rest, 0)
     places = all_places(geometry, z, rest)
@@ -125,7 +125,7 @@ def test_far_pairs_have_no_places():
 
 
 def test_a_beam_pinned_on_its_edge_has_an_angle_stop():
-    """Five-bar: the rows hold as drawn, and open by the angle by which the beam turns away from its edge."""
+    """Five-bar: the rows hold as drawn, and open as the beam turns away from the edge."""
     m, _ = built_in("five-bar")
     rows = [row for row in m.rows if row.name.endswith(".pin")]
     assert rows

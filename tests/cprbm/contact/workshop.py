@@ -1,4 +1,4 @@
-"""A scene with contacts of all kinds, and random states of its mechanism."""
+"""A scene with contacts of all kinds, and random states of the mechanism."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def data(angle: float, between: tuple[str, str]) -> dict[str, Any]:
 
 
 def mechanism(links: int = 9, angle: float = 0.0, between: tuple[str, str] = ("upper", "lower")):
-    """Mechanism, geometry of its contacts, unknowns at rest."""
+    """Mechanism, geometry of the contacts, unknowns at rest."""
     return geometry_of(scene_from(data(angle, between)), links)
 
 
@@ -112,7 +112,7 @@ def all_places(geometry, z, rest):
 
 
 def at(curve, z, s):
-    """Points (k,) of a curve at arc lengths, from its weights."""
+    """Points (k,) of a curve at arc lengths, from the weights."""
     piece = np.clip(np.searchsorted(curve.arcs, s, side="right") - 1, 0, curve.pieces - 1)
     span = np.where(np.diff(curve.arcs) > 0.0, np.diff(curve.arcs), 1.0)
     xi = (s - curve.arcs[piece]) / span[piece]
