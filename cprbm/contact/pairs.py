@@ -1,8 +1,8 @@
 """Curves of a scene's contacts, and pairs of curves.
 
 A place lies on the first curve of a pair, the foot on the second; the ends of a second beam are places too.
-A beam lies on the side +1 (left) or −1 (right) of a rigid curve, as the scene says.  The side of two beams is 0 here; the
-state as drawn decides, :mod:`cprbm.contact.candidates`.
+A beam lies on the side +1 (left) or −1 (right) of a rigid curve, as the scene says.  The side of two beams is 0 here;
+the state as drawn decides, :mod:`cprbm.contact.candidates`.
 """
 
 from __future__ import annotations
