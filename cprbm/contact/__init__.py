@@ -1,6 +1,6 @@
 """Contact of curves: geometry, gaps with derivatives, places, pairs of a scene.
 
-The equilibrium of the second edition does not use the package yet; the tests in ``tests/cprbm/contact`` do.
+The solver does not call the package yet; :mod:`cprbm.equilibrium.contact_points` and tests do.
 
 * :mod:`cprbm.contact.curve`: pieces, linear in the positions of nodes;
 * :mod:`cprbm.contact.compliance`: compliance lost by a chain under a point force;
