@@ -14,8 +14,8 @@ import numpy as np
 from cprbm import smooth
 from cprbm.circle import Circle
 from cprbm.closure import closure_forces
-from cprbm.contact import Group
 from cprbm.edge import Edge
+from cprbm.first_contact import Group
 from cprbm.forces import contact_forces
 from cprbm.holding import held
 from cprbm.kinematics import place

@@ -36,7 +36,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.linalg import lapack
 
-from cprbm.contact import REAL, Factored, Group, Local
+from cprbm.first_contact import REAL, Factored, Group, Local
 from cprbm.kinematics import Positions, State, behind
 from cprbm.model import Model
 from cprbm.offset_points import offset_vectors

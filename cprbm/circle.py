@@ -37,7 +37,7 @@ import numpy as np
 
 from cprbm import smooth, wells
 from cprbm.brought import Brought, brought
-from cprbm.contact import Blocks, Group
+from cprbm.first_contact import Blocks, Group
 from cprbm.frame import Frame
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import missed

@@ -2,8 +2,8 @@
 
 ==========  ==================================================================================
 v           value of the stepped load or drive
-c(v)        largest constraint value of the contact, :mod:`cprbm.contact`, in the equilibrium without it, the others
-            in force: negative while it is open
+c(v)        largest constraint value of the contact, :mod:`cprbm.first_contact`, in the equilibrium without the
+            contact, the others in force: negative while the contact is open
 v_c         its first zero
 ==========  ==================================================================================
 
@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from cprbm.contact import Rows
+from cprbm.first_contact import Rows
 from cprbm.first_equilibrium import equilibrium
 from cprbm.kinematics import most_turned
 from cprbm.mechanism import Mechanism, mechanism_of

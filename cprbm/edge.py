@@ -47,10 +47,10 @@ import numpy as np
 
 from cprbm import smooth, wells
 from cprbm.brought import Brought, brought
-from cprbm.contact import Blocks, Group
 from cprbm.corner import Corner, corners_of
 from cprbm.cutting import cut
 from cprbm.faces import SAME, Face, Graph, Seen, faces_of, sides_of
+from cprbm.first_contact import Blocks, Group
 from cprbm.frame import Frame
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm.contact import Blocks, Group
+from cprbm.first_contact import Blocks, Group
 from cprbm.kinematics import Positions
 from cprbm.model import Chain
 from cprbm.moving import LOCALS

@@ -30,9 +30,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm.closest import REACH, SAME, STRAIGHT, held_together, minima, places_along
-from cprbm.contact import Blocks, Group
 from cprbm.crossing import own_crossings
 from cprbm.feet import Lines, feet_near, feet_of_ridges
+from cprbm.first_contact import Blocks, Group
 from cprbm.gathering import gathered
 from cprbm.kinematics import Positions, State
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model

@@ -23,8 +23,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cprbm.closure import Closure, closure_second, closure_sums
-from cprbm.contact import Rows
 from cprbm.energy import LoadWork, strain_hessian
+from cprbm.first_contact import Rows
 from cprbm.kinematics import Positions, State, arm, twice
 from cprbm.model import Model
 from cprbm_scene.answer import Array, Flags, Ints

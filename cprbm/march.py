@@ -16,9 +16,9 @@ from cprbm import answer_sheet
 from cprbm.assembling import brought, formulated, freed, released
 from cprbm.certifying import certify
 from cprbm.closing import Closings, Stood
-from cprbm.contact import NO_ROWS
 from cprbm.critical import BranchEnd, Minimum, at_rest, branch_end, told
 from cprbm.extrapolating import FITTED, KEPT, alike, continued, led
+from cprbm.first_contact import NO_ROWS
 from cprbm.first_equilibrium import Equilibrium, equilibrium
 from cprbm.following import Follower, Reached, Way, pressing, to
 from cprbm.kinematics import State, most_changed, most_turned, rest_state

@@ -14,11 +14,11 @@ from cprbm.circle import Circle, circle_of
 from cprbm.clearance import Clearances, clearances_of
 from cprbm.closest import clear
 from cprbm.closure import closure_of
-from cprbm.contact import Formulation, Group, Rows
 from cprbm.corner import stands_out
 from cprbm.edge import Edge, edge_of
 from cprbm.energy import dead_loads, end_moments
 from cprbm.feet import distance_along
+from cprbm.first_contact import Formulation, Group, Rows
 from cprbm.hinging import hinges_of
 from cprbm.holding import holds_of
 from cprbm.itself import Itself, itself_of

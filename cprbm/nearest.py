@@ -66,8 +66,8 @@ from cprbm.closest import (
     on_either_side,
     sampled_distances,
 )
-from cprbm.contact import Group, Sides
 from cprbm.feet import CLOSE, Lines, distance_along, distance_of, feet_from, feet_of_ridges, seen_from
+from cprbm.first_contact import Group, Sides
 from cprbm.gathering import Touches, gathered, single
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import kinked, missed

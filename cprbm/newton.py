@@ -31,7 +31,7 @@ import numpy as np
 from cprbm.bordered import Bordered, Held, Kept, Symmetric, anchored, bordered, factorised, without
 from cprbm.closure import closure_second, closure_sums
 from cprbm.complementarity import pressing
-from cprbm.contact import Factored, Rows, over_unknowns
+from cprbm.first_contact import Factored, Rows, over_unknowns
 from cprbm.kinematics import twice
 from cprbm.local import GIVING, LocalSystem, local_step, local_system
 from cprbm.once import once

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from cprbm.contact import Group
+from cprbm.first_contact import Group
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
 from cprbm_scene.answer import Array

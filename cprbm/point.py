@@ -4,7 +4,7 @@
 q           unknowns: link angles θ, then u, v, φ of the free bodies
 PE          potential energy, eq. (4)
 Z, μ        equalities and their multipliers, :mod:`cprbm.closure`
-c, λ        contact constraints c ≤ 0 and forces λ ≥ 0, :mod:`cprbm.contact`
+c, λ        contact constraints c ≤ 0 and forces λ ≥ 0, :mod:`cprbm.first_contact`
 ==========  =================================================================================
 """
 
@@ -18,8 +18,8 @@ import numpy as np
 
 from cprbm.bordered import Held, generic
 from cprbm.closure import Closure, closure_rows, closure_values
-from cprbm.contact import Formulation, Rows
 from cprbm.energy import AnyLoad, LoadWork, load_work, spring_moments, strain_energy, strain_gradient, strain_hessian
+from cprbm.first_contact import Formulation, Rows
 from cprbm.kinematics import Positions, State, positions, pulled_back
 from cprbm.model import Model
 from cprbm.once import once

@@ -28,7 +28,7 @@ from itertools import pairwise
 import numpy as np
 
 from cprbm.beam_loads import BeamLoad
-from cprbm.contact import Rows
+from cprbm.first_contact import Rows
 from cprbm.kinematics import State
 from cprbm.kinks import kinks_at, within
 from cprbm.mechanism import Mechanism

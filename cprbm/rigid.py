@@ -25,7 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm.contact import Factored, Group, Local
+from cprbm.first_contact import Factored, Group, Local
 from cprbm.kinematics import Positions, State
 from cprbm.model import Model
 from cprbm.once import once

@@ -33,9 +33,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm.contact import Blocks, Group
 from cprbm.edge import Edge
 from cprbm.faces import Seen
+from cprbm.first_contact import Blocks, Group
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
 from cprbm.point import Point

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cprbm.closest import on_either_side
-from cprbm.contact import Sides
 from cprbm.feet import Lines
+from cprbm.first_contact import Sides
 from cprbm.kinematics import Positions, State
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from math import atan2, pi, remainder, tau
 
 import numpy as np
 
-from cprbm.contact import Blocks, Group
+from cprbm.first_contact import Blocks, Group
 from cprbm.kinematics import Positions, State
 from cprbm.model import Model
 from cprbm_scene import FreeEnd, Scene

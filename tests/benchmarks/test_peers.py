@@ -20,8 +20,8 @@ from comparisons.bench.question import asked
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer
 from cprbm.closure import closure_rows, closure_values
-from cprbm.contact import NO_ROWS
 from cprbm.energy import load_work, spring_moments, strain_energy, strain_gradient
+from cprbm.first_contact import NO_ROWS
 from cprbm.kinematics import State, positions
 from cprbm.mechanism import mechanism_of
 from cprbm.point import contact_gradient, point_at

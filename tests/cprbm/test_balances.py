@@ -7,7 +7,7 @@ import pytest
 
 import cprbm
 from cprbm.closure import closure_values
-from cprbm.contact import NO_ROWS
+from cprbm.first_contact import NO_ROWS
 from cprbm.first_equilibrium import equilibrium, measure
 from cprbm.forces import balances
 from cprbm.kinematics import rest_state

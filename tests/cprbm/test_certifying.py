@@ -7,7 +7,7 @@ import pytest
 
 import cprbm
 from cprbm.certifying import certify
-from cprbm.contact import NO_ROWS
+from cprbm.first_contact import NO_ROWS
 from cprbm.first_equilibrium import equilibrium
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of

@@ -7,7 +7,7 @@ import pytest
 
 import cprbm
 from cprbm import newton
-from cprbm.contact import NO_ROWS
+from cprbm.first_contact import NO_ROWS
 from cprbm.first_equilibrium import equilibrium
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.local import Solved, local_step

@@ -5,7 +5,7 @@ import pytest
 
 import cprbm
 from cprbm import march
-from cprbm.contact import NO_ROWS
+from cprbm.first_contact import NO_ROWS
 from cprbm.first_equilibrium import equilibrium
 from cprbm.kinematics import positions, rest_state
 from cprbm.mechanism import mechanism_of

@@ -6,7 +6,7 @@ from scipy.optimize import minimize
 
 import cprbm
 from cprbm import closest
-from cprbm.contact import NO_ROWS, Rows
+from cprbm.first_contact import NO_ROWS, Rows
 from cprbm.first_equilibrium import LONGEST_TURN, equilibrium
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.mechanism import mechanism_of

@@ -5,8 +5,8 @@ import pytest
 
 import cprbm
 import elastica_reference
-from cprbm.contact import NO_ROWS
 from cprbm.crossing import cross
+from cprbm.first_contact import NO_ROWS
 from cprbm.first_equilibrium import equilibrium
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of

@@ -7,8 +7,8 @@ import pytest
 
 from cprbm import Settings, smooth
 from cprbm.closure import closure_forces, closure_rows, closure_second, closure_values
-from cprbm.contact import NO_ROWS
 from cprbm.energy import spring_moments, strain_energy, strain_gradient, strain_hessian
+from cprbm.first_contact import NO_ROWS
 from cprbm.first_equilibrium import equilibrium, measure
 from cprbm.kinematics import State, positions, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of

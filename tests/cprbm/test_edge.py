@@ -8,7 +8,7 @@ from pydantic import TypeAdapter
 
 import cprbm
 from cprbm import newton
-from cprbm.contact import NO_ROWS, Local, over_unknowns
+from cprbm.first_contact import NO_ROWS, Local, over_unknowns
 from cprbm.kinematics import State, positions, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import contact_gradient, contact_rows, point_at

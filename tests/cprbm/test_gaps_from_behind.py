@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm.contact import NO_ROWS
+from cprbm.first_contact import NO_ROWS
 from cprbm.kinematics import State
 from cprbm.march import March
 from cprbm.nearest import BEHIND

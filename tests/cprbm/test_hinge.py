@@ -243,7 +243,7 @@ def test_beams_may_have_links_of_their_own(truth):
 
 
 def test_action_is_reaction_where_the_gap_is_a_distance_and_nearly_so_at_a_fitted_boundary():
-    from cprbm.contact import NO_ROWS
+    from cprbm.first_contact import NO_ROWS
     from cprbm.first_equilibrium import equilibrium
     from cprbm.forces import contact_imbalance
     from cprbm.kinematics import rest_state

@@ -5,7 +5,7 @@ import pytest
 
 import cprbm
 from cprbm.closure import closure_rows, closure_second, closure_values
-from cprbm.contact import NO_ROWS
+from cprbm.first_contact import NO_ROWS
 from cprbm.first_equilibrium import equilibrium
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.local import local_step

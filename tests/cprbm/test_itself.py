@@ -8,8 +8,8 @@ import pytest
 
 import cprbm
 from cprbm.closest import REACH
-from cprbm.contact import NO_ROWS, Rows
 from cprbm.crossing import own_crossings
+from cprbm.first_contact import NO_ROWS, Rows
 from cprbm.kinematics import State, positions
 from cprbm.local import local_step
 from cprbm.newton import local_system_at, newton_step

@@ -6,8 +6,8 @@ from scipy.optimize import minimize_scalar
 
 import cprbm
 from cprbm import closest, wells
-from cprbm.contact import Rows
 from cprbm.feet import distance_along
+from cprbm.first_contact import Rows
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm_scene import scene_from

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm.contact import NO_ROWS
 from cprbm.energy import spring_moments
+from cprbm.first_contact import NO_ROWS
 from cprbm.first_equilibrium import _settled, equilibrium, measure
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of

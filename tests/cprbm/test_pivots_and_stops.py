@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm.contact import NO_ROWS
+from cprbm.first_contact import NO_ROWS
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import contact_rows, point_at

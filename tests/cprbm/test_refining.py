@@ -8,7 +8,7 @@ import pytest
 
 import cprbm
 from cprbm import Settings
-from cprbm.contact import NO_ROWS
+from cprbm.first_contact import NO_ROWS
 from cprbm.first_equilibrium import equilibrium
 from cprbm.kinematics import State, rest_state
 from cprbm.levelling import levelled

@@ -5,8 +5,8 @@ import pytest
 
 import cprbm
 from cprbm import wells
-from cprbm.contact import NO_ROWS
 from cprbm.feet import distance_along
+from cprbm.first_contact import NO_ROWS
 from cprbm.first_equilibrium import equilibrium
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of

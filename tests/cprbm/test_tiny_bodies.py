@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm.contact import NO_ROWS, Local, over_unknowns
+from cprbm.first_contact import NO_ROWS, Local, over_unknowns
 from cprbm.kinematics import State, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import contact_gradient, contact_rows, point_at

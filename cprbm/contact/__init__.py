@@ -1,0 +1,59 @@
+"""Contact of curves: geometry, gaps with derivatives, places, pairs of a scene.
+
+The solver does not call the package yet; :mod:`cprbm.equilibrium.contact_points` and tests do.
+
+* :mod:`cprbm.contact.curve`: pieces, linear in the positions of nodes;
+* :mod:`cprbm.contact.compliance`: compliance lost by a chain under a point force;
+* :mod:`cprbm.contact.closest`: points, closest points, boxes; :mod:`cprbm.contact.gap`: gap and derivatives;
+* :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
+* :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.own_pin`, :mod:`cprbm.contact.candidates`: contacts of a scene.
+"""
+
+from cprbm.contact.candidates import (
+    Geometry,
+    contact_geometry,
+    fixed_places,
+    joined,
+    may_move,
+    sides_at_rest,
+    taken,
+)
+from cprbm.contact.curve import STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
+from cprbm.contact.gap import COUPLING, GRADIENT, LOCAL, SHIFT, TANGENT, TURN, Places, Row, gap_row, local_indices
+from cprbm.contact.pairs import Pair
+from cprbm.contact.settling import BOX_TESTS, GAPS, SEARCHES, find_feet, move_places, near_pairs, new_counters, settle
+
+__all__ = [
+    "BOX_TESTS",
+    "COUPLING",
+    "GAPS",
+    "GRADIENT",
+    "LOCAL",
+    "SEARCHES",
+    "SHIFT",
+    "STENCIL",
+    "TANGENT",
+    "TURN",
+    "Curve",
+    "CurveArrays",
+    "Frames",
+    "Geometry",
+    "Pair",
+    "Places",
+    "Row",
+    "beam_curve",
+    "contact_geometry",
+    "curve_arrays",
+    "find_feet",
+    "fixed_places",
+    "gap_row",
+    "joined",
+    "local_indices",
+    "may_move",
+    "move_places",
+    "near_pairs",
+    "new_counters",
+    "settle",
+    "sides_at_rest",
+    "taken",
+]

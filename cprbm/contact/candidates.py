@@ -1,0 +1,211 @@
+"""Places of contact: joints, ends, and the rules for their use.
+
+Fixed places are the joints and ends of the first curve, and the ends of a second beam.
+
+* An end of a beam is no place on the body to which a joint holds the end.
+* The first joint behind a weld on the body of the foot has the force of the second joint.  The share of clamp and
+  contact is not unique there; a row for the sum of both gaps keeps the pressure even.
+* A place may move everywhere but in an end link held by the body of the foot.
+
+The side of two beams is the side at the least distance as drawn.  In self-contact a place lies before the foot, so
+that no gap counts twice.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from cprbm.chain import Mechanism
+from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
+from cprbm.contact.gap import Places, gap_frame
+from cprbm.contact.pairs import Pair, contact_pairs
+from cprbm.contact.settling import find_feet, settle
+from cprbm_scene import FreeEnd, WeldedEnd
+from cprbm_scene.answer import Array, Flags, Ints
+
+FREE = -1
+"""Number in place of a body's for a free end of a beam."""
+
+BESIDE = 1
+"""Pieces from a beam's end within which a foot counts as lying on the end's body."""
+
+
+class Ends(NamedTuple):
+    """Bodies of curves: numbers ``body`` (curves, 2) at start and end, ``welded`` (curves, 2), ``rigid`` (curves,)."""
+
+    body: Ints
+    welded: Flags
+    rigid: Flags
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry:
+    """Curves and pairs of a mechanism's contacts.
+
+    Attributes:
+        curves, pairs, arrays: as the modules of the package say.
+        ends: bodies of the curves.
+        possible: all fixed places, feet not found; node: number of a place's node on its curve.
+        columns: numbers of the two curves of every pair (pairs, 2).
+    """
+
+    curves: list[Curve]
+    pairs: list[Pair]
+    arrays: CurveArrays
+    ends: Ends
+    possible: Places
+    node: Ints
+    columns: Ints
+
+
+def contact_geometry(m: Mechanism) -> Geometry | None:
+    """Geometry of a mechanism's contacts, None without contacts.
+
+    Adds the nodes of rigid curves and the rows of beams pinned on their edge to the mechanism.
+    """
+    if not m.scene.contacts:
+        return None
+    curves, pairs = contact_pairs(m)
+    arrays = curve_arrays(curves)
+    ends = _ends(m, curves)
+    possible, node = _possible(arrays, ends, pairs)
+    columns = np.array([(pair.first, pair.second) for pair in pairs], dtype=np.int64)
+    return Geometry(curves, pairs, arrays, ends, possible, node, columns)
+
+
+def taken(places: Places, which: Flags | Ints) -> Places:
+    """A selection of places, as copies."""
+    return Places._make(column[which] for column in places)
+
+
+def joined(places: Places, others: Places) -> Places:
+    """Both groups of places, in this order."""
+    return Places._make(np.concatenate(columns) for columns in zip(places, others, strict=True))
+
+
+def fixed_places(geometry: Geometry, z: Array, sides: Array, near: Flags, counters: Ints) -> Places:
+    """Fixed places of the pairs marked ``near`` (pairs,), at the nearest feet.
+
+    Args:
+        geometry: of the mechanism.
+        z: the unknowns.
+        sides: side of the first curve over the second and of the second over the first (pairs, 2); 0 for a beam itself.
+        near: pairs that may touch.
+        counters: count the searches.
+    """
+    mine = near[geometry.possible.pair]
+    places, node, arrays = taken(geometry.possible, mine), geometry.node[mine], geometry.arrays
+    distance = np.empty(len(node))
+    find_feet(z, arrays, places, distance, counters)
+    second = (places.curve != geometry.columns[places.pair, 0]).astype(np.int64)
+    places.side[:] = sides[places.pair, second]
+    start, end = _on_end_bodies(geometry, places)
+    before, behind = node, arrays.last[places.curve] - arrays.first[places.curve] + 1 - node
+    itself = places.curve == places.other
+    kept = ~(start & (before == 0)) & ~(end & (behind == 0))
+    kept &= np.isfinite(distance) & ~(itself & (places.foot < places.piece))
+    welded = geometry.ends.welded[places.curve]
+    places.shares[(before == 1) & start & welded[:, 0]] = 1
+    places.shares[(behind == 1) & end & welded[:, 1]] = -1
+    return taken(places, kept)
+
+
+def may_move(geometry: Geometry, places: Places) -> Flags:
+    """Whether the places may move along their curves."""
+    arrays = geometry.arrays
+    first, last = arrays.first[places.curve], arrays.last[places.curve]
+    start, end = _on_end_bodies(geometry, places)
+    at_end = ((places.piece == first) & (places.xi == 0.0)) | ((places.piece == last) & (places.xi == 1.0))
+    return np.asarray(~at_end & ~(start & (places.piece == first)) & ~(end & (places.piece == last)))
+
+
+def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:
+    """Sides (pairs, 2) of a state as drawn: of rigid curves by the scene, of two beams at the least distance.
+
+    Parallel beams lie left and right of each other, antiparallel beams both left or both right.
+    """
+    sides = np.array([(pair.side, pair.side) for pair in geometry.pairs], dtype=float)
+    unknown = np.array([pair.side == 0 and not pair.itself for pair in geometry.pairs])
+    if not unknown.any():
+        return sides
+    places = fixed_places(geometry, z, np.ones(sides.shape), unknown, counters)
+    gaps, curvatures = np.empty(len(places.pair)), np.empty(len(places.pair))
+    settle(z, geometry.arrays, places, gaps, curvatures, counters, 0)
+    arrays = geometry.arrays
+    thickness = arrays.thickness[places.piece] + places.xi * arrays.thickening[places.piece]
+    thickness += arrays.thickness[places.foot] + places.eta * arrays.thickening[places.foot]
+    signed = np.where(places.at_point, np.inf, gaps + thickness)
+    weights = np.empty((4, 2, STENCIL))
+    for number in np.flatnonzero(unknown):
+        mine = np.flatnonzero(places.pair == number)
+        best = int(mine[np.argmin(np.abs(signed[mine]))]) if len(mine) else 0
+        if not len(mine) or not np.isfinite(signed[best]):
+            sides[number] = 1.0
+            continue
+        along = gap_frame(z, arrays, places, best, weights).along
+        role = int(places.curve[best] != geometry.columns[number, 0])
+        side = 1.0 if signed[best] >= 0.0 else -1.0
+        sides[number, role], sides[number, 1 - role] = side, -side if along > 0.0 else side
+    return sides
+
+
+def _ends(m: Mechanism, curves: list[Curve]) -> Ends:
+    """Numbers of bodies in the scene's order."""
+    number = {name: k for k, name in enumerate(m.scene.bodies)}
+    body = np.full((len(curves), 2), FREE, dtype=np.int64)
+    welded = np.zeros((len(curves), 2), dtype=bool)
+    for k, curve in enumerate(curves):
+        if not curve.beam:
+            body[k] = number[curve.body]
+            continue
+        beam = m.scene.beams[curve.beam]
+        for side, joint in enumerate((beam.start, beam.end)):
+            if not isinstance(joint, FreeEnd):
+                body[k, side] = number[m.scene.body_of(joint.point)]
+                welded[k, side] = isinstance(joint, WeldedEnd)
+    return Ends(body, welded, np.array([not curve.beam for curve in curves]))
+
+
+def _possible(arrays: CurveArrays, ends: Ends, pairs: list[Pair]) -> tuple[Places, Ints]:
+    """All fixed places of all pairs, with the first piece of the other curve for a foot, and their nodes."""
+    rows = []
+    for number, pair in enumerate(pairs):
+        links = int(arrays.last[pair.first] - arrays.first[pair.first]) + 1
+        rows += [(number, pair.first, pair.second, node, links) for node in range(links + 1)]
+        if not pair.itself and not ends.rigid[pair.second]:
+            links = int(arrays.last[pair.second] - arrays.first[pair.second]) + 1
+            rows += [(number, pair.second, pair.first, node, links) for node in (0, links)]
+    pair, curve, other, node, links = np.array(rows, dtype=np.int64).T
+    at_end = node == links
+    zeros, none = np.zeros(len(node)), np.zeros(len(node), dtype=bool)
+    places = Places(
+        pair=pair,
+        curve=curve,
+        piece=arrays.first[curve] + node - at_end,
+        xi=at_end.astype(float),
+        other=other,
+        foot=arrays.first[other].copy(),
+        eta=zeros.copy(),
+        at_point=none.copy(),
+        side=zeros.copy(),
+        moves=none,
+        shares=np.zeros(len(node), dtype=np.int64),
+        force=zeros,
+    )
+    return places, node
+
+
+def _on_end_bodies(geometry: Geometry, places: Places) -> tuple[Flags, Flags]:
+    """Whether the foot lies on, or beside a joint with, the body of the start and of the end of the place's curve."""
+    arrays, body = geometry.arrays, geometry.ends.body
+    rigid = geometry.ends.rigid[places.other]
+    beside_start = rigid | (places.foot <= arrays.first[places.other] + BESIDE)
+    beside_end = rigid | (places.foot >= arrays.last[places.other] - BESIDE)
+    found = []
+    for own in body[places.curve].T:
+        same = (beside_start & (own == body[places.other, 0])) | (beside_end & (own == body[places.other, 1]))
+        found.append(same & (own != FREE))
+    return found[0], found[1]

@@ -1,0 +1,201 @@
+"""Points of curves and closest points on curves, compiled.
+
+=========  =====================================================================================
+symbol     meaning
+=========  =====================================================================================
+C(η)       point of a curve, with local parameter η on a piece; C', C'' by η
+x          point whose closest point is sought
+R          distance |x − C|
+T(η)       half thickness; a point contact with the force F on a beam counts as T − F c/2, :mod:`cprbm.contact.gap`
+=========  =====================================================================================
+
+The closest point minimises R − T(η): Newton's method on
+
+    R (R − T)' = (C − x)·C' − R T',    R (R − T)'' ≈ |C'|² + (C − x)·C'' − R T''.
+
+A step crosses the borders of pieces.  The search rests at the ends of an open curve, and at a convex corner of a
+polyline.  There the steps of both pieces lead to the corner, and the closest point does not move along the curve.
+"""
+
+from __future__ import annotations
+
+from math import hypot
+
+import numpy as np
+from numba import njit
+
+from cprbm.contact.curve import CUBIC_POWERS, STENCIL, CurveArrays
+from cprbm_scene.answer import Array
+
+STEPS = 60
+"""Iterations; Newton's method needs fewer than ten, crossing a curve piece by piece the rest."""
+
+ARRIVED = 1e-13
+"""Change of the parameter at which the search ends: round-off of a piece."""
+
+LEAST_CURVATURE = 0.1
+"""Share of |C'|² below which the second derivative is replaced by |C'|²: a step of descent far from the minimum."""
+
+TURNED_BACK = 2.6
+"""Turn of a beam between two places, rad, from which the beam may touch itself: nearly half a turn."""
+
+
+@njit(cache=True)
+def write_weights(curves: CurveArrays, piece: int, xi: float, order: int, weights: Array) -> None:  # pragma: no cover
+    """Write the real and imaginary parts (2, STENCIL) of the weights, or of a derivative by ξ."""
+    for i in range(STENCIL):
+        a = b = 0.0
+        for k in range(CUBIC_POWERS - 1, order - 1, -1):
+            factor = 1.0 if order == 0 else (k if order == 1 else k * (k - 1.0))
+            a = a * xi + factor * curves.real[piece, i, k]
+            b = b * xi + factor * curves.imaginary[piece, i, k]
+        weights[0, i], weights[1, i] = a, b
+
+
+@njit(cache=True)
+def curve_point(
+    z: Array, curves: CurveArrays, piece: int, xi: float, order: int, weights: Array
+) -> tuple[float, float]:  # pragma: no cover
+    """C, C' or C''; the weights stay in ``weights``."""
+    write_weights(curves, piece, xi, order, weights)
+    x = y = 0.0
+    for i in range(STENCIL):
+        node = curves.stencil[piece, i]
+        x += weights[0, i] * z[node] - weights[1, i] * z[node + 1]
+        y += weights[1, i] * z[node] + weights[0, i] * z[node + 1]
+    return x, y
+
+
+@njit(cache=True)
+def lost_at(curves: CurveArrays, piece: int, xi: float, order: int) -> float:  # pragma: no cover
+    """c, c' or c'' of a piece."""
+    value = 0.0
+    for k in range(curves.lost.shape[1] - 1, order - 1, -1):
+        factor = 1.0 if order == 0 else (k if order == 1 else k * (k - 1.0))
+        value = value * xi + factor * curves.lost[piece, k]
+    return value
+
+
+@njit(cache=True)
+def moved_along(
+    curves: CurveArrays, curve: int, piece: int, xi: float, step: float
+) -> tuple[int, float, bool]:  # pragma: no cover
+    """Piece and parameter behind a step, in pieces, across borders; True if the step ends at an end of the curve."""
+    first, last = curves.first[curve], curves.last[curve]
+    xi += step
+    while True:
+        if xi > 1.0:
+            if piece == last and not curves.closed[curve]:
+                return piece, 1.0, True
+            beside = first if piece == last else piece + 1
+            xi = (xi - 1.0) * curves.span[piece] / curves.span[beside]
+            piece = beside
+        elif xi < 0.0:
+            if piece == first and not curves.closed[curve]:
+                return piece, 0.0, True
+            beside = last if piece == first else piece - 1
+            xi = 1.0 + xi * curves.span[piece] / curves.span[beside]
+            piece = beside
+        else:
+            return piece, xi, False
+
+
+@njit(cache=True)
+def border_pieces(curves: CurveArrays, curve: int, piece: int, step: float) -> tuple[int, int]:  # pragma: no cover
+    """Pieces behind and before the border that a step from a piece crosses; twice the piece at an end of the curve."""
+    first, last = curves.first[curve], curves.last[curve]
+    if step > 0.0:
+        if piece < last:
+            return piece + 1, piece
+        return (first, piece) if curves.closed[curve] else (piece, piece)
+    if piece > first:
+        return piece, piece - 1
+    return (piece, last) if curves.closed[curve] else (piece, piece)
+
+
+@njit(cache=True)
+def is_corner(
+    z: Array, curves: CurveArrays, piece: int, before: int, x: float, y: float, weights: Array
+) -> bool:  # pragma: no cover
+    """True if the border of two pieces is closest to (x, y): the steps of both pieces lead to the border."""
+    px, py = curve_point(z, curves, piece, 0.0, 0, weights)
+    ax, ay = curve_point(z, curves, before, 1.0, 1, weights)
+    bx, by = curve_point(z, curves, piece, 0.0, 1, weights)
+    return (px - x) * ax + (py - y) * ay < 0.0 < (px - x) * bx + (py - y) * by
+
+
+@njit(cache=True)
+def closest_point(
+    z: Array, curves: CurveArrays, curve: int, x: float, y: float, piece: int, eta: float, force: float, weights: Array
+) -> tuple[int, float, bool]:  # pragma: no cover
+    """Closest point on a curve near a first guess: piece, parameter, True at an end, a corner or a circle's centre.
+
+    ``force`` is F of a point contact, 0 otherwise; ``weights`` (2, STENCIL) is scratch space.
+    """
+    rests = curves.is_point[curve]
+    if rests:
+        return piece, 0.0, True
+    for _ in range(STEPS):
+        px, py = curve_point(z, curves, piece, eta, 0, weights)
+        tx, ty = curve_point(z, curves, piece, eta, 1, weights)
+        kx, ky = curve_point(z, curves, piece, eta, 2, weights)
+        px, py = px - x, py - y
+        R, square = hypot(px, py), tx * tx + ty * ty
+        slope = px * tx + py * ty - R * (curves.thickening[piece] - 0.5 * force * lost_at(curves, piece, eta, 1))
+        curvature = square + px * kx + py * ky + 0.5 * R * force * lost_at(curves, piece, eta, 2)
+        step = -slope / (curvature if curvature > LEAST_CURVATURE * square else square)
+        step = min(1.0, max(-1.0, step))
+        if not 0.0 <= eta + step <= 1.0:
+            behind, before = border_pieces(curves, curve, piece, step)
+            if behind != before and is_corner(z, curves, behind, before, x, y, weights):
+                return behind, 0.0, True
+        piece, eta, rests = moved_along(curves, curve, piece, eta, step)
+        if abs(step) < ARRIVED or (rests and abs(step) < 1.0):
+            break
+    return piece, eta, rests
+
+
+@njit(cache=True)
+def closest_chord(
+    z: Array, curves: CurveArrays, curve: int, x: float, y: float, angle: float, least_turn: float, weights: Array
+) -> tuple[int, float, float]:  # pragma: no cover
+    """Piece and parameter of the closest chord of all pieces, and its distance: a first guess.
+
+    Only pieces count whose link is turned by at least ``least_turn`` from ``angle``; the distance is inf without any.
+    """
+    best, found, share = np.inf, curves.first[curve], 0.0
+    for piece in range(curves.first[curve], curves.last[curve] + 1):
+        if least_turn > 0.0 and abs(z[curves.angle[piece]] - angle) < least_turn:
+            continue
+        ax, ay = curve_point(z, curves, piece, 0.0, 0, weights)
+        bx, by = curve_point(z, curves, piece, 1.0, 0, weights)
+        cx, cy = bx - ax, by - ay
+        square = cx * cx + cy * cy
+        at = min(1.0, max(0.0, ((x - ax) * cx + (y - ay) * cy) / square)) if square > 0.0 else 0.0
+        distance = hypot(ax + at * cx - x, ay + at * cy - y)
+        if distance < best:
+            best, found, share = distance, piece, at
+    return found, share, best
+
+
+@njit(cache=True)
+def curve_boxes(z: Array, curves: CurveArrays) -> Array:  # pragma: no cover
+    """Boxes (curves, 4) that hold the curves with their thickness: least x and y, largest x and y.
+
+    A point of a piece is at most max |C''|/8 away from a point of the chord; C'' is linear along a piece.
+    """
+    boxes, weights = np.empty((curves.first.size, 4)), np.empty((2, STENCIL))
+    for curve in range(curves.first.size):
+        box = boxes[curve]
+        box[:2], box[2:] = np.inf, -np.inf
+        for piece in range(curves.first[curve], curves.last[curve] + 1):
+            bulge = 0.0
+            for xi in (0.0, 1.0):
+                kx, ky = curve_point(z, curves, piece, xi, 2, weights)
+                bulge = max(bulge, hypot(kx, ky) / 8.0)
+            for xi in (0.0, 1.0):
+                x, y = curve_point(z, curves, piece, xi, 0, weights)
+                room = bulge + max(curves.thickness[piece], curves.thickness[piece] + curves.thickening[piece])
+                box[0], box[1] = min(box[0], x - room), min(box[1], y - room)
+                box[2], box[3] = max(box[2], x + room), max(box[3], y + room)
+    return boxes

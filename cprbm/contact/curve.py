@@ -1,0 +1,249 @@
+"""Curves for contact, as pieces linear in the positions of nodes.
+
+=========  =====================================================================================
+symbol     meaning
+=========  =====================================================================================
+P_i        position of node i, a complex number x + iy
+ξ          local parameter of a piece, from 0 to 1
+w_i(ξ)     weight of node i, a cubic polynomial with complex coefficients
+C(ξ)       position on the piece, Σ w_i(ξ) P_i
+T          half thickness, linear along a piece
+=========  =====================================================================================
+
+Complex weights add up to 1, and C follows rigid motions exactly; C has no second derivative by the nodes.
+
+1. A beam's curve is the neutral line of its chain, :mod:`cprbm.chain.spline`: real weights of at most six nodes,
+   continuous second derivative.  At rest the spline meets the rest line at the joints.
+2. A rigid curve moves with two nodes A and B of a body.  With w constant in time, P = A + w (B − A): the weights of a
+   curve with positions p(ξ) at rest are 1 − w and w, w = (p − A)/(B − A).  A circle is a point with half thickness, a
+   polyline has straight pieces, a smooth edge has the pieces of a cubic spline.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import comb
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from cprbm.chain import BeamChain, Mechanism
+from cprbm.contact.compliance import POWERS, lost_compliance
+from cprbm_scene import FreeEnd
+from cprbm_scene.answer import Array, Flags, Ints
+
+STENCIL = 6
+"""Nodes of a piece: four control points of a spline, each a second difference of nodes."""
+
+CUBIC_POWERS = 4
+"""Coefficients of a weight."""
+
+
+CLOSED = 1e-9
+"""Distance of a curve's ends, over its length, below which the curve is closed: round-off of coordinates."""
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A curve, by pieces; lengths are in the mechanism's units.
+
+    Attributes:
+        name: of the beam or the contact.
+        stencil: index of the x of the nodes of every piece (pieces, STENCIL).
+        weights: w (pieces, STENCIL, CUBIC_POWERS), complex, lowest power first.
+        arcs: arc lengths of the pieces' ends (pieces + 1,); of a circle zeros.
+        half_thickness: T at the pieces' ends (pieces + 1,).
+        lost: compliance that a point force lacks on every piece (pieces, POWERS), lowest power first.
+        angles: index of the angle of every link (pieces,), −1 without a link.
+        beam: name of the beam, empty for a rigid curve; body: name of the body of a rigid curve, else empty.
+        closed: whether the last piece leads to the first.
+    """
+
+    name: str
+    stencil: Ints
+    weights: Array
+    arcs: Array
+    half_thickness: Array
+    lost: Array
+    angles: Ints
+    beam: str = ""
+    body: str = ""
+    closed: bool = False
+
+    @property
+    def pieces(self) -> int:
+        """Number of pieces."""
+        return len(self.stencil)
+
+    @property
+    def is_point(self) -> bool:
+        """True for a circle."""
+        return bool(self.arcs[-1] == 0.0)
+
+
+class CurveArrays(NamedTuple):
+    """Pieces of all curves, for the compiled kernels.
+
+    ``first``, ``last`` (curves,) are the first and the last piece of a curve.  Per piece: ``stencil``; ``real``,
+    ``imaginary`` parts of the weights; ``arc`` at the begin and arc length ``span``; ``thickness`` at the begin and
+    the change ``thickening``; ``lost`` compliance; ``angle``.
+    """
+
+    first: Ints
+    last: Ints
+    is_point: Flags
+    closed: Flags
+    stencil: Ints
+    real: Array
+    imaginary: Array
+    arc: Array
+    span: Array
+    thickness: Array
+    thickening: Array
+    lost: Array
+    angle: Ints
+
+
+def curve_arrays(curves: Sequence[Curve]) -> CurveArrays:
+    """Arrays of all curves, in the order of the curves."""
+    count = np.array([curve.pieces for curve in curves], dtype=np.int64)
+    weights = np.concatenate([curve.weights for curve in curves])
+    return CurveArrays(
+        first=np.cumsum(count) - count,
+        last=np.cumsum(count) - 1,
+        is_point=np.array([curve.is_point for curve in curves]),
+        closed=np.array([curve.closed for curve in curves]),
+        stencil=np.concatenate([curve.stencil for curve in curves]),
+        real=np.ascontiguousarray(weights.real),
+        imaginary=np.ascontiguousarray(weights.imag),
+        arc=np.concatenate([curve.arcs[:-1] for curve in curves]),
+        span=np.concatenate([np.diff(curve.arcs) for curve in curves]),
+        thickness=np.concatenate([curve.half_thickness[:-1] for curve in curves]),
+        thickening=np.concatenate([np.diff(curve.half_thickness) for curve in curves]),
+        lost=np.concatenate([curve.lost for curve in curves]),
+        angle=np.concatenate([curve.angles for curve in curves]),
+    )
+
+
+def beam_curve(m: Mechanism, beam: str, *, thick: bool) -> Curve:
+    """Neutral line of a beam, with or without half the thickness."""
+    chain = m.chains[beam]
+    stencil, weights = _line_weights(chain)
+    half_thickness = 0.5 * chain.section.thickness(chain.arcs) if thick else np.zeros(chain.links + 1)
+    return Curve(
+        name=beam if thick else f"{beam} as a line",
+        stencil=m.beam_nodes(beam)[stencil],
+        weights=weights,
+        arcs=chain.arcs,
+        half_thickness=half_thickness,
+        lost=_lost(m, chain),
+        angles=m.beam_angles(beam),
+        beam=beam,
+    )
+
+
+def _line_weights(chain: BeamChain) -> tuple[Ints, Array]:
+    """Stencils and weights of the neutral line's pieces; unused places of a stencil repeat the last node."""
+    line, pieces = chain.line, chain.links
+    size = len(line.basis)
+    scale = np.diff(line.arcs) / line.size
+    # powers of the line's own parameter o + r ξ by powers of ξ
+    shift = np.zeros((pieces, size, size))
+    for k in range(size):
+        for j in range(k + 1):
+            shift[:, k, j] = comb(k, j) * line.offset ** (k - j) * scale**j
+    factors = np.einsum("ck,pkj->pcj", line.basis, shift)
+    control = line.control.tocoo()
+    first = np.full(pieces, len(chain.nodes))
+    terms = []
+    for c in range(size):
+        piece = control.row - c
+        inside = (piece >= 0) & (piece < pieces) & (control.data != 0.0)
+        terms.append((piece[inside], control.col[inside], control.data[inside], c))
+        np.minimum.at(first, piece[inside], control.col[inside])
+    weights = np.zeros((pieces, STENCIL, CUBIC_POWERS), dtype=complex)
+    for piece, column, value, c in terms:
+        np.add.at(weights[:, :, :size], (piece, column - first[piece]), value[:, None] * factors[piece, c])
+    return np.minimum(first[:, None] + np.arange(STENCIL), len(chain.nodes) - 1), weights
+
+
+def _lost(m: Mechanism, chain: BeamChain) -> Array:
+    """Lost compliance of a beam's pieces; none for the plain chain: a polygon spreads no force."""
+    inner, held, free = lost_compliance()
+    lost = np.tile(inner, (chain.links, 1))
+    if not chain.corrected:
+        return np.zeros(lost.shape)
+    beam, h = m.scene.beams[chain.name], chain.borders[1] - chain.borders[0]
+    lost[0] = free if isinstance(beam.start, FreeEnd) else held
+    at_end = free if isinstance(beam.end, FreeEnd) else held
+    backwards = np.polynomial.Polynomial(at_end)(np.polynomial.Polynomial([1.0, -1.0])).coef
+    lost[-1] = np.resize(backwards, POWERS)
+    bending = 12.0 * h * (chain.lean + chain.half_lean / chain.link_length)
+    return np.asarray(lost * bending[:, None])
+
+
+@dataclass(eq=False)
+class Frames:
+    """Pairs of nodes of bodies, a unit apart, that carry rigid curves; made at first use."""
+
+    mechanism: Mechanism
+    nodes: dict[str, tuple[int, int]] = field(default_factory=dict)
+
+    def of(self, body: str) -> tuple[int, int]:
+        """Indices of the x of a body's two nodes."""
+        if body not in self.nodes:
+            place = self.mechanism.reference(body)
+            a, b = (self.mechanism.attach_node(body, place + arm) for arm in ((0.0, 0.0), (1.0, 0.0)))
+            self.nodes[body] = a, b
+        return self.nodes[body]
+
+    def rigid_curve(self, name: str, body: str, polynomials: Array, arcs: Array, radius: float = 0.0) -> Curve:
+        """Curve of a body from positions by powers of ξ (pieces, at most CUBIC_POWERS), complex, and arc lengths."""
+        a, b = self.of(body)
+        origin = complex(*self.mechanism.reference(body))
+        pieces, size = polynomials.shape
+        weights = np.zeros((pieces, STENCIL, CUBIC_POWERS), dtype=complex)
+        weights[:, 1, :size] = polynomials
+        weights[:, 1, 0] -= origin
+        weights[:, 0] = -weights[:, 1]
+        weights[:, 0, 0] += 1.0
+        return Curve(
+            name=name,
+            stencil=np.tile(np.array([a, b, b, b, b, b], dtype=np.int64), (pieces, 1)),
+            weights=weights,
+            arcs=arcs,
+            half_thickness=np.full(pieces + 1, radius),
+            lost=np.zeros((pieces, POWERS)),
+            angles=np.full(pieces, -1, dtype=np.int64),
+            body=body,
+            closed=pieces > 1 and abs(polynomials[-1].sum() - polynomials[0, 0]) < CLOSED * arcs[-1],
+        )
+
+    def circle(self, name: str, body: str, centre: Array, radius: float) -> Curve:
+        """Circle about ``centre`` (2,)."""
+        return self.rigid_curve(name, body, np.array([[complex(*centre)]]), np.zeros(2), radius)
+
+    def polyline(self, name: str, body: str, points: Array) -> Curve:
+        """Straight pieces between ``points`` (k, 2)."""
+        places = points @ np.array([1.0, 1.0j])
+        chords = np.diff(places)
+        return self.rigid_curve(
+            name, body, np.column_stack([places[:-1], chords]), np.concatenate([[0.0], np.cumsum(np.abs(chords))])
+        )
+
+    def smooth_edge(self, name: str, body: str, points: Array, tangents: Array, length: float) -> Curve:
+        """Cubic spline through ``points`` (k, 2), even by arc length, with unit ``tangents`` at both ends.
+
+        Args:
+            name, body: of the curve.
+            points: places on the edge; a closed edge repeats the first.
+            tangents: unit tangents (k, 2) at the points.
+            length: arc length of the edge.
+        """
+        places, slopes = points @ np.array([1.0, 1.0j]), tangents @ np.array([1.0, 1.0j])
+        pieces = len(points) - 1
+        step = length / pieces
+        spline = CubicSpline(np.arange(pieces + 1.0), places, bc_type=((1, step * slopes[0]), (1, step * slopes[-1])))
+        return self.rigid_curve(name, body, spline.c[::-1].T, np.linspace(0.0, length, pieces + 1))

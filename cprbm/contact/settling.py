@@ -1,0 +1,137 @@
+"""Feet and moving places on a frozen state, compiled, with counters.
+
+A foot is the closest point near the last foot.  A moving place makes λ stationary; the change with the
+unknowns follows from the linear equation of :mod:`cprbm.contact.gap`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from cprbm.contact.closest import (
+    ARRIVED,
+    TURNED_BACK,
+    closest_chord,
+    closest_point,
+    curve_boxes,
+    curve_point,
+    moved_along,
+)
+from cprbm.contact.curve import STENCIL, CurveArrays
+from cprbm.contact.gap import LOCAL, SHIFT, Places, gap_frame, gap_row, local_indices
+from cprbm_scene.answer import Array, Flags, Ints
+
+BOX_TESTS, SEARCHES, GAPS = range(3)
+"""Entries of the counters: tests of two boxes, searches over all pieces of a curve, evaluations of a gap."""
+
+LONGEST_STEP = 0.7
+"""Change of a place in one iteration, pieces: less than a piece, so that a minimum is not jumped over."""
+
+
+def new_counters() -> Ints:
+    """Counters (3,), all zero."""
+    return np.zeros(3, dtype=np.int64)
+
+
+@njit(cache=True)
+def near_pairs(z: Array, curves: CurveArrays, pairs: Ints, reach: Array, counters: Ints) -> Flags:  # pragma: no cover
+    """Whether the boxes of two curves (pairs, 2) are nearer than ``reach`` (pairs,); one test per pair."""
+    boxes, near = curve_boxes(z, curves), np.empty(len(pairs), np.bool_)
+    for k in range(len(pairs)):
+        a, b = boxes[pairs[k, 0]], boxes[pairs[k, 1]]
+        counters[BOX_TESTS] += 1
+        apart = max(a[0] - b[2], b[0] - a[2], a[1] - b[3], b[1] - a[3])
+        near[k] = apart < reach[k]
+    return near
+
+
+@njit(cache=True)
+def find_feet(
+    z: Array, curves: CurveArrays, places: Places, distance: Array, counters: Ints
+) -> None:  # pragma: no cover
+    """Find the feet of all places by search over all pieces; write the distances to the nearest chords.
+
+    The distance of a place on a beam from the beam itself is inf where the beam has not turned back.
+    """
+    weights = np.empty((2, STENCIL))
+    for k in range(places.piece.size):
+        piece, least_turn = places.piece[k], TURNED_BACK if places.curve[k] == places.other[k] else 0.0
+        x, y = curve_point(z, curves, piece, places.xi[k], 0, weights)
+        counters[SEARCHES] += 1
+        angle = z[curves.angle[piece]]
+        foot, eta, distance[k] = closest_chord(z, curves, places.other[k], x, y, angle, least_turn, weights)
+        places.foot[k], places.eta[k] = foot, eta
+
+
+@njit(cache=True)
+def is_unturned(z: Array, curves: CurveArrays, places: Places, k: int) -> bool:  # pragma: no cover
+    """True if a beam has not turned back between a place and a foot on the same beam: no contact there."""
+    if places.curve[k] != places.other[k]:
+        return False
+    turn: float = abs(z[curves.angle[places.piece[k]]] - z[curves.angle[places.foot[k]]])
+    return turn < TURNED_BACK
+
+
+@njit(cache=True)
+def settle(
+    z: Array, curves: CurveArrays, places: Places, gaps: Array, curvatures: Array, counters: Ints, steps: int
+) -> None:  # pragma: no cover
+    """Move all feet, and in at most ``steps`` the moving places; write gaps and curvatures λ'' by arc length.
+
+    Without steps the gap of a moving place is the minimum of the parabola.
+    """
+    weights = np.empty((4, 2, STENCIL))
+    for k in range(places.piece.size):
+        gaps[k], curvatures[k] = np.inf, 0.0
+        for _ in range(max(steps, 1)):
+            x, y = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights[0])
+            force = places.force[k] if places.moves[k] else 0.0
+            places.foot[k], places.eta[k], places.at_point[k] = closest_point(
+                z, curves, places.other[k], x, y, places.foot[k], places.eta[k], force, weights[0]
+            )
+            if is_unturned(z, curves, places, k):
+                break
+            f = gap_frame(z, curves, places, k, weights)
+            counters[GAPS] += 1
+            gaps[k], curvatures[k] = f.gap, f.curvature / curves.span[places.piece[k]] ** 2
+            if not places.moves[k] or f.curvature == 0.0:
+                break
+            if steps == 0:
+                gaps[k] -= 0.5 * f.slope * f.slope / abs(f.curvature)
+                break
+            step = -f.slope / abs(f.curvature)
+            step = min(LONGEST_STEP, max(-LONGEST_STEP, step))
+            places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], step)
+            if abs(step) < ARRIVED:
+                break
+
+
+@njit(cache=True)
+def move_places(
+    z: Array, curves: CurveArrays, places: Places, change: Array, by_force: Array, share: float, limit: float
+) -> float:  # pragma: no cover
+    """Move places by a share of their linear change; the largest whole change, in pieces.
+
+    Args:
+        z, curves, places: the state whose row was eliminated; piece and parameter of moving places are changed.
+        change: of the unknowns.
+        by_force: change of the force of every place.
+        share: of the change that the unknowns are given.
+        limit: largest change of a place, in pieces.
+    """
+    vectors, weights, index = np.empty((5, LOCAL)), np.empty((4, 2, STENCIL)), np.empty(LOCAL, np.int64)
+    largest = 0.0
+    for k in range(places.piece.size):
+        if not places.moves[k]:
+            continue
+        row = gap_row(z, curves, places, k, vectors, weights)
+        local_indices(curves, places, k, index)
+        slope = row.slope + row.slope_by_force * by_force[k]
+        for i in range(LOCAL):
+            slope += vectors[SHIFT, i] * change[index[i]]
+        step = -slope / abs(row.curvature)
+        largest = max(largest, abs(step))
+        step = min(limit, max(-limit, step)) * share
+        places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], step)
+    return largest

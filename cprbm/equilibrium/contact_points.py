@@ -1,0 +1,162 @@
+"""Where contact is held: at joints along a length of contact, at a moving place where the curves touch in a point.
+
+After every solve the rule looks at runs of neighbouring closed joints:
+
+* one or two closed joints with a minimum of the gap beside them become a moving place;
+* a moving place beside which a joint closes, or at which the gap has no positive curvature, becomes joints again;
+* joints beside a moving place with less than a small part of the force open.
+
+The equilibrium is solved again until the rule changes nothing.  Where moving places fail, joints alone are solved first
+and points are made from them anew; then the moving place with the flattest gap is given up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from cprbm.contact import Geometry, Places, joined, may_move, settle, taken
+from cprbm.equilibrium.contact_set import FINDING, Contacts, Touched, arc_of, solve_set, with_fixed_places
+from cprbm.equilibrium.newton import NotConvergedError
+from cprbm.equilibrium.system import State, System
+from cprbm_scene.answer import Array, Flags, Ints
+
+ROUNDS = 12
+"""Solves under the same targets."""
+
+ISOLATED = 4
+"""Pieces around a moving place without other closed places of the pair."""
+
+NEIGHBOURS = 1.6
+"""Pieces between neighbouring joints: half links at a beam's end are neighbours too."""
+
+LONGEST_RUN = 2
+"""Closed neighbours that may be one point."""
+
+LIGHT = 0.02
+"""Part of a point's force below which the force of a joint beside the point is an overlap closed on the way."""
+
+
+def touched_equilibrium(
+    system: System, geometry: Geometry, start: State, contacts: Contacts, iterations: int
+) -> Touched:
+    """Equilibrium near a state under its targets, with the places of contact that belong to the equilibrium.
+
+    Raises:
+        NotConvergedError: no equilibrium was found, or the places do not settle.
+    """
+    contacts = with_fixed_places(geometry, start.z, replace(contacts, given_up=frozenset()))
+    joints_tried = False
+    for _ in range(ROUNDS):
+        try:
+            solved = solve_set(system, geometry, start, contacts, iterations)
+        except NotConvergedError:
+            moves = contacts.places.moves
+            if not moves.any():
+                raise
+            if joints_tried:
+                contacts = _without(geometry, contacts, moves & _flattest(geometry, start.z, contacts))
+            else:
+                contacts = replace(_without(geometry, contacts, moves), given_up=frozenset())
+            joints_tried = True
+            contacts = with_fixed_places(geometry, start.z, contacts)
+            continue
+        revised = _revised(geometry, solved)
+        if revised is None:
+            return solved
+        start, contacts = solved.state, with_fixed_places(geometry, solved.state.z, revised)
+    raise NotConvergedError("the places of contact do not settle")
+
+
+def _revised(geometry: Geometry, solved: Touched) -> Contacts | None:
+    """Contacts with other places, or None if the places are right."""
+    contacts, places = solved.contacts, solved.contacts.places
+    arcs, span = arc_of(geometry, places), geometry.arrays.span[places.piece]
+    allowed = may_move(geometry, places)
+    gone, light = np.zeros(len(arcs), dtype=bool), np.zeros(len(arcs), dtype=bool)
+    for k in np.flatnonzero(places.moves).tolist():
+        apart = np.abs(arcs - arcs[k])
+        near = _same(places, k) & ~places.moves & contacts.closed & (apart >= span[k]) & (apart < ISOLATED * span[k])
+        pressed = places.force[near].sum() > LIGHT * places.force[k]
+        gone[k] = pressed or not (contacts.closed[k] and solved.curvatures[k] > 0.0 and allowed[k])
+        light |= near & ~gone[k]
+    if gone.any():
+        return _without(geometry, contacts, gone)
+    if light.any():
+        kept = taken(places, np.arange(len(arcs)))
+        kept.force[light] = 0.0
+        return replace(contacts, places=kept, closed=contacts.closed & ~light)
+    created, replaced = _points(geometry, solved)
+    if not len(created.pair):
+        return None
+    closed = np.concatenate([contacts.closed[~replaced], np.ones(len(created.pair), dtype=bool)])
+    return replace(contacts, places=joined(taken(places, ~replaced), created), closed=closed)
+
+
+def _same(places: Places, k: int) -> Flags:
+    """Places of the same pair on the same curve."""
+    return np.asarray((places.pair == places.pair[k]) & (places.curve == places.curve[k]))
+
+
+def _flattest(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
+    """The moving place at which the gap has the least curvature."""
+    places = taken(contacts.places, np.arange(len(contacts.closed)))
+    gaps, curvatures = np.empty(len(contacts.closed)), np.empty(len(contacts.closed))
+    settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, FINDING)
+    return np.asarray(np.arange(len(gaps)) == np.argmin(np.where(places.moves, curvatures, np.inf)))
+
+
+def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
+    """Contacts in which moving places become joints again; the joints within a piece share the force."""
+    places, closed = taken(contacts.places, np.arange(len(gone))), contacts.closed.copy()
+    arcs, span, given_up = arc_of(geometry, places), geometry.arrays.span[places.piece], set(contacts.given_up)
+    for k in np.flatnonzero(gone).tolist():
+        given_up |= {(int(places.pair[k]), int(places.piece[k]) + e) for e in range(-ISOLATED, ISOLATED + 1)}
+        share = 1.0 - np.abs(arcs - arcs[k]) / span[k]
+        beside = _same(places, k) & ~places.moves & (share > 0.0) & contacts.closed[k]
+        closed |= beside
+        places.force[beside] += share[beside] * places.force[k]
+    return replace(contacts, places=taken(places, ~gone), closed=closed[~gone], given_up=frozenset(given_up))
+
+
+def _points(geometry: Geometry, solved: Touched) -> tuple[Places, Flags]:
+    """Moving places for closed joints that stand alone, and the joints that they replace."""
+    contacts, places = solved.contacts, solved.contacts.places
+    replaced = np.zeros(len(contacts.closed), dtype=bool)
+    created = taken(places, replaced)
+    arcs, span = arc_of(geometry, places), geometry.arrays.span[places.piece]
+    for run in _runs(geometry, solved):
+        given_up = any((int(places.pair[k]), int(places.piece[k])) in contacts.given_up for k in run)
+        if len(run) > LONGEST_RUN or given_up:
+            continue
+        best = run[int(np.argmax(places.force[run]))]
+        trial = taken(places, np.array([best]))
+        trial.moves[:] = True
+        trial.force[:] = places.force[run].sum()
+        gaps, curvatures = np.empty(1), np.empty(1)
+        settle(solved.state.z, geometry.arrays, trial, gaps, curvatures, contacts.counters, FINDING)
+        if curvatures[0] <= 0.0 or not may_move(geometry, trial)[0]:
+            continue
+        at = arc_of(geometry, trial)[0]
+        others = _same(places, best) & contacts.closed
+        others[run] = False
+        around = np.concatenate([arcs[others], arc_of(geometry, created)[created.pair == places.pair[best]]])
+        lonely = not np.any(np.abs(around - at) < ISOLATED * span[best])
+        if lonely and np.any(np.abs(arcs[run] - at) < span[best]):
+            replaced[run] = True
+            created = joined(created, trial)
+    return created, replaced
+
+
+def _runs(geometry: Geometry, solved: Touched) -> Iterator[Ints]:
+    """Runs of neighbouring closed joints of the first curves of all pairs, places with a shared force left out."""
+    places, closed = solved.contacts.places, solved.contacts.closed
+    arcs, span = arc_of(geometry, places), geometry.arrays.span[places.piece]
+    for number, pair in enumerate(geometry.pairs):
+        mine = (places.pair == number) & (places.curve == pair.first) & ~places.moves & (places.shares == 0) & closed
+        own = np.flatnonzero(mine & (places.xi < 1.0))
+        own = own[np.argsort(arcs[own])]
+        breaks = np.flatnonzero(np.diff(arcs[own]) >= NEIGHBOURS * span[own[:-1]]) + 1
+        yield from (run for run in np.split(own, breaks) if len(run))

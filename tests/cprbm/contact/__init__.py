@@ -1,0 +1,1 @@
+"""Contact geometry of the second edition: curves, closest points, gaps, places."""
