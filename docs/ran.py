@@ -64,9 +64,7 @@ def part(name: str, printed: str, drawings: Sequence[str]) -> str:
     ]
     lines.append(f"Output:\n\n```text\n{printed.rstrip()}\n```\n")
     for drawing in drawings:
-        lines.append(
-            f"```{{figure}} /made/gallery/{name}/{drawing}\n:alt: {title_of(name)}, drawn by the script\n```\n"
-        )
+        lines.append(f"```{{figure}} /made/gallery/{name}/{drawing}\n:alt: {title_of(name)}\n```\n")
     return "\n".join(lines)
 
 

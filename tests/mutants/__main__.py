@@ -110,7 +110,7 @@ def main() -> None:
     asked_for = f"{of_seed} of the {options.mutants} mutants that seed {options.seed} draws from"
     quick = f"Each was given at most {options.seconds:g} s of the processor of {len(mapped)} quick tests, those that"
     how = (
-        f"{asked_for} {', '.join(options.only) or ' and '.join(ROOMS)}, and {len(known_fates) - of_seed} drawn earlier.",
+        f"{asked_for} {', '.join(options.only) or ' and '.join(ROOMS)}, {len(known_fates) - of_seed} drawn earlier.",
         f"{quick} reach its statement, in {', '.join(options.tests)}.",
     )
     write_survivors(list(known_fates.values()), (*how, ""))
