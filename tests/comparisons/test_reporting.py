@@ -228,7 +228,7 @@ def test_a_report_is_written_whatever_its_verdict(tmp_path, files, fea, word):
     assert code == 0
     text = page.decode()
     assert text.count(f'class="badge {word}"') == 3  # of all, in the table, at the chapter
-    assert f"load, F = {'0.7000 N' if word == 'UNDECIDED' else '1.300 N'}" in text  # the last that both have reached
+    assert f"load, F = {'0.7 N' if word == 'UNDECIDED' else '1.3 N'}" in text  # the last that both have reached
 
 
 @pytest.mark.usefixtures("undrawn")
