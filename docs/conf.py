@@ -1,4 +1,4 @@
-"""How Sphinx makes the pages; ``make docs`` runs it, warnings being errors and nothing being fetched."""
+"""Settings of Sphinx for ``make docs``: warnings are errors, and the build needs no network."""
 
 from __future__ import annotations
 
@@ -7,14 +7,23 @@ import sys
 from pathlib import Path
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
-logging.getLogger("skfem").setLevel(logging.WARNING)  # it tells of every basis
+logging.getLogger("skfem").setLevel(logging.WARNING)  # a line per basis otherwise
 
 python_use_unqualified_type_names = True
 project = "cprbm"
 author = "the cprbm contributors"
 copyright = "the cprbm contributors, MIT licence"  # noqa: A001 - Sphinx asks for this name
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_click", "drawn", "ran", "mathematics"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx_click",
+    "drawn",
+    "pictures",
+    "ran",
+    "mathematics",
+]
 exclude_patterns = ["made"]
 highlight_language = "text"
 smartquotes = False

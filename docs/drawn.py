@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.patches import Circle
+from pictures import thumbnail
 
 import cprbm
 import fea_reference
@@ -273,9 +274,11 @@ def pictures_of(name: str) -> tuple[str, tuple[Picture, ...]]:
     """What is said before the figures of a case, and these."""
     question = cases.asked(name)
     if isinstance(question, OffsetQuestion):
+        write(MADE / name / "thumbnail.png", thumbnail(question, None))
         return "", offset_drawn.of_comparison(compared_offset(question))
     scene = thinned(question)
     answers = solved(scene)
+    write(MADE / name / "thumbnail.png", thumbnail(scene, answers[0]))
     drawn = (shapes(scene, answers), curves(scene, answers), stress(scene, answers))
     said = "".join(
         f"The {who} end before the last station: {answer.sentence}.\n\n"
@@ -306,7 +309,7 @@ def make(name: str) -> str:
 
 def _digest() -> str:
     """Of the sources that make the figures."""
-    found = hashlib.sha256(Path(__file__).read_bytes())
+    found = hashlib.sha256(Path(__file__).read_bytes() + (HERE / "pictures.py").read_bytes())
     for room in ("cprbm_scene", "cprbm", "fea_reference", "comparisons"):
         for path in sorted((ROOT / room).rglob("*")):
             if path.suffix in {".py", ".toml"}:

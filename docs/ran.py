@@ -1,7 +1,7 @@
-"""The scripts of the gallery run, and shown with what they print and draw.
+"""Run the scripts of the gallery and write their pages with output and drawings.
 
-python docs/ran.py              every script, into docs/made/gallery
-python docs/ran.py sweep        one of them
+python docs/ran.py              all scripts, into docs/made/gallery
+python docs/ran.py sweep        a single script
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import contextlib
 import hashlib
 import io
 import os
+import re
 import runpy
 import sys
 from collections.abc import Iterator, Sequence
@@ -28,12 +29,12 @@ ROOMS = ("cprbm_scene", "cprbm", "fea_reference", "comparisons", "docs/gallery")
 
 
 def names() -> tuple[str, ...]:
-    """Of all scripts, in the order of the page."""
+    """Names of all scripts, in the order of the page."""
     return tuple(sorted(path.stem for path in SCRIPTS.glob("*.py")))
 
 
 def run(name: str, folder: Path) -> str:
-    """Run a script in a folder, into which it draws; what it prints."""
+    """Run a script in a folder for its drawings; the printed text."""
     import matplotlib as mpl
     from matplotlib import pyplot
 
@@ -46,31 +47,48 @@ def run(name: str, folder: Path) -> str:
     return printed.getvalue()
 
 
-def part(name: str, printed: str, drawn: Sequence[str]) -> str:
-    """What the page shows of a script."""
+def title_of(name: str) -> str:
+    """Title of a script: the first line of its docstring."""
     source = (SCRIPTS / f"{name}.py").read_text(encoding="utf-8")
-    title = source.removeprefix('"""').split("\n", 1)[0].rstrip(".")
+    return source.removeprefix('"""').split("\n", 1)[0].rstrip(".")
+
+
+def part(name: str, printed: str, drawings: Sequence[str]) -> str:
+    """Section of the page for a script: source, scene, output and drawings."""
+    source = (SCRIPTS / f"{name}.py").read_text(encoding="utf-8")
     scenes = [path.name for path in sorted(SCRIPTS.glob("*.toml")) if path.name in source]
-    lines = [f"## {title}\n", f"`docs/gallery/{name}.py`\n"]
+    lines = [f"## {title_of(name)}\n", f"`docs/gallery/{name}.py`\n"]
     lines.append(f"```{{literalinclude}} /gallery/{name}.py\n:language: python\n```\n")
     lines += [
-        f"The scene, `{each}`:\n\n```{{literalinclude}} /gallery/{each}\n:language: toml\n```\n" for each in scenes
+        f"The scene, `{scene}`:\n\n```{{literalinclude}} /gallery/{scene}\n:language: toml\n```\n" for scene in scenes
     ]
-    lines.append(f"It prints\n\n```text\n{printed.rstrip()}\n```\n")
-    for each in drawn:
-        lines.append(f"```{{figure}} /made/gallery/{name}/{each}\n:alt: {title}, as the script draws it\n```\n")
+    lines.append(f"Output:\n\n```text\n{printed.rstrip()}\n```\n")
+    for drawing in drawings:
+        lines.append(f"```{{figure}} /made/gallery/{name}/{drawing}\n:alt: {title_of(name)}\n```\n")
     return "\n".join(lines)
 
 
 def make(name: str) -> str:
-    """Run a script for the page, unless it was run with the same code; the script's name."""
+    """Run a script for the page, unless the same code ran before; the script's name."""
     stamp, now = MADE / name / "made-by", _digest()
     if not stamp.is_file() or stamp.read_text(encoding="utf-8") != now:
         printed = run(name, MADE / name)
-        drawn = sorted(path.name for path in (MADE / name).glob("*.svg"))
-        write(MADE / name / "part.md", part(name, printed, drawn))
+        drawings = sorted(path.name for path in (MADE / name).glob("*.svg"))
+        write(MADE / name / "part.md", part(name, printed, drawings))
         write(stamp, now)
     return name
+
+
+def write_thumbnails() -> None:
+    """Write the row of small pictures: a link to the section of every script with a drawing."""
+    lines = []
+    for drawing in sorted(MADE.glob("*/*.svg")):
+        title = title_of(drawing.parent.name)
+        anchor = re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+        lines.append(
+            f"[![{title}](/made/gallery/{drawing.parent.name}/{drawing.name})](#{anchor})\\\n[{title}](#{anchor})\n"
+        )
+    write(MADE / "thumbnails.md", "\n".join(lines))
 
 
 def _digest() -> str:
@@ -83,12 +101,13 @@ def _digest() -> str:
 
 
 def make_all(chosen: Sequence[str] = ()) -> Iterator[str]:
-    """Run what is missing of these scripts, or of all; each name when it is done."""
+    """Run the named scripts, or all; a name for every finished script."""
     yield from map(make, chosen or names())
+    write_thumbnails()
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Have Sphinx the scripts run before the pages are read."""
+    """Register the run of the scripts before Sphinx reads the pages."""
     app.connect("builder-inited", _inited)
     return {"parallel_read_safe": True}
 

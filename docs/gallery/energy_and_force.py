@@ -1,8 +1,8 @@
-"""Energy and force of an arch that is pushed through.
+"""Energy and force of a bistable arch.
 
-The reaction of the drive is the slope of the energy: where it passes zero the
-shuttle would stay by itself, at a maximum of the energy on the way and at a
-minimum in the second stable state.
+The reaction of the drive is the slope of the energy. At zero reaction the shuttle
+rests without the drive: at a maximum of the energy on the way, and at a minimum
+in the second stable state.
 """
 
 from pathlib import Path

@@ -1,7 +1,7 @@
 """Numbers to a table.
 
-Every number of an answer on a line of its own, with probe, unit and station: as
-records, which ``pandas.DataFrame(records)`` takes as they are, and as a file.
+A line per number of an answer, with probe, unit and station: as records for
+``pandas.DataFrame(records)``, and as a file.
 """
 
 from pathlib import Path
@@ -14,10 +14,10 @@ wrapped = opened("wrapped")
 answer = cprbm.answer(wrapped, cprbm.Settings(links=20))
 
 records = comparisons.records(wrapped, answer)
-forces = [each for each in records if each["probe"] == "contact.force"]
-for each in forces:
-    told = f"{each['value']:8.3f} {each['unit']} on the circle"
-    print(f"{each['station']:6.1f} N on the tip: {told}")
+forces = [row for row in records if row["probe"] == "contact.force"]
+for row in forces:
+    force = f"{row['value']:8.3f} {row['unit']} on the circle"
+    print(f"{row['station']:6.1f} N on the tip: {force}")
 
 comparisons.write_csv("wrapped.csv", wrapped, answer)
 print()

@@ -1,7 +1,7 @@
-"""A mechanism of one's own.
+"""Your own mechanism.
 
-The scene ``latch.toml`` is written in mm, N and degrees; a verdict is one call,
-and its rows are records, in SI.
+The scene ``latch.toml`` is in mm, N and degrees. A single call gives the verdict
+and rows as records in SI.
 """
 
 import textwrap

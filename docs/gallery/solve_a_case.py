@@ -1,6 +1,6 @@
 """Solve a built-in case.
 
-The rotational hinge by both solvers, and what a certificate says.
+The rotational hinge by both solvers, and a certificate.
 """
 
 import cprbm

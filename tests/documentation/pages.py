@@ -14,14 +14,14 @@ def pages():
     return sorted(path for path in DOCS.rglob("*.md") if MADE not in path.parents)
 
 
-def told(path):
-    """A page's text without what is code in it."""
+def prose(path):
+    """Text of a page without code."""
     return re.sub(r"`[^`\n]+`", "", _FENCED.sub("", path.read_text(encoding="utf-8")))
 
 
 def links(path):
     """Targets of links and pictures within the project."""
-    found = re.findall(r"\]\(([^)\s]+)\)", told(path))
+    found = re.findall(r"\]\(([^)\s]+)\)", prose(path))
     return [target for target in found if not re.match(r"[a-z]+:", target)]
 
 
@@ -31,8 +31,13 @@ def anchors(path):
     return {re.sub(r"[^\w\- ]", "", head.replace("`", "").lower()).replace(" ", "-") for head in heads}
 
 
+def blocks(path, language):
+    """Code blocks of a language on a page."""
+    return [body for _, info, body in _FENCED.findall(path.read_text(encoding="utf-8")) if info.strip() == language]
+
+
 def directives(path, name):
-    """Bodies and arguments of the directives of a name."""
+    """Arguments and bodies of the directives with a name."""
     found = _FENCED.findall(path.read_text(encoding="utf-8"))
     return [
         (info.removeprefix(f"{{{name}}}").strip(), body) for _, info, body in found if info.startswith(f"{{{name}}}")

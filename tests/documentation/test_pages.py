@@ -5,6 +5,7 @@ import re
 import pytest
 
 from comparisons import cases
+from cprbm_scene import read
 from tests.documentation.pages import DOCS, MADE, ROOT, broken, directives, entries, pages
 
 README = ROOT / "README.md"
@@ -58,7 +59,18 @@ def test_every_case_has_a_page_with_its_figures_and_its_scene(name):
 
 def test_the_readme_is_short_and_has_one_picture_and_one_table():
     text = README.read_text(encoding="utf-8")
-    assert 80 <= len(text.splitlines()) <= 150
+    assert 300 <= len(text.split()) <= 600
     (picture,) = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", text)
     assert b"<svg" in (ROOT / picture).read_bytes()
     assert len(re.findall(r"^\|[-| :]+\|$", text, re.MULTILINE)) == 1
+
+
+@pytest.mark.parametrize(("page", "most"), [("docs/limits.md", 600), ("CONTRIBUTING.md", 900), ("CHANGELOG.md", 600)])
+def test_a_short_page_stays_short(page, most):
+    assert len((ROOT / page).read_text(encoding="utf-8").split()) <= most
+
+
+def test_the_kept_random_scenes_are_read():
+    kept = sorted((DOCS / "scenes").glob("*.toml"))
+    assert kept
+    assert [read(path).name for path in kept] == [path.stem for path in kept]

@@ -51,7 +51,7 @@ COPIED = (
 )
 ROOMS = ("cprbm", "fea_reference")
 NO_MECHANICS = ("__init__.py", "settings.py", "remarks.py")
-TOLD = ROOT / "docs" / "mutants.md"
+SURVIVORS = WORK / "survivors.md"
 CAUGHT = ("caught", "endless")
 HEAD = (
     "# Mutants of the mechanics",
@@ -85,7 +85,7 @@ def main() -> None:
     results = json.loads(RESULTS.read_text("utf-8")) if RESULTS.exists() else {}
     drawn = sample(options.mutants, options.seed, options.only)
     known = known_before(results, drawn)
-    told_of = {}
+    known_fates = {}
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
         copy_of_sources(tree := Path(folder))
         for mutant in (*drawn, *known):
@@ -105,15 +105,15 @@ def main() -> None:
                 )
                 sys.stdout.flush()
             if key in results:
-                told_of[key] = (mutant, results[key])
-    of_seed = sum(mutant in drawn for mutant, _ in told_of.values())
+                known_fates[key] = (mutant, results[key])
+    of_seed = sum(mutant in drawn for mutant, _ in known_fates.values())
     asked_for = f"{of_seed} of the {options.mutants} mutants that seed {options.seed} draws from"
     quick = f"Each was given at most {options.seconds:g} s of the processor of {len(mapped)} quick tests, those that"
     how = (
-        f"{asked_for} {', '.join(options.only) or ' and '.join(ROOMS)}, and {len(told_of) - of_seed} drawn earlier.",
+        f"{asked_for} {', '.join(options.only) or ' and '.join(ROOMS)}, {len(known_fates) - of_seed} drawn earlier.",
         f"{quick} reach its statement, in {', '.join(options.tests)}.",
     )
-    told(list(told_of.values()), (*how, ""))
+    write_survivors(list(known_fates.values()), (*how, ""))
 
 
 def fault_of(key: str) -> str:
@@ -237,8 +237,8 @@ def copy_of_sources(tree: Path) -> None:
             shutil.copy(ROOT / name, tree / name)
 
 
-def told(tried: list[tuple[Mutant, dict]], how: tuple[str, ...]) -> None:
-    """Write the score by kind, and who survives."""
+def write_survivors(tried: list[tuple[Mutant, dict]], how: tuple[str, ...]) -> None:
+    """Write the score by kind, and the survivors with reasons."""
     equivalent, longer = (json.loads(path.read_text("utf-8")) if path.exists() else {} for path in (EQUIVALENT, LONGER))
     lines = [
         *HEAD,
@@ -264,9 +264,9 @@ def told(tried: list[tuple[Mutant, dict]], how: tuple[str, ...]) -> None:
             known = equivalent.get(mutant.fault, known)
             where = (f"{mutant.file}:{mutant.line}", mutant.text, mutant.new)
             lines.append(f"| {' | '.join(f'`{text}`'.replace('|', chr(92) + '|') for text in where)} | {known} |")
-    write(TOLD, "\n".join(lines) + "\n")
+    write(SURVIVORS, "\n".join(lines) + "\n")
     score = f"{total[1]} caught, {total[2]} by longer tests, {total[3]} equivalent, {total[4]} alive"
-    sys.stdout.write(f"{total[0]} mutants: {score}; {TOLD}\n")
+    sys.stdout.write(f"{total[0]} mutants: {score}; {SURVIVORS}\n")
 
 
 if __name__ == "__main__":

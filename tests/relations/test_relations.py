@@ -88,7 +88,7 @@ QUESTIONS = {
 )
 def test_relations_hold(name, solver):
     asked, relations = QUESTIONS[name]
-    if (name, solver) == ("hinge", "fea"):  # its penalty is the one wanted to 3 %, by the way: docs/relations.md
+    if (name, solver) == ("hinge", "fea"):  # its penalty is the one wanted to 3 %, by the way: docs/tests.md
         relations = tuple(each for each in relations if each != "steps")
     found = tuple(violations(asked(), SOLVERS[solver], COARSE, [BY_NAME[each] for each in relations]))
     assert {each.relation for each in found} == set(relations)
