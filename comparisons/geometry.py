@@ -110,10 +110,10 @@ def edge_places(contact: EdgeContact, reach: float, count: int) -> Array:
             assert_never(contact)
 
 
-def is_free_on_the_left(contact: LineContact | FunctionContact) -> bool:
+def is_free_on_the_left(contact: EdgeContact) -> bool:
     """Whether the beam's side of an edge lies on the left of :func:`edge_places`."""
-    if isinstance(contact, LineContact):
-        return contact.side == "left"
+    if not isinstance(contact, FunctionContact):
+        return isinstance(contact, LineContact) and contact.side == "left"
     # the places above a function of x lie on the left of a graph towards larger x
     forward = (contact.range[1] > contact.range[0]) == (contact.axis == "x")
     return forward == (contact.side == "above")

@@ -1,192 +1,178 @@
-"""Contacts of an answer: no penetration, forces where surfaces touch, and forces that push along the normal.
+"""Declared contacts and undeclared contact: penetration, forces across gaps, forces along the normal, crossings.
 
 ======  =================================================================================================
 symbol  meaning
 ======  =================================================================================================
 x       place of the beam's neutral line
-d       signed distance of x from the surface of the partner: another beam, another lap, or a rigid edge
-n       unit normal of the partner at its closest point, towards x
-a       distance of x from its own surface: half of the thickness, zero of a line without thickness
-F       contact force on the beam
+g(x)    distance of x from the partner: the outline of a beam, of another lap, or of a rigid solid
+a       distance of x from its own surface: half of the thickness
+F, f    contact force on the beam, and its unit vector
 ======  =================================================================================================
 
-Beams are neutral lines with a thickness and round ends.  A contact holds where d >= a everywhere, d = a where a force
-acts, and F·n = |F|.  All distances carry the errors of fine polylines and of the solvers' penalties.
+A contact holds where g >= a everywhere, g = a where a force acts, and F acts along the normal of the partner.  A step
+δ along the normal is the step that increases g most: (g(x + δ f) - g(x))/δ is the cosine of the angle between F and the
+normal.  Lines without thickness touch a rigid solid that is smaller by SUNK all around: a distance from the surface
+itself has no sign.  Where two beams touch as lines, neither penetration nor direction is judged.
+
+Undeclared contact is an overlap of two outlines that are thinner by DEEP.  No crossing is a pair with a contact, with a
+touch or an overlap at rest, such as a common joint, or in the scene's ``may_cross``.  Beside a beam in a contact of
+lines only the lines count.
+
+All distances carry the errors of fine polylines and of the solvers' penalties.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 from functools import cache
 
 import numpy as np
 import shapely
 
-from comparisons.audit.state import Complex, StationState, unit
+from comparisons.audit.state import PIECES, Complex, Finding, StationState
 from comparisons.geometry import edge_places, is_free_on_the_left
 from cprbm_scene.answer import Array
 from cprbm_scene.contact_states import ACTIVE
-from cprbm_scene.statement import (
-    CircleContact,
-    Contact,
-    FunctionContact,
-    HalfPlaneContact,
-    LineContact,
-    RigidContact,
-    SelfContact,
-)
+from cprbm_scene.statement import CircleContact, Contact, EdgeContact, RigidContact, Scene, SelfContact
 
-DEEP = 0.05
-"""Largest penetration, and largest gap under a force, over the mean thickness; also of an undeclared contact."""
+Rigid = CircleContact | EdgeContact
 
-SUNK = 2e-3
-"""The same of lines without thickness, over the longest beam."""
+DEEP, SUNK = 0.05, 2e-3
+"""Largest penetration, and largest gap under a force: of thick beams over the thickness, also without a declared
+contact; of lines over the longest beam."""
 
 ALIGNED, LINE_ALIGNED = 0.98, 0.8
 """Least cosine of the angle between a contact force and the normal, of thick beams and of lines."""
-
-FAR, TINY = 1e3, 1e-300
-"""Place of a lap that does not exist, over the longest beam, and a length below all lengths, m."""
-
-BEHIND = 0.2
-"""Length of both sides behind an open edge, over the longest beam."""
-
-GRAPH = 2001
-"""Places of a rigid edge that is a function's graph."""
 
 BESIDE = 3.0
 """Thicknesses beside an overlap at rest, such as a common joint, within which penetration is not judged."""
 
 SMALL = 1e-6
-"""Share of a contact's largest force below which places and directions of a force are not judged."""
+"""Share of a contact's largest force below which places and directions of a force are not judged; also the
+counted share of thicknesses beside a beam in a contact of lines."""
+
+FAR, BEHIND = 1e3, 0.05
+"""Length of the edge of a half-plane, also the distance of a missing lap, and depth of the rigid solid behind an edge,
+over the longest beam."""
 
 
-def contacts(state: StationState) -> Iterator[str]:
-    """Contacts that penetrate, press across a gap, pull or rub, and contacts without a state."""
+def contacts(state: StationState) -> Iterator[Finding]:
+    """Penetrations of contacts, gaps under forces, and forces that pull or rub."""
     for name, contact in state.scene.contacts.items():
-        if name not in state.station.contacts:
-            yield f"{name} has no contact state"
         for on in dict.fromkeys(contact.beams):
-            if contact.thick or isinstance(contact, RigidContact):  # a distance of lines has no sign
-                yield from _penetration(state, name, on)
+            if contact.thick or isinstance(contact, RigidContact):
+                yield _penetration(state, name, on)
             yield from _pressing(state, name, on)
 
 
-def _penetration(state: StationState, name: str, on: str) -> Iterator[str]:
+def _penetration(state: StationState, name: str, on: str) -> Finding:
     """The deepest penetration of a beam outside overlaps at rest."""
-    contact, beam, s = state.scene.contacts[name], state.beams[on], state.beams[on].fine
+    contact, (s, x), t = state.scene.contacts[name], state.beams[on].fine, state.beams[on].beam.thickest
     own, allowed = _surface(state, contact, on, s)
-    gap = closest(state, contact, on, s)[0] - own
-    if (gap >= -allowed).all():
-        return
-    at = s[closest(_at_rest(state), contact, on, s)[0] < own * (1.0 - 1e-6)]
-    if at.size:
-        behind = np.searchsorted(at, s)
-        away = np.minimum(np.abs(s - at[np.maximum(behind - 1, 0)]), np.abs(at[np.minimum(behind, len(at) - 1)] - s))
-        gap[away <= BESIDE * beam.beam.thickest] = np.inf
-    worst = int(np.argmin(gap))
-    if not gap[worst] >= -allowed[worst]:
-        yield f"{on} penetrates its partner in {name} by {-gap[worst]:.2g} m at {s[worst]:.4g} m"
+    deep = own - _gap(state, contact, on, x, s) - (1.0 - SMALL) * allowed
+    if (deep > 0.0).any():
+        at_rest = own - _gap(state.at_rest, contact, on, state.beams[on].rest(s)[0], s) > 0.501 * allowed
+        deep[np.min(np.abs(s[:, None] - s[at_rest]), axis=1, initial=np.inf) <= BESIDE * t] = -np.inf
+    worst = int(np.argmax(deep))
+    return (
+        deep[worst],
+        f"{on} at {s[worst]:.4g} m penetrates its partner in {name} by {deep[worst] + allowed[worst]:.2g} m",
+    )
 
 
-def _at_rest(state: StationState) -> StationState:
-    """The beams and bodies of a station at rest."""
-    beams = {name: beam.at_rest for name, beam in state.beams.items()}
-    return replace(state, beams=beams, station=replace(state.station, bodies={}))
-
-
-def _pressing(state: StationState, name: str, on: str) -> Iterator[str]:
-    """Forces across a gap, and forces that pull or rub."""
+def _pressing(state: StationState, name: str, on: str) -> Iterator[Finding]:
+    """Gaps under forces, and forces that pull or rub."""
     contact, forces = state.scene.contacts[name], state.on[on][state.on[on]["source"] == name]
     size = np.abs(forces["force"])
     forces = forces[size > max(SMALL * size.max(initial=0.0), ACTIVE * state.largest[0])]
-    if not len(forces):
-        return
-    s, way = forces["s"], forces["force"] / np.abs(forces["force"])
-    (own, allowed), (distance, normal) = _surface(state, contact, on, s), closest(state, contact, on, s)
-    worst = int(np.argmax(np.abs(distance - own) - allowed))
-    if not abs(distance - own)[worst] <= allowed[worst]:
-        yield f"{name} presses {on} at {s[worst]:.4g} m across a gap of {(distance - own)[worst]:.2g} m"
-    cosine = (way * np.conj(normal)).real
-    if not contact.thick:
-        # a line lies on the surface itself: the distance from a rigid edge grows along a force that pushes
-        step, grown = 5.0 * SUNK * state.longest, np.full(len(s), np.inf)
-        if isinstance(contact, RigidContact):
-            grown = _to_rigid(state, contact, state.beams[on].line(s) + step * way)[0] - distance
-        cosine = np.minimum(grown / step + ALIGNED - LINE_ALIGNED, 1.0)
-    worst = int(np.argmin(cosine))
-    if not cosine[worst] >= ALIGNED:
-        how = "pulls" if cosine[worst] < 0.0 else "rubs"
-        yield f"{name} {how} {on} at {s[worst]:.4g} m, with a force {cosine[worst]:.3f} along the normal"
-
-
-def closest(state: StationState, contact: Contact, on: str, s: Array) -> tuple[Array, Complex]:
-    """Distances d and normals n of a contact's partner at arc lengths ``s`` (k,) of a beam."""
-    x = state.beams[on].line(s)
-    if isinstance(contact, RigidContact):
-        return _to_rigid(state, contact, x)
-    if isinstance(contact, SelfContact):
-        # another lap: between both laps the tangent turns by more than a right angle
-        beam, at = state.beams[on], np.union1d(state.beams[on].fine, s)
-        psi, away = np.unwrap(np.angle(beam.tangents(at))), np.abs(x[:, None] - beam.line(at))
-        away[np.abs(np.interp(s, at, psi)[:, None] - psi) < 0.5 * np.pi] = np.inf
-        foot = at[away.argmin(axis=1)]
-        place = np.where(np.isfinite(away.min(axis=1)), beam.line(foot), FAR * state.longest)
-    else:
-        beam = state.beams[next(other for other in contact.between if other != on)]
-        line = beam.line(beam.fine)
-        at, steps = _along(_curve(line), x), np.append(0.0, np.cumsum(np.abs(np.diff(line))))
-        place, foot = (
-            np.interp(at, steps, line.real) + 1j * np.interp(at, steps, line.imag),
-            np.interp(at, steps, beam.fine),
-        )
-    away = x - place
-    half = 0.5 * beam.thickness(foot) if contact.thick else 0.0
-    return np.abs(away) - half, away / np.maximum(np.abs(away), TINY)
-
-
-def _to_rigid(state: StationState, contact: RigidContact, x: Complex) -> tuple[Array, Complex]:
-    """The same of a rigid edge that its body carries, at places x (k,)."""
-    turn = np.exp(1j * state.rotation(contact.body))
-    x = np.asarray((x - state.carried(contact.body, 0j)) / turn)
-    if isinstance(contact, HalfPlaneContact):
-        n = unit(contact.normal)
-        return ((x - complex(*contact.point)) * np.conj(n)).real, np.full(len(x), turn * n)
-    if isinstance(contact, CircleContact):
-        from_centre = x - complex(*contact.center)
-        return np.abs(from_centre) - contact.radius, turn * from_centre / np.abs(from_centre)
-    edge = _edge(contact, BEHIND * state.longest)
-    at, beside = _along(edge, x), 1e-9 * edge.length
-    feet = (shapely.line_interpolate_point(edge, at + shift) for shift in (-beside, 0.0, beside))
-    before, foot, after = (np.asarray(shapely.get_coordinates(places) @ (1.0, 1j)) for places in feet)
-    behind = ((np.conj(after - before) * (x - foot)).imag < 0.0) & (at > 0.0) & (at < edge.length)
-    sign = np.where(behind, -1.0, 1.0)
-    return sign * np.abs(x - foot), turn * sign * (x - foot) / np.maximum(np.abs(x - foot), TINY)
-
-
-@cache
-def _edge(contact: LineContact | FunctionContact, depth: float) -> shapely.LineString:
-    """A rigid edge at rest with the free side on the left, and both sides that go straight back from an open edge."""
-    line = np.asarray(edge_places(contact, depth, GRAPH) @ (1.0, 1j))
-    line = line if is_free_on_the_left(contact) else line[::-1]
-    ends = line[0] - line[1], line[-1] - line[-2]
-    sides = line[0] + 1j * depth * ends[0] / abs(ends[0]), line[-1] - 1j * depth * ends[1] / abs(ends[1])
-    if line[0] == line[-1]:
-        sides = line[-2], line[1]
-    return _curve(np.concatenate((sides[:1], line, sides[1:])))
-
-
-def _along(curve: shapely.LineString, x: Complex) -> Array:
-    """Distances along a curve of the closest points to places (k,)."""
-    return np.asarray(shapely.line_locate_point(curve, shapely.points(x.real, x.imag)))
-
-
-def _curve(line: Complex) -> shapely.LineString:
-    return shapely.LineString(np.stack((line.real, line.imag), axis=1))
+    if len(forces):
+        s, way, x = forces["s"], forces["force"] / np.abs(forces["force"]), state.beams[on].line(forces["s"])
+        (own, allowed), gap = _surface(state, contact, on, s), _gap(state, contact, on, x, s)
+        off = np.abs(gap - own) - allowed
+        worst = int(np.argmax(off))
+        yield off[worst], f"{name} presses {on} at {s[worst]:.4g} m across a gap of {(gap - own)[worst]:.2g} m"
+        if contact.thick or isinstance(contact, RigidContact):
+            step, least = (0.2 * own, ALIGNED) if contact.thick else (2.5 * own, LINE_ALIGNED)
+            cosine = (_gap(state, contact, on, x + step * way, s) - gap) / step
+            along = f"with {cosine.min():.3f} of the force along the normal"
+            yield least - cosine.min(), f"{name} pulls or rubs {on} at {s[np.argmin(cosine)]:.4g} m, {along}"
 
 
 def _surface(state: StationState, contact: Contact, on: str, s: Array) -> tuple[Array, Array]:
     """Distances a of the own surface, and largest errors of a distance, (k,), m."""
-    t = state.beams[on].thickness(s)
-    return (0.5 * t, DEEP * t) if contact.thick else (0.0 * t, SUNK * state.longest + 0.0 * t)
+    t, sunk = state.beams[on].thickness(s), np.full(len(s), 2.0 * SUNK * state.longest)
+    return (0.5 * t, DEEP * t) if contact.thick else (sunk * isinstance(contact, RigidContact), sunk)
+
+
+def _gap(state: StationState, contact: Contact, on: str, x: Complex, s: Array) -> Array:
+    """Distances g of places x (k,) from the partner of a beam, whose arc lengths there are s (k,)."""
+    if isinstance(contact, RigidContact):
+        return np.asarray(shapely.distance(shapely.points(x.real, x.imag), _solid(state, contact)))
+    partner = state.beams[next((other for other in contact.beams if other != on), on)]
+    at, line = partner.fine
+    pieces, psi = np.diff(line), np.unwrap(np.angle(np.diff(line)))
+    share = np.clip(((x[:, None] - line[:-1]) * np.conj(pieces)).real / np.abs(pieces) ** 2, 0.0, 1.0)
+    away = np.abs(x[:, None] - line[:-1] - share * pieces)
+    away -= 0.5 * contact.thick * partner.thickness(at[:-1] + share * np.diff(at))
+    if isinstance(contact, SelfContact):  # another lap: between both laps the tangent turns by more than a right angle
+        away[np.abs(np.interp(s, at[:-1], psi)[:, None] - psi) < 0.5 * np.pi] = FAR * state.longest
+    return np.asarray(away.min(axis=1))
+
+
+def _solid(state: StationState, contact: Rigid) -> shapely.Geometry:
+    """The rigid solid of a contact at its present place, smaller by SUNK if beams touch as lines."""
+    return shapely.transform(
+        _solid_at_rest(contact, state.longest),
+        lambda xy: state.carried(contact.body, np.asarray(xy @ (1.0, 1j))).view(float).reshape(-1, 2),
+    )
+
+
+@cache
+def _solid_at_rest(contact: Rigid, longest: float) -> shapely.Geometry:
+    depth, smaller = BEHIND * longest, 0.0 if contact.thick else SUNK * longest
+    if isinstance(contact, CircleContact):
+        return shapely.Point(contact.center).buffer(contact.radius - smaller, quad_segs=PIECES)
+    places, left = edge_places(contact, FAR * longest, PIECES), is_free_on_the_left(contact)
+    if (places[0] == places[-1]).all():
+        disc = shapely.Polygon(places)
+        return (disc.buffer(depth) - disc if disc.exterior.is_ccw == left else disc).buffer(-smaller)
+    return shapely.LineString(places).buffer(-depth if left else depth, single_sided=True).buffer(-smaller)
+
+
+def crossings(scene: Scene, states: Sequence[StationState]) -> Iterator[str]:
+    """A sentence for every pair of shapes with undeclared contact: the pair, the load, and two ways to go on.
+
+    Args:
+        scene: the question.
+        states: of an answer, in order.
+    """
+    named = (*scene.may_cross, *((*contact.beams, name)[:2] for name, contact in scene.contacts.items()))
+    known = {frozenset(pair) for pair in named}.union(*(_overlaps(state.at_rest, 1.0 + DEEP) for state in states[:1]))
+    for state in states:
+        stage, load = state.station.stage, f"{state.station.value:g}"
+        for pair in _overlaps(state, 1.0 - DEEP) - known:
+            known.add(pair)
+            one, other = sorted(pair, key=[*scene.beams, *scene.contacts].index)
+            yield (
+                f"{one} and {other} pass through each other from {stage} {load} on ({state.stepped} = {load}), and no "
+                f"contact names them: add a contact of {one} and {other}, or "
+                f'may_cross = [["{one}", "{other}"]] if they lie in different planes.'
+            )
+
+
+def _overlaps(state: StationState, share: float) -> set[frozenset[str]]:
+    """Pairs of beams, or of a beam and a rigid solid, that overlap with a share of all thicknesses."""
+    rows: list[tuple[str, object, float]] = [
+        (name, _solid(state, of), 0.0) for name, of in state.scene.contacts.items() if isinstance(of, RigidContact)
+    ]
+    for name, beam in state.beams.items():
+        s, line = beam.fine
+        ends = np.stack((line[:-1], line[1:]), axis=1).view(float).reshape(-1, 2, 2)
+        pieces = zip(np.asarray(shapely.linestrings(ends)), 0.5 * beam.thickness(0.5 * (s[1:] + s[:-1])), strict=True)
+        rows += [(name, *piece) for piece in pieces]
+    names, shapes, half = (np.array(column) for column in zip(*rows, strict=True))
+    i, j = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=share * (half + half.max()))
+    lines = [beam for contact in state.scene.contacts.values() if not contact.thick for beam in contact.beams]
+    counted = np.where(np.isin(names[i], lines) | np.isin(names[j], lines), SMALL, share)
+    near = (names[i] < names[j]) & (shapely.distance(shapes[i], shapes[j]) < counted * (half[i] + half[j]))
+    return {frozenset(pair) for pair in zip(names[i][near].tolist(), names[j][near].tolist(), strict=True)}

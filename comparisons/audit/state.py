@@ -1,17 +1,17 @@
-"""One station as the audit reads it: deformed beams, moved bodies, and all forces with the scene's loads; SI.
+"""Statics of one station: deformed beams, moved bodies, and all forces with the scene's loads; SI.
 
 ======  ============================================================================================
 symbol  meaning
 ======  ============================================================================================
 s, x    undeformed arc length; position of the neutral line, as the complex number x + i·y
-X       x at rest
+X, u    x at rest; displacement x - X
 ψ       tangent angle of the neutral line
-α       mean rotation of the sections from rest between two stated places
+φ       rotation of the section from rest
 F, M    force of the part beyond a cut on the part before, and moment about the cut
+h, κ    largest distance of stated places; change of curvature M/(E·I)
 ======  ============================================================================================
 
-Between two stated places x = e^{iα} X + d: the line at rest, turned, and the cubic d through the values and the slopes
-e^{iψ} - e^{iα} X' of the difference at both places.  The cubic is exact where the beam moves as a rigid body.
+Between two stated places u is the cubic through the stated displacements with the slopes e^{iψ} - X'.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
 
 from comparisons.geometry import length
-from cprbm_scene import Answer, Beam, Scene, StationAnswer
-from cprbm_scene.answer import Array, BeamState
+from cprbm_scene.answer import Answer, Array, BeamState, StationAnswer
 from cprbm_scene.geometry import points_on, tangents_on
-from cprbm_scene.statement import DistributedLoad, Force, FreeEnd, Moment, WeldedEnd
+from cprbm_scene.statement import Beam, BeamMoment, DistributedLoad, Force, Material, Moment, Scene, WeldedEnd
 
 Complex = NDArray[np.complex128]
 Forces = NDArray[np.void]
@@ -41,7 +41,11 @@ _FIELDS = [
     ("force", complex),
     ("moment", float),
 ]
+_PLANE = (1.0, 1j)  # from two coordinates to a complex number
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+PIECES = 200
+"""Straight pieces of a beam's fine line."""
 
 SHEAR_FACTOR = 5.0 / 6.0
 """Of a rectangle: shear area over area (Timoshenko)."""
@@ -49,35 +53,40 @@ SHEAR_FACTOR = 5.0 / 6.0
 BESIDE = 1e-9
 """Distance, over the beam's length, below which a force acts at a cut."""
 
-FINE = 200
-"""Least number of pieces of a fine line."""
+SAGITTA = 0.4
+"""Distance of a chain's joints, where moments balance, from the smooth line, over h² κ: 1/8 on a circle, up to 0.21
+measured where a force acts inside an element, and 0.38 at an end, to which the chain's moment is continued."""
+
+Finding = tuple[float, str]
+"""Excess of an error over the allowed error, and the complaint that holds unless the excess is zero or less."""
 
 
 @dataclass(frozen=True)
 class DeformedBeam:
-    """A ``beam`` of the scene in a state: Young's modulus ``E`` (Pa), Poisson's ratio ``nu`` and ``length`` (m)."""
+    """A ``beam`` of the scene with its ``material`` and ``length`` (m) in a state.
+
+    A beam that does not move (``moves``) keeps the line at rest.
+    """
 
     beam: Beam
-    E: float
-    nu: float
+    material: Material
     length: float
     state: BeamState
+    moves: bool = True
 
     def rest(self, s: Array) -> tuple[Complex, Complex]:
         """Positions X and unit tangents X' at arc lengths (k,)."""
-        u = np.clip(s / self.length, 0.0, 1.0)
-        places, tangents = (along(self.beam.curve, u) @ (1.0, 1j) for along in (points_on, tangents_on))
+        places, tangents = (along(self.beam.curve, s / self.length) @ _PLANE for along in (points_on, tangents_on))
         return np.asarray(places), np.asarray(tangents)
 
     def thickness(self, s: Array) -> Array:
         """Thickness at arc lengths (k,), m."""
-        return np.asarray(self.beam.thickness_at(np.clip(s / self.length, 0.0, 1.0)))
+        return np.asarray(self.beam.thickness_at(s / self.length))
 
     def stiffness(self, s: Array) -> tuple[Array, Array, Array]:
         """E·I (N·m²), EA and GA_s (N) at arc lengths (k,)."""
-        t = self.thickness(s)
-        EA = self.E * t * np.asarray(self.beam.width_at(np.clip(s / self.length, 0.0, 1.0)))
-        return EA * t**2 / 12.0, EA, EA * SHEAR_FACTOR / (2.0 * (1.0 + self.nu))
+        EA = self.material.youngs_modulus * self.thickness(s) * self.beam.width_at(s / self.length)
+        return EA * self.thickness(s) ** 2 / 12.0, EA, EA * SHEAR_FACTOR / (2.0 * (1.0 + self.material.poisson_ratio))
 
     @cached_property
     def places(self) -> Complex:
@@ -86,55 +95,43 @@ class DeformedBeam:
 
     @cached_property
     def turned(self) -> Array:
-        """Rotation of the sections from rest at the stated places (n,), rad, continuous, up to full turns."""
+        """Rotation φ at the stated places (n,), rad, continuous, up to full turns."""
         return self.state.section_angle - np.unwrap(np.angle(self.rest(self.state.s)[1]))
 
-    def size(self, s: Array) -> Array:
-        """Length of the longer element beside places (k,), m."""
-        borders, sides = self.state.borders, BESIDE * self.length * np.array([[-1.0], [1.0]])
-        element = np.clip(np.searchsorted(borders, s + sides) - 1, 0, len(borders) - 2)
-        return np.asarray(np.diff(borders)[element].max(axis=0))
+    @cached_property
+    def displacement(self) -> CubicHermiteSpline:
+        """Displacement u of the neutral line by arc length."""
+        X, tangents = self.rest(self.state.s)
+        return CubicHermiteSpline(self.state.s, self.places - X, np.exp(1j * self.state.angle) - tangents)
+
+    @cached_property
+    def fine(self) -> tuple[Array, Complex]:
+        """Arc lengths and places of a fine line, (PIECES + 1,) each."""
+        s = np.linspace(0.0, self.length, PIECES + 1)
+        return s, self.line(s)
 
     def line(self, s: Array) -> Complex:
         """Positions x at arc lengths (k,)."""
-        at, (X, tangents) = self.state.s, self.rest(self.state.s)
-        piece = np.clip(np.searchsorted(at, s, side="right") - 1, 0, len(at) - 2)
-        turn, h = np.exp(0.5j * (self.turned[1:] + self.turned[:-1]))[piece], np.diff(at)[piece]
-        (d0, d1), (g0, g1) = (
-            (of_line[piece] - turn * of_rest[piece], of_line[piece + 1] - turn * of_rest[piece + 1])
-            for of_line, of_rest in ((self.places, X), (np.exp(1j * self.state.angle), tangents))
-        )
-        share, bend, twist = (s - at[piece]) / h, 3.0 * (d1 - d0) - h * (2.0 * g0 + g1), h * (g0 + g1) - 2.0 * (d1 - d0)
-        return np.asarray(turn * self.rest(s)[0] + d0 + share * (h * g0 + share * (bend + share * twist)))
-
-    def tangents(self, s: Array) -> Complex:
-        """Unit tangents e^{iψ} at arc lengths (k,)."""
-        sheared = self.turned + self.state.angle - self.state.section_angle
-        return np.asarray(self.rest(s)[1] * np.exp(1j * np.interp(s, self.state.s, sheared)))
+        return np.asarray(self.rest(s)[0] + self.moves * self.displacement(s))
 
     @cached_property
-    def fine(self) -> Array:
-        """Arc lengths of a fine line, stated places included."""
-        at = self.state.s
-        pieces = 1 + FINE // len(at)
-        return np.interp(np.arange(pieces * (len(at) - 1) + 1) / pieces, np.arange(len(at)), at)
-
-    @cached_property
-    def at_rest(self) -> DeformedBeam:
-        """The beam at rest with the same places."""
-        X, tangents = self.rest(self.state.s)
-        angle = np.unwrap(np.angle(tangents))
-        return replace(self, state=replace(self.state, x=X.real, y=X.imag, angle=angle, section_angle=angle))
+    def h(self) -> float:
+        """Largest distance of two neighbouring stated places, m."""
+        return float(np.diff(self.state.s).max())
 
 
 @dataclass(frozen=True)
 class StationState:
-    """One station: ``values`` are those of all loads and drives there, ``kinematics`` the solver's theory."""
+    """One station of a stage that steps ``stepped``, with the ``values`` of all loads and drives there.
+
+    ``kinematics`` is the solver's theory.
+    """
 
     scene: Scene
     station: StationAnswer
     beams: dict[str, DeformedBeam]
     values: dict[str, float]
+    stepped: str
     kinematics: str
 
     @cached_property
@@ -151,22 +148,30 @@ class StationState:
     def largest(self) -> tuple[float, float]:
         """Largest force, N, and moment, N·m; a force counts as a moment with a lever of 1e-3 of the longest beam."""
         force = float(np.max(np.abs(self.forces["force"]), initial=0.0))
-        moments = np.concatenate([self.forces["moment"], *(beam.state.M for beam in self.beams.values())])
-        return force, max(float(np.max(np.abs(moments))), 1e-3 * force * self.longest, BESIDE * self.natural)
+        moments = [
+            np.abs(of).max(initial=0.0) for of in (self.forces["moment"], *(b.state.M for b in self.beams.values()))
+        ]
+        return force, float(max(*moments, 1e-3 * force * self.longest, BESIDE * self.natural))
+
+    @cached_property
+    def at_rest(self) -> StationState:
+        """All lines and bodies at rest."""
+        beams = {name: replace(beam, moves=False) for name, beam in self.beams.items()}
+        return replace(self, beams=beams, station=replace(self.station, bodies={}))
 
     def rotation(self, body: str) -> float:
-        """Rotation of a body, rad."""
+        """Rotation of a body, rad; zero of a fixed body."""
         return float(self.station.bodies[body][2]) if body in self.station.bodies else 0.0
 
-    def carried(self, body: str, X: complex) -> complex:
-        """Present position of a place X of a body."""
+    def carried(self, body: str, X: Complex) -> Complex:
+        """Present positions of places X (k,) of a body."""
         first = complex(*next(iter(self.scene.bodies[body].points.values())))
         u, v, phi = self.station.bodies.get(body, (0.0, 0.0, 0.0))
-        return complex(first + complex(u, v) + np.exp(1j * phi) * (X - first))
+        return np.asarray(first + complex(u, v) + np.exp(1j * phi) * (X - first))
 
     def point(self, name: str) -> complex:
         """Present position of a body's point."""
-        return self.carried(self.scene.body_of(name), complex(*self.scene.place_of(name)))
+        return complex(self.carried(self.scene.body_of(name), np.array([self.scene.place_of(name)]) @ _PLANE)[0])
 
     def moved(self, name: str) -> complex:
         """Displacement of a body's point."""
@@ -176,72 +181,66 @@ class StationState:
     def forces(self) -> Forces:
         """All forces, loads included."""
         stated = self.station.forces
-        place, force = stated.place @ (1.0, 1j), stated.force @ (1.0, 1j)
-        rows = list(zip(stated.source, stated.target, stated.s, place, force, stated.moment, strict=True))
-        for name in self.scene.loads:
-            load = self.load(name)
-            load["place"] += self._displacements(load)
-            load["force"], load["moment"] = self.values[name] * load["force"], self.values[name] * load["moment"]
-            rows += load.tolist()
-        return np.array(rows, dtype=_FIELDS)
+        places, forces = stated.place @ _PLANE, stated.force @ _PLANE
+        rows = [*zip(stated.source, stated.target, stated.s, places, forces, stated.moment, strict=True)]
+        return np.array([*rows, *(row for name in self.scene.loads for row in self.load(name)[0])], dtype=_FIELDS)
 
     @cached_property
     def on(self) -> dict[str, Forces]:
         """The forces on every beam and moving body."""
         return {name: self.forces[self.forces["target"] == name] for name in (*self.beams, *self.station.bodies)}
 
-    def load(self, name: str) -> Forces:
-        """Forces and moments of a load of value one, with their places at rest."""
-        load, s, weights = self.scene.loads[name], np.array([np.nan]), np.ones(1)
+    def lever(self, name: str) -> float:
+        """Moment of the largest force on a beam with the distance of a chain's joints from the smooth line, N·m."""
+        beam, largest = self.beams[name], float(np.max(np.abs(self.on[name]["force"]), initial=0.0))
+        return largest * SAGITTA * beam.h**2 * float(np.max(np.abs(beam.state.M) / beam.stiffness(beam.state.s)[0]))
+
+    def ripple(self, name: str) -> float:
+        """Moment of the loads on half of an element: contacts lift a loaded beam by forces at places, N·m."""
+        beam, loads = self.beams[name], np.isin(self.on[name]["source"], list(self.scene.loads))
+        return float(loads @ np.abs(self.on[name]["force"]) * beam.h**2 / (8.0 * beam.length))
+
+    def load(self, name: str) -> tuple[list[tuple[object, ...]], float]:
+        """Rows of a load's forces at the present places, and the work of the load with the value one, J."""
+        load, value, s, weights = self.scene.loads[name], self.values[name], np.array([np.nan]), np.ones(1)
         if isinstance(load, Moment | Force):
             target = load.body if isinstance(load, Moment) else self.scene.body_of(load.point)
-            point = next(iter(self.scene.bodies[target].points)) if isinstance(load, Moment) else load.point
-            X = np.array([complex(*self.scene.place_of(point))])
+            X = np.array([(0.0, 0.0) if isinstance(load, Moment) else self.scene.place_of(load.point)]) @ _PLANE
+            x, turned = self.carried(target, X), self.rotation(target)
         else:
             target, beam = load.beam, self.beams[load.beam]
             if isinstance(load, DistributedLoad):
-                begin, end = (share * beam.length for share in load.along)
-                inner = beam.state.s[(beam.state.s > begin) & (beam.state.s < end)]
-                s, weights = gauss(np.concatenate(([begin], inner, [end])))
+                s, weights = gauss(np.unique(np.clip(beam.state.s / beam.length, *load.along)) * beam.length)
             else:
                 s = np.array([load.at * beam.length])
-            X = beam.rest(s)[0]
-        direction = getattr(load, "direction", None)
-        force, moment = (weights * unit(direction), 0.0 * weights) if direction else (0j * weights, weights)
-        return np.array([(name, target, *row) for row in zip(s, X, force, moment, strict=True)], dtype=_FIELDS)
+            X, x, turned = beam.rest(s)[0], beam.line(s), self._turned(target, float(s[0]))
+        way = 0j if isinstance(load, Moment | BeamMoment) else unit(load.direction)
+        work = (weights @ (x - X) * np.conj(way)).real + (0.0 if way else turned)
+        weights = value * weights
+        return [(name, target, *row) for row in zip(s, x, weights * way, weights * (not way), strict=True)], float(work)
 
-    def _displacements(self, load: Forces) -> Complex:
-        """Displacements of a load's places."""
-        target, X = str(load["target"][0]), load["place"]
-        present = self.beams[target].line(load["s"]) if target in self.beams else self.carried(target, X[0])
-        return np.asarray(present - X)
-
-    def way_of(self, name: str) -> float:
-        """Work of a load of value one: displacement along the direction, or rotation."""
-        load = self.load(name)
-        way, moment = self._displacements(load) @ np.conj(load["force"]), float(load["moment"].sum())
-        target = str(load["target"][0])
-        if not moment or target not in self.beams:
-            return float(way.real) + moment * self.rotation(target)
-        # the angle of a direction is known up to full turns: the held end says how many the answer counts
-        beam, record = self.beams[target], self.beams[target].beam
-        at_end = isinstance(record.end, WeldedEnd) or isinstance(record.start, FreeEnd)
-        held, turned = (record.end, beam.turned[-1]) if at_end else (record.start, beam.turned[0])
-        ahead = turned - self.rotation(self.scene.body_of(getattr(held, "point", "")))
-        full = np.round(ahead / (2.0 * np.pi)) * 2.0 * np.pi
-        # within an element the moment turns the section further than both ends
-        i, s = np.searchsorted(beam.state.s[1:-1], load["s"][0], side="right"), load["s"][0]
-        h, (EI, _, _) = s - beam.state.s[i], beam.stiffness(load["s"])
-        return float(beam.turned[i] + h * (beam.state.M[i] - 0.5 * h * beam.state.Q[i]) / EI[0] - full)
+    def _turned(self, name: str, s: float) -> float:
+        """Rotation φ of a beam's section; the held end says how many full turns the answer counts."""
+        beam = self.beams[name]
+        end, i = (beam.beam.end, -1) if isinstance(beam.beam.end, WeldedEnd) else (beam.beam.start, 0)
+        ahead = beam.turned[i] - self.rotation(self.scene.owners.get(getattr(end, "point", ""), ""))
+        # within an element a moment turns the section further than both ends
+        before = int(np.searchsorted(beam.state.s[1:-1], s, side="right"))
+        h, M, Q = s - beam.state.s[before], beam.state.M[before], beam.state.Q[before]
+        turned = beam.turned[before] + h * (M - 0.5 * h * Q) / beam.stiffness(np.array([s]))[0][0]
+        return float(turned - 2.0 * np.pi * np.round(ahead / (2.0 * np.pi)))
 
     def beyond(self, name: str, s: Array) -> tuple[Complex, Array]:
-        """Force F and moment M of all that acts beyond cuts at arc lengths (k,) of a beam, (k,) each."""
+        """Force F and moment M of all forces beyond cuts at arc lengths (k,) of a beam, (k,) each."""
         beam, forces = self.beams[name], np.sort(self.on[name], order="s")
         start, side = complex(beam.places[0]), BESIDE * beam.length
-        parts = (forces["force"], about(forces, start))
-        F, M = (np.append(np.cumsum(part[::-1])[::-1], 0.0) for part in parts)
         first = np.searchsorted(forces["s"], np.minimum(s + side, beam.length - side))
-        return F[first], M[first] - (np.conj(beam.line(s) - start) * F[first]).imag
+        F, M = (np.append(np.cumsum(of[::-1])[::-1], 0.0)[first] for of in (forces["force"], about(forces, start)))
+        return F, M - (np.conj(beam.line(s) - start) * F).imag
+
+    def unbalance(self, name: str) -> Array:
+        """Stated moment less the moment of all that acts beyond, at the stated places of a beam, (n,), N·m."""
+        return self.beams[name].state.M - self.beyond(name, self.beams[name].state.s)[1]
 
 
 def about(forces: Forces, place: complex) -> Array:
@@ -262,14 +261,16 @@ def unit(direction: tuple[float, float]) -> complex:
 
 def states_of(scene: Scene, answer: Answer) -> Iterator[StationState]:
     """Every station that states internal forces of all beams; loads and drives keep their last value."""
-    kinematics = str(answer.settings.get("kinematics", "bending"))
+    kinematics, names = str(answer.settings.get("kinematics", "bending")), [stage.name for stage in scene.stages]
     for station in answer.stations:
-        if not station.beams.keys() >= scene.beams.keys():
-            continue
-        values, beams = dict.fromkeys((*scene.loads, *scene.drives), 0.0), {}
-        for stage in scene.stages[: [stage.name for stage in scene.stages].index(station.stage) + 1]:
-            values[stage.steps] = station.value if stage.name == station.stage else stage.stations[-1]
-        for name, beam in scene.beams.items():
-            E, nu = scene.materials[beam.material].youngs_modulus, scene.materials[beam.material].poisson_ratio
-            beams[name] = DeformedBeam(beam, E, nu, length(beam.curve), station.beams[name])
-        yield StationState(scene, station, beams, values, kinematics)
+        if station.beams.keys() >= scene.beams.keys():
+            before = scene.stages[: names.index(station.stage)]
+            values = dict.fromkeys((*scene.loads, *scene.drives), 0.0) | {
+                each.steps: each.stations[-1] for each in before
+            }
+            stepped = scene.stages[len(before)].steps
+            beams = {
+                name: DeformedBeam(beam, scene.materials[beam.material], length(beam.curve), station.beams[name])
+                for name, beam in scene.beams.items()
+            }
+            yield StationState(scene, station, beams, values | {stepped: station.value}, stepped, kinematics)
