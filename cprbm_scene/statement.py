@@ -9,8 +9,8 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Literal, Protocol, TypeVar
+from collections.abc import Callable, Iterator, Mapping
+from typing import Annotated, Literal, TypeVar
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
@@ -50,6 +50,7 @@ from cprbm_scene.contact_records import (
     CircleContact,
     Contact,
     EdgeContact,
+    EllipseContact,
     FunctionContact,
     HalfPlaneContact,
     LineContact,
@@ -58,6 +59,7 @@ from cprbm_scene.contact_records import (
     Related,
     RigidContact,
     SelfContact,
+    SplineContact,
 )
 from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
 from cprbm_scene.frozendict import frozendict
@@ -88,6 +90,7 @@ __all__ = [
     "DistributedLoad",
     "Drive",
     "EdgeContact",
+    "EllipseContact",
     "FixedBody",
     "Force",
     "FreeBody",
@@ -118,6 +121,7 @@ __all__ = [
     "Size",
     "SlidingBody",
     "Spline",
+    "SplineContact",
     "Stage",
     "Stop",
     "Tolerance",
@@ -128,13 +132,6 @@ __all__ = [
 
 Curve = NeutralLine
 T = TypeVar("T")
-
-
-class Source(Protocol):
-    """Data of a scene with parameters, for another reading."""
-
-    def read(self, values: Mapping[str, float | str]) -> Scene:
-        """The scene with other values of parameters."""
 
 
 class Scene(Record):
@@ -168,7 +165,7 @@ class Scene(Record):
     claims: tuple[Claim, ...] = ()
     verdict_limit: PositiveShare = 0.015
     file: str = ""
-    _source: Source | None = PrivateAttr(default=None)
+    _read: Callable[[Mapping[str, float | str]], Scene] | None = PrivateAttr(default=None)
 
     def rules(self) -> Iterator[Mistake]:
         """Pairs of the same name."""
@@ -216,9 +213,9 @@ class Scene(Record):
             >>> hinge.beams["beam1"].thickness
             0.0019
         """
-        if self._source is None or self._source.read({}) != self:
+        if self._read is None or self._read({}) != self:
             raise ValueError("found a scene without parameters or altered after reading; allowed: a scene from a file")
-        return self._source.read(values)
+        return self._read(values)
 
     def __repr__(self) -> str:
         """Name, and numbers of beams, contacts and probes."""
