@@ -32,12 +32,12 @@ def wrong_actions(scene: Scene) -> Iterator[Mistake]:
     for key, acting in (actions | loads).items():
         if not _named(freedoms, acting) or any(acting.rules()):
             continue
-        owner, row = freedoms.owner(acting), freedoms.row(acting)
+        owner = freedoms.owner(acting)
         mistake = _without_freedom(freedoms, key, acting)
         if mistake is None and not any(scene.bodies[owner].rules()):
             mistake = _driven_already(freedoms, key, acting, driven.setdefault(owner, {}))
             if mistake is None and key in actions:
-                driven[owner][key] = row
+                driven[owner][key] = freedoms.row(acting)
         if mistake is not None:
             yield mistake
     for name, load in scene.loads.items():
@@ -61,8 +61,7 @@ def _without_freedom(freedoms: Freedoms, key: str, acting: BodyLoad | Drive) -> 
         movable = {name: each.points for name, each in scene.bodies.items() if each.motion != "fixed"}
         names = movable if place == "body" else [point for points in movable.values() for point in points]
         can_move = ", ".join(map(repr, names)) or "there is none"
-        found = f"{what} the fixed body {owner!r}"
-        return Mistake(f"{key}.{place}", found, f"a {place} that can move: {can_move}")
+        return Mistake(f"{key}.{place}", f"{what} the fixed body {owner!r}", f"a {place} that can move: {can_move}")
     if not any(body.rules()) and held(freedoms.row(acting), freedoms.guide(owner)):
         return Mistake(f"{key}.{direction}", across, allowed)
     return None

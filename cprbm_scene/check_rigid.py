@@ -21,12 +21,11 @@ from itertools import pairwise
 from math import dist
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cprbm_scene.check_overlaps import OVERLAP
 from cprbm_scene.closest import half_thickness
 from cprbm_scene.curve_records import MEETING, SHORTEST, shape_of
-from cprbm_scene.curves import ParametricCurve, least, unit_vector
+from cprbm_scene.curves import Array, ParametricCurve, least, unit_vector
 from cprbm_scene.mistakes import Mistake
 from cprbm_scene.statement import (
     CircleContact,
@@ -40,7 +39,6 @@ from cprbm_scene.statement import (
     SplineContact,
 )
 
-Array = NDArray[np.float64]
 _SAMPLES = 2001
 _ON_EDGE = 257
 """Samples of a function, from the nearest of which Newton's method starts."""
@@ -71,15 +69,11 @@ def overlapping_rigid_shapes(scene: Scene) -> Iterator[Mistake]:
         held = any(getattr(end, "point", None) in points for end in (beam.start, beam.end))
         circle = isinstance(contact, CircleContact)
         if depth > max(OVERLAP * measure, MEETING * shape.length if held and not circle else 0.0):
-            by = f"at the start by {depth:.3g} m, {depth / measure:.3g} of {of}"
-            what = (
-                f"that overlaps the circle {by}"
-                if circle
-                else f"on the wrong side of what it may touch, or overlapping it, {by}"
-            )
+            what = "that overlaps the circle" if circle else "on the wrong side of the edge, or overlapping the edge,"
             side = f"circle from {contact.side}" if isinstance(contact, CircleContact) else "edge from the free side"
+            found = f"the beam {contact.beam!r} {what} at the start by {depth:.3g} m, {depth / measure:.3g} of {of}"
             allowed = f"a beam that touches the {side} or is apart (overlap at most {OVERLAP:g} of {of})"
-            yield Mistake(f"contacts.{name}", f"the beam {contact.beam!r} {what}", allowed)
+            yield Mistake(f"contacts.{name}", found, allowed)
 
 
 def _proportions(key: str, contact: RigidContact, length: float) -> Iterator[Mistake]:

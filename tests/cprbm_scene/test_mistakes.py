@@ -38,6 +38,8 @@ RECORDS = [
     ("name", "n" * 65, "name", "64 characters"),
     ("loads/M/kind", "torque", "loads.M.kind", "one of 'moment', 'force'"),
     ("loads/M/value", 1.0, "loads.M.value", "'kind', 'body'"),
+    ("loads/M/kind", "gravity", "loads.M.kind", "is 'distributed' meant"),
+    ("contacts/contact/friction", 0.3, "contacts.contact.friction", "friction is not modelled"),
     ("materials/abs/poisson_ratio", 0.6, "materials.abs.poisson_ratio", "at most 0.5"),
     ("materials/abs/youngs_modulus", HUGE, "materials.abs.youngs_modulus", "40001 bits; a number"),
     ("contacts/contact/thick", 1, "contacts.contact.thick", "true or false"),
