@@ -55,11 +55,11 @@ def over(contact, gap=0.0, *, thick=True, start="weld"):
 
 @pytest.mark.parametrize("contact", KINDS)
 @pytest.mark.parametrize("thick", [True, False])
-@pytest.mark.parametrize("gap", [0.0, 1e-12, 0.01, -0.5e-6 * T])
-def test_a_beam_may_touch_or_be_apart(contact, thick, gap):
-    scene = scene_from(over(contact, gap, thick=thick))
-    assert scene.contacts["touch"].beams == ("beam",)
-    assert scene.contacts["touch"].kind == contact["kind"]
+def test_a_beam_may_touch_or_be_apart(contact, thick):
+    for gap in (0.0, 1e-12, 0.01, -0.5e-6 * T):
+        scene = scene_from(over(contact, gap, thick=thick))
+        assert scene.contacts["touch"].beams == ("beam",), gap
+        assert scene.contacts["touch"].kind == contact["kind"]
 
 
 @pytest.mark.parametrize("contact", KINDS)
