@@ -15,15 +15,13 @@ from itertools import pairwise
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, shape_of, with_half_waves
+from cprbm_scene.curves import Array
 from cprbm_scene.mistakes import Mistake
 from cprbm_scene.record import Name, Of, Record
 from cprbm_scene.units import NUMBER, STRESS, Length, Number, PositiveLength
-
-Array = NDArray[np.float64]
 
 THINNEST, THICKEST = 1e-5, 0.2
 MOST_CURVED = 0.5

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, cast
 
 from pydantic import Field, create_model
 
@@ -215,8 +215,7 @@ class _Drive(_From):
     @property
     def begins(self) -> str | None:
         """Name of the stage before which the motion is free; None for a drive that holds from the start."""
-        begins: str | None = getattr(self, "from")
-        return begins
+        return cast("str | None", getattr(self, "from"))
 
 
 class DisplacementDrive(_Drive):

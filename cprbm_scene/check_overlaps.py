@@ -51,19 +51,12 @@ def repeated_contacts(scene: Scene) -> Iterator[Mistake]:
     """Contacts of the same beams, or of the same beam and rigid shape."""
     seen: dict[object, str] = {}
     for name, contact in scene.contacts.items():
-        if isinstance(contact, RigidContact):
-            shape = tuple(value for field, value in contact if field not in {"thick", "paper"})
-            first = seen.setdefault(shape, name)
-            found, key = f"the beam and the shape of contacts.{first} again", f"contacts.{name}"
-            allowed = "each beam and shape once"
-        else:
-            first = seen.setdefault(frozenset(contact.beams), name)
-            paired = isinstance(contact, BeamContact)
-            what, key = ("pair", "between") if paired else ("beam", "beam")
-            found, key = f"the {what} of contacts.{first} again", f"contacts.{name}.{key}"
-            allowed = "each pair of beams once" if paired else "each beam once"
+        rigid, paired = isinstance(contact, RigidContact), isinstance(contact, BeamContact)
+        shape = tuple(value for field, value in contact if field not in {"thick", "paper"})
+        first = seen.setdefault(shape if rigid else frozenset(contact.beams), name)
         if first != name:
-            yield Mistake(key, found, allowed)
+            what, part = ("beam and the shape", "") if rigid else ("pair", ".between") if paired else ("beam", ".beam")
+            yield Mistake(f"contacts.{name}{part}", f"the {what} of contacts.{first} again", f"each {what} once")
 
 
 def overlapping_beams(scene: Scene) -> Iterator[Mistake]:
@@ -74,7 +67,7 @@ def overlapping_beams(scene: Scene) -> Iterator[Mistake]:
         first, second = (scene.beams.get(beam) for beam in contact.between)
         if first is None or second is None or not (first.sound and second.sound):
             continue
-        found = _too_deep(scene, first, second) if contact.thick else _crossing(first, second)
+        found = _too_deep(scene, contact) if contact.thick else _crossing(first, second)
         if found is not None:
             beams = f"{contact.between[0]!r} and {contact.between[1]!r}"
             yield Mistake(f"contacts.{name}", f"{beams} {found[0]}", found[1])
@@ -87,12 +80,8 @@ def overlap_at_rest(scene: Scene, contact: BeamContact) -> float:
     the overlap from the distance at which the beams touch.
     """
     first, second = (scene.beams[beam] for beam in contact.between)
-    return _overlap(scene, first, second) if contact.thick else 0.0
-
-
-def _overlap(scene: Scene, first: Beam, second: Beam) -> float:
     mean, largest = 0.5 * (first.thinnest + second.thinnest), 0.5 * (first.thickest + second.thickest)
-    ranges = _apart_from_shared(first, second, JOINED * largest)
+    ranges = _apart_from_shared(first, second, JOINED * largest) if contact.thick else None
     depth = 0.0 if ranges is None else -closest_pair(first, second, *ranges).gap
     if ranges is not None and OVERLAP * mean < depth <= TOUCHING * mean:
         beside = _apart_from_held(scene, (first, second), largest, ranges)
@@ -102,10 +91,11 @@ def _overlap(scene: Scene, first: Beam, second: Beam) -> float:
     return depth if depth > OVERLAP * mean else 0.0
 
 
-def _too_deep(scene: Scene, first: Beam, second: Beam) -> tuple[str, str] | None:
+def _too_deep(scene: Scene, contact: BeamContact) -> tuple[str, str] | None:
     """Values found and allowed for thick beams; None without an overlap beyond touching."""
-    mean, depth = 0.5 * (first.thinnest + second.thinnest), _overlap(scene, first, second)
-    allowed = OVERLAP if first.tapered or second.tapered else TOUCHING
+    beams, depth = [scene.beams[beam] for beam in contact.between], overlap_at_rest(scene, contact)
+    mean = 0.5 * sum(beam.thinnest for beam in beams)
+    allowed = OVERLAP if any(beam.tapered for beam in beams) else TOUCHING
     if depth <= allowed * mean:
         return None
     return (

@@ -19,12 +19,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cprbm_scene.beam_records import Beam
 from cprbm_scene.curve_records import shape_of
+from cprbm_scene.curves import Array
 
-Array = NDArray[np.float64]
 Range = tuple[float, float]
 
 WHOLE: Range = (0.0, 1.0)

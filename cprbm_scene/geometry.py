@@ -5,12 +5,8 @@ The functions state the stress-free geometry of the scene: they contain neither 
 
 from __future__ import annotations
 
-from math import dist
-
 from cprbm_scene.curve_records import NeutralLine, shape_of
 from cprbm_scene.curves import Array
-
-distance = dist
 
 
 def arc_length(curve: NeutralLine) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from cprbm_scene.curve_records import MEETING, shape_of
 from cprbm_scene.mistakes import Mistake, written_place
-from cprbm_scene.statement import Beam, FreeEnd, PinnedEnd, RotationDrive, Scene, Stop, TurningBody, WeldedEnd
+from cprbm_scene.statement import Beam, FreeEnd, PinnedEnd, Scene, Stop, TurningBody, WeldedEnd
 
 TAUT = 1e-6
 """Share of the length by which a beam must exceed the distance of its points: a taut beam is straight."""
@@ -72,22 +72,17 @@ def wrong_assembly(scene: Scene) -> Iterator[Mistake]:
             allowed = "a weld: the beam has to stand by itself before it is assembled"
             yield Mistake(f"beams.{name}.start", found, allowed)
         elif _stays(scene, beam.start.point) and _stays(scene, beam.end.point):
-            length = shape_of(beam.curve).length
-            reach = dist(beam.curve.start, scene.place_of(beam.end.point))
+            length, reach = shape_of(beam.curve).length, dist(beam.curve.start, scene.place_of(beam.end.point))
             if reach >= (1.0 - TAUT) * length:
-                found = f"a beam too short to reach {beam.end.point!r}: "
-                found += f"it is {length:.6g} m long, the way is {reach:.6g} m"
+                found = f"a beam too short to reach {beam.end.point!r}: {length:.6g} m long, on a way of {reach:.6g} m"
                 yield Mistake(f"beams.{name}.end", found, "a beam that is longer than the way between its two points")
 
 
 def _stays(scene: Scene, point: str) -> bool:
     """True if a point is at rest without loads and with all drives at zero."""
-    name = scene.body_of(point)
+    name, turned = scene.body_of(point), {getattr(drive, "body", None) for drive in scene.drives.values()}
     body = scene.bodies[name]
-    if isinstance(body, TurningBody):
-        driven = any(isinstance(drive, RotationDrive) and drive.body == name for drive in scene.drives.values())
-        return driven or body.about == point
-    return body.motion == "fixed"
+    return body.motion == "fixed" or (isinstance(body, TurningBody) and (body.about == point or name in turned))
 
 
 def wrong_stops(scene: Scene) -> Iterator[Mistake]:

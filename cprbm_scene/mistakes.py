@@ -10,6 +10,20 @@ from itertools import islice
 _LISTED = 200
 """Largest number of names in a message."""
 
+_MEANT = {
+    "gravity": "distributed",
+    "weight": "distributed",
+    "torque": "moment",
+    "clamp": "weld",
+    "hinge": "pin",
+    "roller": "slides",
+    "pivot": "turns",
+    "circle": "arc",
+    "straight": "line",
+}
+"""Words of other programs, and the words of a scene for the same."""
+_NOT_MODELLED = frozenset({"friction", "temperature", "plasticity", "yield_stress", "damping", "density", "mass"})
+
 
 @dataclass(frozen=True, slots=True)
 class Mistake:
@@ -52,8 +66,10 @@ def first_of(found: Iterable[Mistake], file: str = "") -> list[Mistake]:
 
 def hint(word: str, known: Iterable[str]) -> str:
     """`` (is 'X' meant?)`` for a ``word`` close to a ``known`` word, upper or lower case; otherwise an empty text."""
+    if word.casefold() in _NOT_MODELLED:
+        return f" ({word} is not modelled)"
     by_case = {each.casefold(): each for each in known}
-    near = get_close_matches(word.casefold(), by_case, n=1)
+    near = get_close_matches(_MEANT.get(word.casefold(), word.casefold()), by_case, n=1)
     # any two words as short as a unit are close
     told = near and (len(word) > 2 or near[0] == word.casefold())
     return f" (is {by_case[near[0]]!r} meant?)" if told else ""

@@ -63,8 +63,7 @@ def _owners(scene: Scene, pin: BodyPin) -> list[str]:
 def _pins(scene: Scene) -> Iterator[Mistake]:
     """Pins within a body, between fixed bodies, or between distant points."""
     places = {point: scene.place_of(point) for point in scene.owners}
-    first = next((place for body in scene.bodies.values() for place in body.points.values()), (0.0, 0.0))
-    extent = max((abs(a - b) for place in places.values() for a, b in zip(place, first, strict=True)), default=0.0)
+    extent = float(np.ptp(list(places.values()), axis=0).max()) if places else 0.0
     for name, pin in scene.pins.items():
         if any(point not in places for point in pin.points):
             continue

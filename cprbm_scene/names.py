@@ -70,8 +70,9 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
             for of in (each for each in info.metadata if isinstance(each, Of)):
                 for part, name in _named(getattr(record, field)):
                     if name not in known[of.kind]:
-                        place = f"{key}.{of.key or field}{part}".removeprefix(".")
-                        yield unknown_name(place, name, of.kind, known[of.kind])
+                        yield unknown_name(
+                            f"{key}.{of.key or field}{part}".removeprefix("."), name, of.kind, known[of.kind]
+                        )
 
 
 def _named(value: object) -> Iterator[tuple[str, str]]:

@@ -9,9 +9,9 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Literal, Protocol, TypeVar
+from typing import Annotated, Literal, TypeVar
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
@@ -51,6 +51,7 @@ from cprbm_scene.contact_records import (
     CircleContact,
     Contact,
     EdgeContact,
+    EllipseContact,
     FunctionContact,
     HalfPlaneContact,
     LineContact,
@@ -59,6 +60,7 @@ from cprbm_scene.contact_records import (
     Related,
     RigidContact,
     SelfContact,
+    SplineContact,
 )
 from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
 from cprbm_scene.frozendict import frozendict
@@ -89,6 +91,7 @@ __all__ = [
     "DistributedLoad",
     "Drive",
     "EdgeContact",
+    "EllipseContact",
     "FixedBody",
     "Force",
     "FreeBody",
@@ -119,6 +122,7 @@ __all__ = [
     "Size",
     "SlidingBody",
     "Spline",
+    "SplineContact",
     "Stage",
     "Stop",
     "Tolerance",
@@ -129,13 +133,6 @@ __all__ = [
 
 Curve = NeutralLine
 T = TypeVar("T")
-
-
-class Source(Protocol):
-    """Data of a scene with parameters, for another reading."""
-
-    def read(self, values: Mapping[str, float | str]) -> Scene:
-        """The scene with other values of parameters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,7 +174,7 @@ class Scene(Record):
     claims: tuple[Claim, ...] = ()
     verdict_limit: PositiveShare = 0.015
     file: str = ""
-    _source: Source | None = PrivateAttr(default=None)
+    _read: Callable[[Mapping[str, float | str]], Scene] | None = PrivateAttr(default=None)
     _display: _Display = PrivateAttr(default=_Display())
 
     def rules(self) -> Iterator[Mistake]:
@@ -226,9 +223,9 @@ class Scene(Record):
             >>> hinge.beams["beam1"].thickness
             0.0019
         """
-        if self._source is None or self._source.read({}) != self:
+        if self._read is None or self._read({}) != self:
             raise ValueError("found a scene without parameters or altered after reading; allowed: a scene from a file")
-        return self._source.read(values)
+        return self._read(values)
 
     def __repr__(self) -> str:
         """Name, and numbers of beams, contacts and probes."""

@@ -56,9 +56,9 @@ TOUCH = "contacts/touch"
 
 @pytest.mark.parametrize("body", ["ground", "block"])
 @pytest.mark.parametrize("thick", [True, False])
-@pytest.mark.parametrize("gap", [0.0, 1e-12, 0.01, -0.5e-6 * T])
-def test_a_beam_that_touches_or_is_apart_passes(gap, thick, body):
-    assert mistakes(base=over_a_circle(gap, thick=thick, body=body)) == {}
+def test_a_beam_that_touches_or_is_apart_passes(thick, body):
+    for gap in (0.0, 1e-12, 0.01, -0.5e-6 * T):
+        assert mistakes(base=over_a_circle(gap, thick=thick, body=body)) == {}, gap
 
 
 def test_what_is_written_is_what_is_read():

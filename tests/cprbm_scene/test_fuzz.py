@@ -1,4 +1,4 @@
-"""Whatever stands in a file: a Scene or a SceneError, never another exception."""
+"""Altered files: every one is a question or a wrong question, within a second."""
 
 import copy
 import math
@@ -7,9 +7,10 @@ from contextlib import suppress
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cprbm_scene import Scene, SceneError, read, scene_from
+from cprbm_scene import Scene, SceneError, checks, read, scene_from
 from tests.cprbm_scene.conftest import HINGE as FILE
 from tests.cprbm_scene.editing import HINGE
+from tests.cprbm_scene.fuzzing import followed
 
 scalars = st.one_of(
     st.none(),
@@ -184,3 +185,20 @@ def test_nothing_but_random_bytes(tmp_path_factory, junk):
     path.write_bytes(junk)
     with suppress(SceneError):
         read(path)
+
+
+def test_a_planted_fault_is_seen(monkeypatch):
+    def faulty(scene):
+        raise KeyError("planted")
+
+    assert followed(FILE)[1] == ""
+    monkeypatch.setattr(checks, "_CHECKS", (faulty,))
+    assert followed(FILE)[1] == "KeyError: 'planted'"
+
+
+def test_a_wrong_file_takes_a_way_of_its_own(tmp_path):
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text(FILE.read_text("utf-8").replace('point = "B"', 'point = "D"', 1), "utf-8")
+    ways, said = followed(wrong)
+    assert said == ""
+    assert ways - followed(FILE)[0]

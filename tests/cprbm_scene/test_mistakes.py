@@ -38,6 +38,8 @@ RECORDS = [
     ("name", "n" * 65, "name", "64 characters"),
     ("loads/M/kind", "torque", "loads.M.kind", "one of 'moment', 'force'"),
     ("loads/M/value", 1.0, "loads.M.value", "'kind', 'body'"),
+    ("loads/M/kind", "gravity", "loads.M.kind", "is 'distributed' meant"),
+    ("contacts/contact/friction", 0.3, "contacts.contact.friction", "friction is not modelled"),
     ("materials/abs/poisson_ratio", 0.6, "materials.abs.poisson_ratio", "at most 0.5"),
     ("materials/abs/youngs_modulus", HUGE, "materials.abs.youngs_modulus", "40001 bits; a number"),
     ("contacts/contact/thick", 1, "contacts.contact.thick", "true or false"),
@@ -147,18 +149,14 @@ RECORDS += [
     ("bodies/a\u001bb", {"motion": "fixed", "points": {"Z": [0, 0]}}, "bodies.a\u001bb", "letters"),
 ]
 ALL = RECORDS + TIES
-ONE = [row for row in RECORDS if row[0] != "beams/my beam"]  # an empty beam misses its keys too
+SEVERAL = {"beams/my beam", *(path for path, *_ in TIES)}  # an empty beam misses its keys too
 
 
 @pytest.mark.parametrize(("path", "value", "key", "words"), ALL, ids=[row[2] for row in ALL])
-def test_a_mistake_is_named_by_its_key(path, value, key, words):
+def test_a_mistake_is_named_by_its_key_and_alone_within_a_record(path, value, key, words):
     found = mistakes((path, value))
     assert words in found[key]
-
-
-@pytest.mark.parametrize(("path", "value", "key", "words"), ONE, ids=[row[2] for row in ONE])
-def test_a_mistake_in_one_record_is_the_only_one(path, value, key, words):
-    assert list(mistakes((path, value))) == [key]
+    assert path in SEVERAL or list(found) == [key]
 
 
 def test_names_have_latin_and_greek_letters():

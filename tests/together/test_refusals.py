@@ -89,6 +89,23 @@ def test_parts_that_contacts_and_loads_hold_are_read_and_refused(data, key):
     assert key in elastica_reference.answer(scene).sentence
 
 
+@pytest.mark.parametrize(
+    "edge",
+    [
+        {"kind": "beam-circle", "center": [0.05, 0.0], "radius": 0.06, "side": "inside"},
+        {"kind": "beam-ellipse", "center": [0.05, -0.04], "semi_axes": [0.03, 0.02], "angle": 0.3},
+        {"kind": "beam-spline", "points": [[0.0, -0.03], [0.05, -0.01], [0.1, -0.03]], "side": "left"},
+    ],
+    ids=["inside", "ellipse", "spline"],
+)
+def test_edges_that_no_solver_answers_yet(edge):
+    scene = scene_from(held_by(edge))
+    for solver in (cprbm, fea_reference, solid):
+        with pytest.raises(SceneError, match=rf"^contacts\.c: found '{edge['kind']}'.* or a function, for the "):
+            solver.answer(scene)
+    assert "contacts.c" in elastica_reference.answer(scene).sentence
+
+
 @pytest.mark.parametrize("solver", [cprbm, fea_reference])
 def test_a_solver_ends_at_the_dead_point_of_a_linkage(solver):
     # reference: at its farthest angle the rocker makes a triangle with the ground, and crank and coupler in one line
