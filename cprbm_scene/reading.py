@@ -146,6 +146,7 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
     """
     given = dict(parameters or {})
     scene = _record(Scene, {**data, "parameters": {}} if given and "parameters" not in data else data, file, given)
+    scene = scene.displayed_in(_units(data))
     if scene.parameters:
         scene._source = _Source(data, file, given)
     return scene

@@ -10,6 +10,7 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Annotated, Literal, Protocol, TypeVar
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
@@ -137,13 +138,21 @@ class Source(Protocol):
         """The scene with other values of parameters."""
 
 
+@dataclass(frozen=True, slots=True)
+class _Display:
+    """Units of tables and figures, which are no part of the question: scenes with different ones are equal."""
+
+    units: Units = field(default=Units(), compare=False)
+
+
 class Scene(Record):
     """The problem statement: mechanism, loading, requested quantities.
 
     Names of points, bodies, beams, contacts, stops, pins, loads and drives are unique across the scene.
     ``may_cross`` lists pairs that may pass through each other without a contact: two beams, or a beam and a contact
     with a rigid edge.  ``verdict_limit`` is the largest total uncertainty, a fraction of a probe's scale, for the
-    verdict AGREE; a probe may have another limit.  ``units`` are those of a file; a scene from a file has SI units.
+    verdict AGREE; a probe may have another limit.  ``units`` are those of a file; a scene from a file has SI units, and
+    ``display_units`` remember the file's.
     ``theory`` is the beam theory of the CPRBM: bending alone, with stretch, or with stretch and shear.
     """
 
@@ -169,6 +178,7 @@ class Scene(Record):
     verdict_limit: PositiveShare = 0.015
     file: str = ""
     _source: Source | None = PrivateAttr(default=None)
+    _display: _Display = PrivateAttr(default=_Display())
 
     def rules(self) -> Iterator[Mistake]:
         """Pairs of the same name."""
@@ -224,6 +234,11 @@ class Scene(Record):
         """Name, and numbers of beams, contacts and probes."""
         return f"<Scene {self.name}: {len(self.beams)} beams, {len(self.contacts)} contacts, {len(self.probes)} probes>"
 
+    @property
+    def display_units(self) -> Units:
+        """Units of the scene's file, for tables and figures; ``model_fields_set`` has those that the file states."""
+        return self._display.units
+
     def limit(self, probe: Probe) -> float:
         """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""
         return self.verdict_limit if probe.verdict_limit is None else probe.verdict_limit
@@ -239,6 +254,12 @@ class Scene(Record):
             KeyError: no load or drive has the stage's name of ``steps``.
         """
         return self.loads[stage.steps] if stage.steps in self.loads else self.drives[stage.steps]
+
+    def displayed_in(self, units: Units) -> Scene:
+        """The same scene with other units for tables and figures."""
+        scene = self.model_copy()
+        scene._display = _Display(units)
+        return scene
 
     def place_of(self, point: str) -> Point:
         """Initial position of a body's ``point``, m.
