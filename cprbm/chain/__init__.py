@@ -1,4 +1,4 @@
-"""The chain: beams as rigid or compliant links with torsional springs, and the rows that act on them."""
+"""The chain: beams as rigid or compliant links with torsional springs, and rows."""
 
 from cprbm.chain.arrays import RowArrays, add_row_gradient, link_arrays, row_arrays, row_values
 from cprbm.chain.beam import BeamChain, ChainUnits, Theory

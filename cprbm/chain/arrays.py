@@ -1,7 +1,7 @@
-"""Arrays of a mechanism for the compiled kernels, and the kernel of its rows.
+"""Arrays of a mechanism for the compiled kernels, and the kernel of rows.
 
-The gradient of the Lagrangian by z is that of the chains plus Σ μ ∂f/∂z of the rows; by the multiplier of a row with
-prescribed value it is f(z) − f*.
+The gradient of the Lagrangian by z is the chains' gradient plus Σ μ ∂f/∂z of the rows.  By the multiplier of a row
+with prescribed value the gradient is f(z) − f*.
 """
 
 from __future__ import annotations

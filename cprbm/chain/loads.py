@@ -4,16 +4,16 @@
 symbol   meaning
 =======  ====================================================================================
 F        value of a load
-f        what the load works on: its energy is −F f(z)
+f        quantity with the load's energy −F f(z)
 C(s)     neutral line, a sum of weights and nodes
 =======  ====================================================================================
 
-A force on a beam works on the displacement of C(s), a distributed load on the integral of that, and a moment on the
-section's angle at s.  All three are linear in the unknowns of the chain.
+A force on a beam works on the displacement of C(s), a distributed load on the displacement's integral, and a moment
+on the section's angle at s.  All three are linear in the unknowns of the chain.
 
-The chain smears a load at a place over some links.  Between places less than three links apart it misses a part of the
-flexibility, of order h³ for forces and h for moments.  The potential energy gets that part back; the
-equilibrium of the rest of the beam does not depend on it.
+The chain smears a load at a place over some links.  Between places less than three links apart a part of the
+flexibility is missing, of order h³ for forces and h for moments.  The potential energy gets the part back; the
+equilibrium of the rest of the beam is independent of the part.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(2)
 
 
 def load_row(m: Mechanism, name: str, load: Load) -> Row:
-    """Row of one load."""
+    """Row of a load."""
     per_force, per_moment = -1.0 / m.units.force, -1.0 / m.units.moment
     match load:
         case Moment():
@@ -61,7 +61,7 @@ def load_row(m: Mechanism, name: str, load: Load) -> Row:
 
 
 def integrated_weights(chain: BeamChain, begin: float, end: float) -> csr_matrix:
-    """Weights (1, N + 2) of the nodes in the integral of C from one arc length to another."""
+    """Weights (1, N + 2) of the nodes in the integral of C between two arc lengths."""
     inner = chain.arcs[(chain.arcs > begin) & (chain.arcs < end)]
     places = np.concatenate([[begin], inner, [end]])
     half = 0.5 * np.diff(places)
@@ -86,7 +86,7 @@ def _weighted(indices: Ints, rest: Array, used: Ints, factors: Array) -> Form:
 
 
 def _unit_moment(chain: BeamChain, at: float, links: Ints, weights: Array) -> UnitLoad:
-    """A unit moment: the moment of a joint is the sum of the weights of all angles behind it."""
+    """A unit moment: the moment of a joint is the sum of the weights of all angles behind the joint."""
     behind = np.cumsum(np.bincount(links, weights, minlength=chain.links)[::-1])[::-1]
     return UnitLoad(chain.name, at, 0, np.asarray(behind[1:], dtype=float), np.zeros(chain.links))
 
@@ -104,7 +104,7 @@ def _unit_force(m: Mechanism, load: BeamForce, at: float, weights: csr_matrix) -
 
 
 def hidden_flexibility(m: Mechanism) -> Array:
-    """Flexibility (rows, rows) of loads at places of beams, less the flexibility that the chains show.
+    """Flexibility (rows, rows) of loads at places of beams, less the flexibility of the chains.
 
     A straight cantilever has the moments (a − s)^p before the place a of a load, p = 0 for a moment and 1 for a force,
     and the flexibility ∫ M M′ ds/EI.

@@ -94,9 +94,7 @@ def power_rate(solved: Solved, change: Array, rate: Array) -> float:
 def turned(before: Solved, after: Solved) -> float:
     """Largest turn of a link or a body between two states, rad."""
     system = before.system
-    change = np.abs(after.state.z - before.state.z)
-    bodies = [index + 2 for index in system.mechanism.bodies.values()]
-    return float(max(change[system.angles].max(), change[bodies].max(initial=0.0)))
+    return float(np.abs(after.state.z - before.state.z)[system.turns].max())
 
 
 def under(state: State, target: Array) -> State:

@@ -3,24 +3,24 @@
 =========  =====================================================================================
 symbol     meaning
 =========  =====================================================================================
-A          block of one chain in the Hessian of the Lagrangian, with three springs ρ at its first node and angle
+A          block of a chain in the Hessian of the Lagrangian, with three springs ρ at the first node and angle
 T          tridiagonal block of the angles
 B, D       coupling of the chains with the border, block of the border
-X          A⁻¹ Bᵀ, kept for the pairs of a border column and a chain that it touches
+X          A⁻¹ Bᵀ, kept for pairs of a border column and a touched chain
 G          Schur complement D − B X
 m          number of links of a chain
 =========  =====================================================================================
 
-Each chain is eliminated without pivoting: the balance of forces gives the forces n by sums from the end, T gives the
-angles, the link equations give the positions by sums from the start.  By Sylvester's law A has 2m negative eigenvalues,
-one for each link equation, and those of T, the number of negative pivots.
+The chains are eliminated without pivoting: the balance of forces gives the forces n by sums from the end, T gives the
+angles, the link equations give the positions by sums from the start.  By Sylvester's law A has 2m negative eigenvalues
+for the link equations, and as many as T has negative pivots.
 
-The border holds the bodies and the nodes that they carry, the multipliers of the rows, and three unknowns of each chain
-that take its springs away again (1 on the diagonal, √ρ beside it); a contact adds its multiplier and its local motions.
-The multiplier of a row with prescribed force is no unknown; 1 stands on its diagonal.
+The border holds bodies, nodes carried by bodies, the multipliers of the rows, and three unknowns per chain against the
+springs (1 on the diagonal, √ρ beside the diagonal).  A contact adds a multiplier and local motions.
+The multiplier of a row with prescribed force is no unknown; 1 stands on the diagonal.
 
-So the Hessian has neg(A) + neg(G) negative eigenvalues.  Each equality takes one: what is left is the number of
-independent directions in which the energy falls.
+So the Hessian has neg(A) + neg(G) negative eigenvalues.  The equalities account for as many; the
+rest is the number of independent directions with falling energy.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def factor_chains(beams: Beams, blocks: Blocks, pivot: Array, ratio: Array) -> i
 def solve_chain(
     beams: Beams, beam: int, blocks: Blocks, pivot: Array, ratio: Array, x: Array
 ) -> None:  # pragma: no cover
-    """Solve A x = b in place; ``x`` holds the unknowns of one chain."""
+    """Solve A x = b in place; ``x`` holds the unknowns of a chain."""
     m, start = beams.links[beam], beams.first_link[beam]
     C, K = blocks.coupling, blocks.compliance
     nx, ny = x[5 * m], x[5 * m + 1]
@@ -205,7 +205,7 @@ def negative_pivots(factored: Array, order: Ints) -> int:  # pragma: no cover
 def reduce_load(
     beams: Beams, blocks: Blocks, pivot: Array, ratio: Array, driven: Flags, border: Border, load: Array, reduced: Array
 ) -> None:  # pragma: no cover
-    """Solve all chains for a load in place, and subtract B times that from the load of the border."""
+    """Solve all chains for a load in place, and subtract B times the solution from the border's load."""
     for beam in range(beams.first.size):
         first, size = beams.first[beam], 2 + PER_LINK * beams.links[beam]
         solve_chain(beams, beam, blocks, pivot, ratio, load[first : first + size])

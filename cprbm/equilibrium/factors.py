@@ -1,7 +1,7 @@
-"""Factors of the Hessian at a state, its inertia, and solutions with it.
+"""Factors of the Hessian at a state, inertia and solutions.
 
-The chains are eliminated by :mod:`cprbm.equilibrium.elimination`; LAPACK factors the border after Bunch and Kaufman,
-whose blocks of two have one negative eigenvalue.
+The chains are eliminated by :mod:`cprbm.equilibrium.elimination`; LAPACK factors the border after Bunch and Kaufman;
+a block of two has a single negative eigenvalue.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class SingularError(ArithmeticError):
 
 @dataclass(frozen=True, slots=True)
 class Springs:
-    """Springs that hold all links to the angles ``anchor`` (links,): energy ``strength``/2 Σ L (θ − θ₀)²."""
+    """Springs from all links to the angles ``anchor`` (links,): energy ``strength``/2 Σ L (θ − θ₀)²."""
 
     strength: float
     anchor: Array
@@ -31,7 +31,7 @@ class Springs:
 
 @dataclass(frozen=True, eq=False)
 class Factors:
-    """Factors at one state; ``lost`` is the number of independent directions in which the energy falls."""
+    """Factors at a state; ``lost`` is the number of independent directions with falling energy."""
 
     system: System
     driven: Flags

@@ -1,7 +1,7 @@
-"""A mechanism as arrays, numbered once, and the states that the solver moves.
+"""A mechanism as arrays, numbered once, and the solver's states.
 
-A state names its unknowns z, which rows have a prescribed value, and the targets of the rows: the value f*, or the
-multiplier μ* of a row with prescribed force.  Rows that only repeat others are left out
+A state has unknowns z, rows with a prescribed value, and targets of the rows: the value f*, or the
+multiplier μ* of a row with prescribed force.  Repeated rows are left out
 (:mod:`cprbm.equilibrium.rank`).
 """
 
@@ -19,16 +19,17 @@ from cprbm_scene.answer import Array, Flags, Ints
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """Everything that does not change while a scene is solved.
+    """Arrays of a mechanism, constant during a solve.
 
     Attributes:
         mechanism: the numbering and the rows.
         links, joints, rows, beams, border: arrays of the kernels.
         angles, nodes: indices of all links' angles, and of the x and y of all nodes.
+        turns, motions: indices of all angles, and of all angles and displacements, bodies included.
         metric: lengths of the links, the weights of their angles in a mode.
         limits: which rows are stops.
-        hidden: flexibility (rows, rows) of loads at places of beams that the chain does not show.
-        lean: shear compliance β of the links that stands for their odd moment.
+        hidden: flexibility (rows, rows) of loads at places of beams without the chain's share.
+        lean: shear compliance β of the links, for the odd moment of their elements.
         lengthening: whether links have an axial compliance.
     """
 
@@ -40,6 +41,8 @@ class System:
     border: Border
     angles: Ints
     nodes: Ints
+    turns: Ints
+    motions: Ints
     metric: Array
     limits: Flags
     hidden: Array
@@ -54,7 +57,7 @@ class System:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Unknowns z, rows with a prescribed value, targets of all rows, and rows that repeat others."""
+    """Unknowns z, rows with a prescribed value, targets of all rows, and repeated rows."""
 
     z: Array
     driven: Flags
@@ -67,20 +70,25 @@ class State:
 
 
 def system_of(mechanism: Mechanism) -> System:
-    """Number a mechanism whose rows are complete."""
+    """Number a mechanism with all rows."""
     links, joints = link_arrays(mechanism)
     rows = row_arrays(mechanism)
     beams = _beams(mechanism)
     nodes = np.concatenate([mechanism.beam_nodes(name) for name in mechanism.chains])
+    angles = links.first + PER_LINK - 1
+    rotations = [index + 2 for index in mechanism.bodies.values()]
+    border = _border(mechanism, rows, beams)
     return System(
         mechanism=mechanism,
         links=links,
         joints=joints,
         rows=rows,
         beams=beams,
-        border=_border(mechanism, rows, beams),
-        angles=links.first + PER_LINK - 1,
+        border=border,
+        angles=angles,
         nodes=np.stack([nodes, nodes + 1], axis=1),
+        turns=np.concatenate([angles, rotations]).astype(np.int64),
+        motions=np.concatenate([nodes, nodes + 1, angles, np.arange(border.first, rows.first)]).astype(np.int64),
         metric=links.length,
         limits=np.array([row.limit for row in mechanism.rows], dtype=bool),
         hidden=hidden_flexibility(mechanism),
@@ -104,7 +112,7 @@ def hidden_forces(system: System, z: Array, mu: Array) -> Array:
 
 
 def rest_state(system: System) -> State:
-    """The state as drawn: ends that are drawn apart from their points violate their rows."""
+    """The state as drawn: ends drawn apart from their points violate rows."""
     rows = system.mechanism.rows
     z = np.concatenate([system.mechanism.rest, np.zeros(len(rows))])
     driven = np.array([row.driven for row in rows], dtype=bool)
