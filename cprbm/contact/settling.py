@@ -135,3 +135,27 @@ def move_places(
         step = min(limit, max(-limit, step)) * share
         places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], step)
     return largest
+
+
+@njit(cache=True)
+def separations(z: Array, curves: CurveArrays, places: Places) -> Array:  # pragma: no cover
+    """Vectors (k, 2) from the feet to the places; zero for a foot without contact on an unturned beam."""
+    vectors, weights = np.zeros((places.piece.size, 2)), np.empty((2, STENCIL))
+    for k in range(places.piece.size):
+        if not is_unturned(z, curves, places, k):
+            ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights)
+            bx, by = curve_point(z, curves, places.foot[k], places.eta[k], 0, weights)
+            vectors[k, 0], vectors[k, 1] = ax - bx, ay - by
+    return vectors
+
+
+@njit(cache=True)
+def choose_sides(z: Array, curves: CurveArrays, places: Places) -> None:  # pragma: no cover
+    """Write the present sides of places whose side is 0; the feet must be found."""
+    weights = np.empty((2, STENCIL))
+    for k in range(places.piece.size):
+        if places.side[k] == 0.0 and not is_unturned(z, curves, places, k):
+            ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights)
+            bx, by = curve_point(z, curves, places.foot[k], places.eta[k], 0, weights)
+            tx, ty = curve_point(z, curves, places.foot[k], places.eta[k], 1, weights)
+            places.side[k] = 1.0 if (ay - by) * tx - (ax - bx) * ty >= 0.0 else -1.0
