@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from comparisons.geometry import edge_places, length
+from comparisons.geometry import edge_places, longest
 from cprbm_scene import PinnedEnd, Scene, StationAnswer, WeldedEnd
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import (
@@ -76,11 +76,11 @@ def draw_bodies(axes: Axes, scene: Scene, places: Places, style: str, colour: st
         mine = [point for point in body.points if point in places]
         if not mine:
             continue
-        x, y = 1e3 * np.array([places[point] for point in (*mine, mine[0])]).T
+        x, y = np.array([places[point] for point in (*mine, mine[0])]).T
         if not isinstance(body, FixedBody):
             axes.plot(x, y, linestyle=style, color=colour, linewidth=1.2)
         for point in mine:
-            at = [1e3 * places[point][0]], [1e3 * places[point][1]]
+            at = [places[point][0]], [places[point][1]]
             if isinstance(body, TurningBody) and point == body.about:
                 axes.plot(*at, "o", color=colour, markersize=8, markerfacecolor="none")
                 axes.plot(*at, ".", color=colour, markersize=3)
@@ -92,7 +92,7 @@ def draw_bodies(axes: Axes, scene: Scene, places: Places, style: str, colour: st
 
 def draw_stops(axes: Axes, scene: Scene, places: Places) -> None:
     """The limits of stops as rays from their pins; none of a body whose rotation is not known."""
-    ray = 1e3 * RAY * max(length(beam.curve) for beam in scene.beams.values())
+    ray = RAY * longest(scene)
     for stop in scene.stops.values():
         end = scene.beams[stop.beam].start if stop.end == "start" else scene.beams[stop.beam].end
         assert isinstance(end, PinnedEnd)
@@ -101,7 +101,7 @@ def draw_stops(axes: Axes, scene: Scene, places: Places) -> None:
             continue
         pin, towards = np.array(scene.place_of(end.point)), np.array(scene.place_of(stop.towards))
         base = atan2(*(towards - pin)[::-1]) + turned
-        x, y = 1e3 * np.array(places[end.point])
+        x, y = np.array(places[end.point])
         for limit in (stop.least, stop.most):
             if limit is not None:
                 way = base + limit
@@ -110,7 +110,7 @@ def draw_stops(axes: Axes, scene: Scene, places: Places) -> None:
 
 def draw_edges(axes: Axes, scene: Scene, places: Places, colour: str) -> None:
     """Lines, half-planes and functions that beams may touch; dashed where they began, if no more is known."""
-    reach = max(length(beam.curve) for beam in scene.beams.values())
+    reach = longest(scene)
     for contact in scene.contacts.values():
         if not isinstance(contact, EdgeContact):
             continue
@@ -120,7 +120,7 @@ def draw_edges(axes: Axes, scene: Scene, places: Places, colour: str) -> None:
             known = next(point for point in body.points if point in places)
             cos, sin = np.cos(turned), np.sin(turned)
             edge = (edge - body.points[known]) @ np.array([[cos, sin], [-sin, cos]]) + places[known]
-        axes.plot(*(1e3 * edge.T), "--" if turned is None else "-", color=colour, linewidth=0.9, zorder=0)
+        axes.plot(*edge.T, "--" if turned is None else "-", color=colour, linewidth=0.9, zorder=0)
 
 
 def draw_names(axes: Axes, scene: Scene) -> None:
@@ -128,7 +128,7 @@ def draw_names(axes: Axes, scene: Scene) -> None:
 
     Points in one place, as pins join them, share a name.
     """
-    close = CLOSE * max(length(beam.curve) for beam in scene.beams.values())
+    close = CLOSE * longest(scene)
     named: list[tuple[Array, list[str]]] = []
     for body in scene.bodies.values():
         for name, point in body.points.items():
@@ -144,7 +144,7 @@ def draw_names(axes: Axes, scene: Scene) -> None:
         crowded = any(0.0 < x < close and abs(y) < close for x, y in beside)
         axes.annotate(
             ", ".join(names),
-            tuple(1e3 * place),
+            tuple(place),
             textcoords="offset points",
             xytext=(4 if crowded else -4, 7),
             ha="left" if crowded else "right",

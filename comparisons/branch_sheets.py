@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from comparisons.case import Comparison
-from comparisons.formats import number, scaled_unit
+from comparisons.display_units import distance_text, load_text, with_unit
+from comparisons.formats import number
 from comparisons.quantities import load_unit
-from comparisons.sentences import distance, load
 from comparisons.sheet import Sheet
 from comparisons.verdict.events import mechanism, released
 from comparisons.verdict.station_events import Place
@@ -14,22 +14,22 @@ from cprbm_scene import Answer, Critical, Scene
 
 def of_criticals(compared: Comparison) -> Sheet:
     """Where branches end in both answers."""
-    body = []
+    scene, body = compared.scene, []
     for row in compared.criticals:
         bounds = row.bounds
         body.append(
             (
                 row.stage if row.place == 0 else f"{row.stage}, {row.place + 1}",
-                *(_ends(found, row.unit) for found in (row.cprbm, row.fea)),
-                distance(row.difference, row.unit),
-                distance(row.same_theory, row.unit),
+                *(_ends(scene, found, row.unit) for found in (row.cprbm, row.fea)),
+                distance_text(scene, row.difference, row.unit),
+                distance_text(scene, row.same_theory, row.unit),
                 *(
                     ("–", "–", "–")
                     if bounds is None
-                    else (distance(size, row.unit) for size in (bounds.cprbm, bounds.fea, bounds.theory))
+                    else (distance_text(scene, size, row.unit) for size in (bounds.cprbm, bounds.fea, bounds.theory))
                 ),
-                distance(row.allowed, row.unit),
-                *(_released(found) for found in (row.cprbm, row.fea)),
+                distance_text(scene, row.allowed, row.unit),
+                *(_released(scene, found) for found in (row.cprbm, row.fea)),
                 row.word.value,
             )
         )
@@ -62,7 +62,7 @@ def of_branches(compared: Comparison) -> Sheet:
     body = [
         (
             f"{each.stage}, branch {each.number}",
-            f"{each.first:g} to {each.last:g}",
+            " to ".join(load_text(compared.scene, each.stage, value) for value in (each.first, each.last)),
             str(each.stations - each.near),
             str(each.near),
             "takes no part" if each.word is None else each.word.value,
@@ -72,7 +72,7 @@ def of_branches(compared: Comparison) -> Sheet:
     between = dict.fromkeys(row.where for row in compared.rows if row.branch is None)
     for stage in dict.fromkeys(stage for stage, _ in between):
         mine = [value for name, value in between if name == stage]
-        values = ", ".join(f"{value:g}" for value in mine)
+        values = ", ".join(load_text(compared.scene, stage, value) for value in mine)
         body.append((f"{stage}, {Place.BETWEEN.value}", values, str(len(mine)), "–", "takes no part"))
     return Sheet(
         "Branch by branch",
@@ -82,16 +82,13 @@ def of_branches(compared: Comparison) -> Sheet:
     )
 
 
-def _ends(critical: Critical | None, unit: str) -> str:
-    return "–" if critical is None else f"{load(critical.value, unit)}, {mechanism(critical)}"
+def _ends(scene: Scene, critical: Critical | None, unit: str) -> str:
+    return "–" if critical is None else f"{with_unit(scene, critical.value, unit, 5)}, {mechanism(critical)}"
 
 
-def _released(critical: Critical | None) -> str:
+def _released(scene: Scene, critical: Critical | None) -> str:
     energy = None if critical is None else released(critical)
-    if energy is None:
-        return "–"
-    factor, unit = scaled_unit("J", abs(energy))
-    return f"{number(energy / factor, 4)} {unit}"
+    return "–" if energy is None else with_unit(scene, energy, "J", 4)
 
 
 def of_ends(scene: Scene, answer: Answer) -> Sheet:
@@ -101,12 +98,12 @@ def of_ends(scene: Scene, answer: Answer) -> Sheet:
     body = tuple(
         (
             each.stage,
-            load(each.value, units[each.stage]),
-            distance(each.uncertainty, units[each.stage]),
+            with_unit(scene, each.value, units[each.stage], 5),
+            distance_text(scene, each.uncertainty, units[each.stage]),
             f"{mechanism(each)}{over.get(id(each), '')}",
             number(each.curvature),
             number(each.left),
-            _released(each),
+            _released(scene, each),
         )
         for each in (*(one.end for one in answer.gone_over), *answer.critical)
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import textwrap
 from collections import Counter
@@ -11,12 +10,12 @@ from typing import TypeAlias
 
 from comparisons import offset_pages
 from comparisons.case import Comparison, Verdict
+from comparisons.display_units import at_station
 from comparisons.formats import component_names, components, number, percent
 from comparisons.offset_verdict import OffsetComparison
-from comparisons.quantities import load_unit
 from comparisons.sentences import pressure
 from comparisons.sheet import Sheet
-from comparisons.sheets import share, value_unit
+from comparisons.sheets import row_units, share
 from comparisons.tables import fitted
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.words import SEVERITY, Word
@@ -84,13 +83,14 @@ def last_rows_of_stages(compared: Comparison) -> tuple[Judged, ...]:
 def nearest_rows(compared: Comparison, rows: Sequence[Judged], count: int) -> Sheet:
     """Table of the rows nearest their limits, in the order of stages and probes; the note counts the other rows."""
     order = sorted(range(len(rows)), key=lambda place: _nearness(*rows[place]))
+    units = row_units(compared.scene, [rows[place][0] for place in order[:count]])
     body: list[tuple[str, ...]] = []
     stage = ""
     for row, word in (rows[place] for place in sorted(order[:count])):
         if row.stage != stage:
             stage = row.stage
-            body.append((_station(compared, row), *[""] * 6))
-        body += _lines(row, word)
+            body.append((at_station(compared.scene, row.stage, row.station), *[""] * 6))
+        body += _lines(row, word, units[row.unit])
     others = Counter(word.value if word else "without a word" for _, word in (rows[place] for place in order[count:]))
     note = ", ".join(f"{times} more {'row' if times == 1 else 'rows'} {word}" for word, times in others.items())
     headers = ("probe", "unit", "CPRBM", "FEA", "difference", "stated", "word")
@@ -133,18 +133,12 @@ def _nearness(row: Row, word: Word | None) -> tuple[int, float]:
     return _NEAREST.index(word), 0.0 if word is None else -pressure(row)
 
 
-def _station(compared: Comparison, row: Row) -> str:
-    stage = next(stage for stage in compared.scene.stages if stage.name == row.stage)
-    unit = load_unit(compared.scene, stage)
-    return f"{row.stage} " + (f"{math.degrees(row.station):.4g}°" if unit == "rad" else f"{row.station:g} {unit}")
-
-
-def _lines(row: Row, word: Word | None) -> list[tuple[str, ...]]:
-    """A line for every component of a row; the first has difference, stated uncertainty and word.
+def _lines(row: Row, word: Word | None, shown: tuple[float, str]) -> list[tuple[str, ...]]:
+    """A line for every component of a row in the ``shown`` unit; the first has difference, stated uncertainty and word.
 
     The value of a stress is the largest magnitude along the beam.
     """
-    factor, unit = value_unit(row)
+    factor, unit = shown
     floor = ROUND_OFF * row.scale
     found = [dict(components(row.probe.quantity, values, factor, floor)) for values in (row.cprbm, row.fea)]
     measured = (
@@ -175,7 +169,7 @@ def _found_sizes(compared: Comparison) -> Iterator[str]:
         yield f"N for {percent(compared.tolerances[0].asked)}: {sizes}."
     for found in compared.tolerances:
         if not found.met:
-            yield from _wrapped(found.sentence)
+            yield from _wrapped(found.sentence(compared.scene))
 
 
 def _next_step(argument: str, verdict: Verdict) -> tuple[str, ...]:

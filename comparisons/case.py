@@ -104,8 +104,10 @@ def _verdict(
 ) -> Verdict:
     """All findings with their sentences; the worst decides, and its sentence comes first."""
     of_rows = judge_case(rows, judged)
-    findings: list[Finding] = [(Word.DIFFER, Reason.EVENTS, said.closing_sentence(row)) for row in closings]
-    findings += [(*row.judged, said.critical_sentence(row)) for row in criticals]
+    findings: list[Finding] = [
+        (Word.DIFFER, Reason.EVENTS, said.closing_sentence(table.scene, row)) for row in closings
+    ]
+    findings += [(*row.judged, said.critical_sentence(table.scene, row)) for row in criticals]
     completed = _completed(table, criticals)
     if table.problems and not completed:
         findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table.problems)))
@@ -121,7 +123,7 @@ def _verdict(
     word, reason, _ = findings[0]
     others = {name: each for name, each in table.problems.items() if not ends_at_critical(table.answers[name])}
     more = [said.ended_sentence(others)] if completed and others else []
-    more += [*said.passed_sentences(table, rows, judged), said.calibration_sentence(rows)]
+    more += [*said.passed_sentences(table, rows, judged), said.calibration_sentence(table.scene, rows)]
     if word is Word.AGREE:
         more.append(said.wider_limits(table.scene))
     return Verdict(

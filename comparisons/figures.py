@@ -6,7 +6,6 @@ The same answers give the same bytes: no dates, and identifiers from a fixed sal
 from __future__ import annotations
 
 import io
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -18,9 +17,9 @@ import numpy as np
 
 from comparisons.bodies_drawn import draw_bodies, draw_edges, draw_names, draw_stops, joined_ends, places_at
 from comparisons.case import Comparison
-from comparisons.formats import number, scaled_unit
+from comparisons.display_units import at_station, axis_unit, display_unit, load_text
 from comparisons.framing import frame
-from comparisons.geometry import length, points
+from comparisons.geometry import length, longest, points
 from comparisons.pairing import Runs
 from comparisons.quantities import load_unit, norm
 from comparisons.sheets import last_rows, shown_rows
@@ -32,6 +31,7 @@ from cprbm_scene.statement import FreeEnd
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 BLUE, RED, GREY = "#1f5fa8", "#c8321e", "#8a8a8a"
@@ -85,7 +85,7 @@ def of_comparison(compared: Comparison) -> tuple[Picture, ...]:
         pictures.append(_stations(compared.scene, _pair(compared.runs), stations))
     stresses = [row for row in last_rows(compared) if row.probe.quantity == "bending_stress"]
     if stresses:
-        pictures.append(_stresses(stresses))
+        pictures.append(_stresses(compared.scene, stresses))
     for quantity, what in (("rotation", "Rotation"), ("force", "Contact force")):
         rows = [row for row in compared.rows if row.probe.quantity == quantity]
         if len(rows) > 1:
@@ -130,14 +130,14 @@ def shapes(scene: Scene, answers: Mapping[str, Answer], stage: str, value: float
         _as_drawn(axes, scene)
         _mechanism(axes, scene, answers, stage, value)
         draw_names(axes, scene)
-        axes.set_xlabel("x, mm")
-        axes.set_ylabel("y, mm")
+        show_lengths(scene, axes.xaxis, "x")
+        show_lengths(scene, axes.yaxis, "y")
         figure.legend(loc="outside lower center", ncols=3)
         apart = " Dotted: the way of an end that is drawn apart from its pin." if scene.assembly is not None else ""
         return picture(
             figure,
             "shapes",
-            f"Neutral lines before and at {stage} {value:g}, with the places of contact.{apart}",
+            f"Neutral lines before and at {at_station(scene, stage, value)}, with the places of contact.{apart}",
         )
 
 
@@ -150,29 +150,30 @@ def _stations(scene: Scene, answers: Mapping[str, Answer], stations: list[tuple[
         for place, (name, value) in enumerate(stations):
             axes = figure.add_subplot(lines, columns, place + 1)
             _mechanism(axes, scene, answers, name, value)
-            factor, unit = along_axis(load_unit(scene, stages[name]), value)
-            shown = f"{number(value / factor, 4)}{'' if unit == '°' else ' '}{unit}"
-            axes.set_title(f"{name}, {stages[name].steps} = {shown}", loc="left", fontsize=9)
+            title = f"{name}, {stages[name].steps} = {load_text(scene, name, value)}"
+            axes.set_title(title, loc="left", fontsize=9)
+            show_lengths(scene, axes.xaxis)
+            show_lengths(scene, axes.yaxis)
             axes.tick_params(labelsize=8)
+        _, unit = display_unit(scene, "m", longest(scene))
         handles, labels = figure.axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=3)
-        return picture(figure, "stations", "Neutral lines, mm, at several stations, with the places of contact.")
-
-
-def along_axis(unit: str, size: float) -> tuple[float, str]:
-    """By what a load or drive of about a ``size`` is divided on an axis, and the unit there; of a rotation degrees."""
-    return (math.radians(1.0), "°") if unit == "rad" else scaled_unit(unit, abs(size))
+        return picture(
+            figure,
+            "stations",
+            f"Neutral lines, {unit}, at several stations, with the places of contact.",
+        )
 
 
 def _as_drawn(axes: Axes, scene: Scene) -> None:
     """The mechanism before anything happens, and the way of the ends that are apart from their points."""
     for place, beam in enumerate(scene.beams.values()):
-        x, y = 1e3 * points(beam.curve, np.linspace(0.0, length(beam.curve), 200)).T
+        x, y = points(beam.curve, np.linspace(0.0, length(beam.curve), 200)).T
         axes.plot(x, y, "--", color=GREY, linewidth=1.0, label="undeformed" if place == 0 else None)
         for end, point in ((beam.start, 0), (beam.end, -1)):
             if not isinstance(end, FreeEnd):
                 to_x, to_y = scene.place_of(end.point)
-                axes.plot([x[point], 1e3 * to_x], [y[point], 1e3 * to_y], ":", color=GREY, linewidth=0.9)
+                axes.plot([x[point], to_x], [y[point], to_y], ":", color=GREY, linewidth=0.9)
     drawn = {end.point: scene.place_of(end.point) for _, end, _ in joined_ends(scene)}
     draw_bodies(axes, scene, drawn, "--", GREY)
 
@@ -185,11 +186,11 @@ def _overlay(designs: Sequence[tuple[Scene, Answer]]) -> Picture:
             last = answer.stations[-1]
             draw_bodies(axes, scene, places_at(scene, last), "-", colour)
             for place, shape in enumerate(last.shapes.values()):
-                label = f"{scene.name}: {last.stage} {last.value:g}" if place == 0 else None
-                axes.plot(1e3 * shape.x, 1e3 * shape.y, "-", color=colour, linewidth=2.0, label=label)
+                label = f"{scene.name}: {at_station(scene, last.stage, last.value)}" if place == 0 else None
+                axes.plot(shape.x, shape.y, "-", color=colour, linewidth=2.0, label=label)
         axes.set_aspect("equal", adjustable="datalim")
-        axes.set_xlabel("x, mm")
-        axes.set_ylabel("y, mm")
+        show_lengths(designs[0][0], axes.xaxis, "x")
+        show_lengths(designs[0][0], axes.yaxis, "y")
         figure.legend(loc="outside lower center", ncols=2)
         return picture(figure, "designs", "Neutral lines of several designs, each at its last station.")
 
@@ -203,9 +204,7 @@ def _mechanism(axes: Axes, scene: Scene, answers: Mapping[str, Answer], stage: s
             (x, y), stands = contact.center, scene.bodies[contact.body].motion == "fixed"
             style = "-" if stands else "--"  # one that moves is shown where it began
             # an artist, no patch: a large circle must not make the beams small
-            axes.add_artist(
-                Circle((1e3 * x, 1e3 * y), 1e3 * contact.radius, fill=False, edgecolor=GREY, linestyle=style)
-            )
+            axes.add_artist(Circle((x, y), contact.radius, fill=False, edgecolor=GREY, linestyle=style))
     stations = {label: station_of(answer, stage, value) for label, answer in answers.items()}
     first = next(iter(stations.values()))
     places = places_at(scene, first)
@@ -217,38 +216,38 @@ def _mechanism(axes: Axes, scene: Scene, answers: Mapping[str, Answer], stage: s
             shape = station.shapes[beam_name]
             marker, colour = (".", BLUE) if label == "CPRBM" else ("-", RED)
             shown = label if number_of_beam == 0 else None
-            axes.plot(1e3 * shape.x, 1e3 * shape.y, marker, color=colour, markersize=3.5, linewidth=2.2, label=shown)
+            axes.plot(shape.x, shape.y, marker, color=colour, markersize=3.5, linewidth=2.2, label=shown)
     for label, station in stations.items():
         name = label.partition(" (")[0]
         marker, colour = ("o", BLUE) if label == "CPRBM" else ("x", RED)
         for place, spots in enumerate(station.touching.values()):
             shown = f"contact, {name}" if place == 0 else None
-            x, y = 1e3 * spots.T
+            x, y = spots.T
             # the many places of a zone would hide the beam behind them
             size = 9.0 if len(spots) <= FEW_PLACES else 2.5
             axes.plot(x, y, marker, color=colour, markersize=size, markerfacecolor="none", linestyle="", label=shown)
     frame(axes, first)
 
 
-def _stresses(rows: list[Row]) -> Picture:
+def _stresses(scene: Scene, rows: list[Row]) -> Picture:
     """Bending stress along each beam, in the manner of the paper's Fig. 10."""
     with canvas(7.2, 2.8 * len(rows)) as figure:
-        factor, unit = scaled_unit("Pa", max(norm("bending_stress", row.fea) for row in rows))
+        factor, unit = display_unit(scene, "Pa", max(norm("bending_stress", row.fea) for row in rows))
         for place, row in enumerate(rows):
             axes = figure.add_subplot(len(rows), 1, place + 1)
             if row.arc_length is None:
                 continue
             axes.axhline(0.0, color=GREY, linewidth=0.6)
-            axes.plot(1e3 * row.arc_length, row.fea / factor, "-", color=RED, linewidth=1.8, label="FEA")
-            axes.plot(1e3 * row.arc_length, row.cprbm / factor, ".", color=BLUE, markersize=5, label="CPRBM")
+            axes.plot(row.arc_length, row.fea / factor, "-", color=RED, linewidth=1.8, label="FEA")
+            axes.plot(row.arc_length, row.cprbm / factor, ".", color=BLUE, markersize=5, label="CPRBM")
             axes.set_title(row.probe.of, loc="left")
             axes.set_ylabel(f"bending stress, {unit}")
             axes.legend(loc="best")
-            axes.set_xlabel("initial arc length, mm")
+            show_lengths(scene, axes.xaxis, "initial arc length")
         return picture(
             figure,
             "stress",
-            f"Bending stress along the beams at {rows[0].stage} {rows[0].station:g}; where it is "
+            f"Bending stress along the beams at {at_station(scene, rows[0].stage, rows[0].station)}; where it is "
             "positive the load turns the tangent counter-clockwise along the beam.",
         )
 
@@ -256,9 +255,9 @@ def _stresses(rows: list[Row]) -> Picture:
 def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Picture:
     with canvas(6.4, 3.6) as figure:
         axes = figure.add_subplot()
-        factor, unit = scaled_unit(rows[0].unit, max(row.scale for row in rows))
+        factor, unit = display_unit(scene, rows[0].unit, max(row.scale for row in rows))
         last = scene.stages[-1]
-        step, step_unit = along_axis(load_unit(scene, last), 1.0)
+        step, step_unit = axis_unit(scene, load_unit(scene, last), max(map(abs, last.stations)))
         names = list(dict.fromkeys(row.probe.name for row in rows))
         told: set[str] = set()
         for name, (line, marker) in zip(names, islice(cycle(LOOKS), len(names)), strict=True):
@@ -293,6 +292,25 @@ def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Pi
         axes.set_ylabel(f"{what.lower()}, {unit}")
         axes.legend(loc="best")
         return picture(figure, quantity, f"{what} against {last.steps}.")
+
+
+def show_lengths(scene: Scene, axis: Axis, name: str = "") -> None:
+    """Give an axis of lengths, m, ticks in the displayed unit, and a label."""
+    from matplotlib.ticker import AutoLocator, FuncFormatter
+
+    factor, unit = display_unit(scene, "m", longest(scene))
+
+    class Locator(AutoLocator):
+        """Ticks at round numbers of the displayed unit."""
+
+        def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
+            """Ticks between two lengths, m."""
+            return [factor * tick for tick in super().tick_values(vmin / factor, vmax / factor)]
+
+    axis.set_major_locator(Locator())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / factor:g}".replace("-", "\N{MINUS SIGN}")))
+    if name:
+        axis.set_label_text(f"{name}, {unit}")
 
 
 @contextmanager

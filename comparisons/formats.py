@@ -72,8 +72,3 @@ def vector(values: Array, factor: float, floor: float = 0.0) -> str:
 
 def _component(value: float, factor: float, floor: float) -> str:
     return number(0.0 if abs(value) < floor else value / factor, 5)
-
-
-def along(value: float, unit: str) -> str:
-    """A value of a load or drive as titles show it; of a rotation also in degrees."""
-    return f"{value:g} ({number(math.degrees(value), 4)}°)" if unit == "rad" else f"{value:g}"

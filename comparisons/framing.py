@@ -16,11 +16,11 @@ ROOM = 0.3  # of the loaded mechanism's size, to every side of it
 
 
 def frame(axes: Axes, loaded: StationAnswer) -> None:
-    """Even axes, in mm; where the loaded mechanism would be small its surroundings alone, and the rest runs out."""
+    """Even axes; where the loaded mechanism would be small its surroundings alone, and the rest runs out."""
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.08)
     ends = np.array([(each.min(), each.max()) for shape in loaded.shapes.values() for each in (shape.x, shape.y)])
-    low, high = 1e3 * ends[:, 0].reshape(-1, 2).min(axis=0), 1e3 * ends[:, 1].reshape(-1, 2).max(axis=0)
+    low, high = ends[:, 0].reshape(-1, 2).min(axis=0), ends[:, 1].reshape(-1, 2).max(axis=0)
     size = float((high - low).max())
     axes.autoscale_view()
     whole = max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))

@@ -20,7 +20,7 @@ from typing import assert_never
 
 import numpy as np
 
-from cprbm_scene import Arc, Beam, Line, Polynomial, Spline
+from cprbm_scene import Arc, Beam, Line, Polynomial, Scene, Spline
 from cprbm_scene.answer import Array
 from cprbm_scene.geometry import arc_length, curvature_on, largest_curvature, points_on
 from cprbm_scene.statement import Curve, EdgeContact, FunctionContact, HalfPlaneContact, LineContact
@@ -39,6 +39,11 @@ def length(curve: Curve) -> float:
             return arc_length(curve)
         case _:
             assert_never(curve)
+
+
+def longest(scene: Scene) -> float:
+    """Length of the longest beam, m."""
+    return max(length(beam.curve) for beam in scene.beams.values())
 
 
 def radius(curve: Curve) -> float:

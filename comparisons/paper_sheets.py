@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from comparisons.case import Comparison
-from comparisons.formats import along, number, percent, scaled_unit
-from comparisons.quantities import load_unit
+from comparisons.display_units import at_station, with_unit
+from comparisons.formats import percent
 from comparisons.sheet import Sheet
 from comparisons.steps import contact_model
 from comparisons.verdict.rows import Row
@@ -25,12 +25,12 @@ def of_paper(compared: Comparison) -> Sheet:
     body = []
     for name, measured in by_probe.items():
         row, model = max(measured, key=lambda pair: pair[0].fraction(pair[1]) or 0.0)
-        there = next((_shown(*pair) for pair in measured if pair[0].where == last), "–")
-        body.append((name, _shown(row, model), _place(compared.scene, *row.where), there))
+        there = next((_shown(compared.scene, *pair) for pair in measured if pair[0].where == last), "–")
+        body.append((name, _shown(compared.scene, row, model), at_station(compared.scene, *row.where), there))
     paper = compared.runs.paper if compared.runs.formulations is None else compared.runs.formulations[0]
     return Sheet(
         "The formulation paper beside auto",
-        ("probe", "off by at most", "at", f"at {_place(compared.scene, *last)}" if by_probe else "at the last"),
+        ("probe", "off by at most", "at", f"at {at_station(compared.scene, *last)}" if by_probe else "at the last"),
         tuple(body),
         "Distances of the CPRBM's values at the same N; they take no part in the verdict. Fractions as above, and "
         "where those are tenfold and more the distance itself."
@@ -38,18 +38,12 @@ def of_paper(compared: Comparison) -> Sheet:
     )
 
 
-def _shown(row: Row, model: float) -> str:
+def _shown(scene: Scene, row: Row, model: float) -> str:
     """A distance as a fraction, or with its unit where the fraction is large."""
     share = row.fraction(model)
     if share is None or share <= MANY_TIMES:
         return percent(share)
-    factor, unit = scaled_unit(row.unit, model)
-    return f"{number(model / factor)} {unit}"
-
-
-def _place(scene: Scene, name: str, station: float) -> str:
-    stage = next(stage for stage in scene.stages if stage.name == name)
-    return f"{name} {along(station, load_unit(scene, stage))}"
+    return with_unit(scene, model, row.unit, 3)
 
 
 def _why(scene: Scene, paper: Answer) -> str:
@@ -58,5 +52,5 @@ def _why(scene: Scene, paper: Answer) -> str:
     reached = len(paper.stations)
     asked = [(stage.name, value) for stage in scene.stages for value in stage.stations]
     if not paper.completed and reached < len(asked):
-        said += f" It ended before {_place(scene, *asked[reached])}: {paper.sentence or paper.ending.value}."
+        said += f" It ended before {at_station(scene, *asked[reached])}: {paper.sentence or paper.ending.value}."
     return said

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from comparisons.case import Comparison
-from comparisons.figures import BLUE, GREY, RED, Picture, along_axis, canvas, picture
-from comparisons.formats import number, scaled_unit
+from comparisons.display_units import axis_unit, display_unit
+from comparisons.figures import BLUE, GREY, RED, Picture, canvas, picture
+from comparisons.formats import number
 from comparisons.quantities import UNITS, load_unit
 from comparisons.reactions import ENERGY, multiplier, reaction_probe
 from comparisons.stages import begins_at
@@ -94,16 +95,15 @@ def _drawn(compared: Comparison, stepped: str, stages: list[Stage]) -> Picture |
     shown = list(_ordinates(scene, stages))
     if not shown:
         return None
-    axis = load_unit(scene, stages[0])
     largest = max(abs(value) for stage in stages for value in stage.stations)
-    step, step_unit = along_axis(axis, largest)
+    step, step_unit = axis_unit(scene, load_unit(scene, stages[0]), largest)
     answers = {"FEA": runs.reference, "CPRBM": runs.cprbm[0]}
     names = {stage.name for stage in stages}
     with canvas(7.2, 0.8 + 3.0 * len(shown)) as figure:
         panels = np.atleast_1d(figure.subplots(len(shown), 1, sharex=True))
         for axes, ordinate in zip(panels, shown, strict=True):
             mine = [station for answer in answers.values() for station in answer.stations if station.stage in names]
-            factor, shown_unit = scaled_unit(ordinate.unit, max(abs(ordinate.of(station)) for station in mine))
+            factor, shown_unit = display_unit(scene, ordinate.unit, max(abs(ordinate.of(station)) for station in mine))
             for name, answer in answers.items():
                 _path(axes, scene, stages, name, answer, ordinate, step, factor)
                 for critical in answer.critical:

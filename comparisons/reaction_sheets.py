@@ -6,7 +6,8 @@ from collections import Counter
 from collections.abc import Sequence
 
 from comparisons.case import Comparison
-from comparisons.formats import number, percent, scaled_unit
+from comparisons.display_units import at_station, display_unit
+from comparisons.formats import number, percent
 from comparisons.reactions import MESH_ALLOWANCE, PERTURBATION, WorkEnergyReaction, is_long
 from comparisons.sheet import Sheet
 from comparisons.thinning import kept
@@ -28,10 +29,10 @@ def by_drive(found: Sequence[WorkEnergyReaction]) -> dict[str, tuple[WorkEnergyR
     return {drive: tuple(reaction for reaction in found if reaction.drive == drive) for drive in drives}
 
 
-def summary(found: Sequence[WorkEnergyReaction]) -> str:
+def summary(scene: Scene, found: Sequence[WorkEnergyReaction]) -> str:
     """How many stations are within the allowance, the largest difference, the stated errors, and absent values."""
     known = [reaction for reaction in found if reaction.difference is not None]
-    beyond = [f"{at.stage} {at.station:g} ({percent(at.difference)})" for at in known if at.apart]
+    beyond = [f"{at_station(scene, at.stage, at.station)} ({percent(at.difference)})" for at in known if at.apart]
     said = f"Work–energy by a central difference with ρ = {percent(PERTURBATION)}: "
     said += f"within the allowance at {len(known) - len(beyond)} of {len(known)} stations."
     said += f" Beyond the allowance: {', '.join(beyond)}." if beyond else ""
@@ -39,7 +40,7 @@ def summary(found: Sequence[WorkEnergyReaction]) -> str:
         worst = max(known, key=lambda reaction: abs(reaction.difference or 0.0))
         truncation = max(reaction.share(reaction.truncation) or 0.0 for reaction in known)
         round_off = max(reaction.share(reaction.round_off) or 0.0 for reaction in known)
-        said += f" Largest difference: {percent(worst.difference)} at {worst.stage} {worst.station:g}."
+        said += f" Largest difference: {percent(worst.difference)} at {at_station(scene, worst.stage, worst.station)}."
         said += f" Truncation is at most {percent(truncation)}, round-off at most {percent(round_off)}."
         said += f" Where contacts are closed, the motion of the mesh is allowed {percent(MESH_ALLOWANCE)} more."
     absent = Counter(reaction.absence for reaction in found if reaction.absence)
@@ -51,10 +52,10 @@ def _sheet(scene: Scene, drive: str, found: Sequence[WorkEnergyReaction], ended:
     shown = {
         (stage.name, value) for stage in scene.stages for value in (kept(stage) if is_long(stage) else stage.stations)
     }
-    factor, unit = scaled_unit(found[0].unit, max(abs(reaction.multiplier) for reaction in found))
+    factor, unit = display_unit(scene, found[0].unit, max(abs(reaction.multiplier) for reaction in found))
     body = tuple(
         (
-            f"{reaction.stage} {reaction.station:g}",
+            at_station(scene, reaction.stage, reaction.station),
             number(reaction.multiplier / factor, 5),
             "–" if reaction.work_energy is None else number(reaction.work_energy / factor, 5),
             percent(reaction.difference),
@@ -65,7 +66,7 @@ def _sheet(scene: Scene, drive: str, found: Sequence[WorkEnergyReaction], ended:
         for reaction in found
         if (reaction.stage, reaction.station) in shown
     )
-    return Sheet(f"Reaction at the drive {drive}, {unit}", _HEADERS, body, summary(found) + ended)
+    return Sheet(f"Reaction at the drive {drive}, {unit}", _HEADERS, body, summary(scene, found) + ended)
 
 
 def _reason(reaction: WorkEnergyReaction) -> str:

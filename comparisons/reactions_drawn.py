@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from comparisons.case import Comparison
-from comparisons.figures import BLUE, GREY, RED, Picture, along_axis, canvas, picture
-from comparisons.formats import scaled_unit
+from comparisons.display_units import axis_unit, display_unit
+from comparisons.figures import BLUE, GREY, RED, Picture, canvas, picture
 from comparisons.quantities import LOAD_UNITS
 from comparisons.reaction_sheets import by_drive
 from comparisons.reactions import MESH_ALLOWANCE, WorkEnergyReaction
@@ -28,9 +28,9 @@ def of_comparison(compared: Comparison) -> tuple[Picture, ...]:
 
 def _drawn(scene: Scene, drive: str, reactions: Sequence[WorkEnergyReaction]) -> Picture:
     """The figure of one drive: reactions above, relative differences below."""
-    factor, unit = scaled_unit(reactions[0].unit, max(abs(reaction.multiplier) for reaction in reactions))
+    factor, unit = display_unit(scene, reactions[0].unit, max(abs(reaction.multiplier) for reaction in reactions))
     load_unit = LOAD_UNITS[scene.drives[drive].kind]
-    step, step_unit = along_axis(load_unit, max(abs(reaction.station) for reaction in reactions))
+    step, step_unit = axis_unit(scene, load_unit, max(abs(reaction.station) for reaction in reactions))
     what = "moment" if load_unit == "rad" else "force"
     with canvas(6.4, 6.0) as figure:
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))

@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
+from comparisons.display_units import at_station, distance_text, with_unit
 from comparisons.formats import number, percent
 from comparisons.verdict.calibration import SOLVERS, error_ratios, tally, true_errors
 from comparisons.verdict.events import ClosingRow, CriticalRow, mechanism
@@ -31,11 +32,13 @@ def headline(table: RunsTable, rows: Sequence[Row], judged: Sequence[Judged], de
     if word is Word.AGREE:
         row = max((row for row, _ in pairs), key=pressure)
         counts = f"All {total} rows agree" if counted[word] == total else f"{counted[word]} of {total} rows agree"
-        return f"{counts}; the closest is {place(row)}: {_measured(row)}.{_others(rows, judged)}"
+        return f"{counts}; the closest is {place(table.scene, row)}: {_measured(row)}.{_others(rows, judged)}"
     mine = [row for row, why in pairs if why is reason]
     row = max(mine, key=pressure)
     verb = "differ" if word is Word.DIFFER else "are undecided"
-    return f"{len(pairs)} of {total} rows {verb}, first of all {place(row)}: {_explained(table, row, reason)}"
+    return (
+        f"{len(pairs)} of {total} rows {verb}, first of all {place(table.scene, row)}: {_explained(table, row, reason)}"
+    )
 
 
 def pressure(row: Row) -> float:
@@ -46,12 +49,12 @@ def pressure(row: Row) -> float:
     return max(*shares, *(each.pressure for each in true_errors(row)), 0.0)
 
 
-def place(row: Row) -> str:
+def place(scene: Scene, row: Row) -> str:
     """Probe, stage and station of a row."""
-    return f"{row.probe.name} at {row.stage} {row.station:g}"
+    return f"{row.probe.name} at {at_station(scene, row.stage, row.station)}"
 
 
-def calibration_sentence(rows: Sequence[Row]) -> str:
+def calibration_sentence(scene: Scene, rows: Sequence[Row]) -> str:
     """Comparison of true errors with stated ones in a sentence; empty without an exact value."""
     ratios = error_ratios(rows)
     beyond = []
@@ -61,7 +64,7 @@ def calibration_sentence(rows: Sequence[Row]) -> str:
             worst = mine.worst[0]
             beyond.append(
                 f"{NAMES[solver]} exceed the stated error in {mine.rows - mine.within} of {mine.rows} rows, at most "
-                f"{number(worst.ratio)} times ({place(worst.row)})"
+                f"{number(worst.ratio)} times ({place(scene, worst.row)})"
             )
     if beyond:
         return f"Beside the exact answer {'; '.join(beyond)}."
@@ -91,16 +94,18 @@ def audit_sentence(solver: str, complaints: Sequence[str]) -> str:
     return f"The audit of {solver}'s answer fails: {_first(complaints)}."
 
 
-def critical_sentence(row: CriticalRow) -> str:
+def critical_sentence(scene: Scene, row: CriticalRow) -> str:
     """Loads and mechanisms of a critical point in both solvers, and its word."""
     found = {"the CPRBM": row.cprbm, "the finite elements": row.fea}
     parts = " and ".join(
-        f"nowhere in {name}" if one is None else f"{load(one.value, row.unit)} ({mechanism(one)}) in {name}"
+        f"nowhere in {name}"
+        if one is None
+        else f"{with_unit(scene, one.value, row.unit, 5)} ({mechanism(one)}) in {name}"
         for name, one in found.items()
     )
     if row.bounds is not None:
         sizes = (row.difference, row.bounds.theory, row.same_theory, row.bounds.same_theory, row.allowed)
-        apart, theory, own, stated, allowed = (distance(size, row.unit) for size in sizes)
+        apart, theory, own, stated, allowed = (distance_text(scene, size, row.unit) for size in sizes)
         parts += f", {apart} apart and {theory} by theory; within one theory {own} against a stated {stated}, "
         parts += f"{allowed} allowed"
     elif not row.steady:
@@ -111,12 +116,13 @@ def critical_sentence(row: CriticalRow) -> str:
     return f"The branch ends in {row.stage} at {parts}: {row.word.value}."
 
 
-def closing_sentence(row: ClosingRow) -> str:
+def closing_sentence(scene: Scene, row: ClosingRow) -> str:
     """Loads at which a contact closes in both solvers."""
     loads = " and ".join(
-        f"{load(value, row.unit)} in {name}" for value, name in zip((row.cprbm, row.fea), NAMES.values(), strict=True)
+        f"{with_unit(scene, value, row.unit, 5)} in {name}"
+        for value, name in zip((row.cprbm, row.fea), NAMES.values(), strict=True)
     )
-    stated, allowed = distance(row.stated, row.unit), distance(row.allowed, row.unit)
+    stated, allowed = (distance_text(scene, size, row.unit) for size in (row.stated, row.allowed))
     return f"{row.contact} closes in {row.stage} at {loads}, against a stated {stated}, {allowed} allowed: DIFFER."
 
 
@@ -125,30 +131,20 @@ def passed_sentences(table: RunsTable, rows: Sequence[Row], judged: Sequence[Jud
     differing = [row for row, (word, _) in zip(rows, judged, strict=True) if word is Word.DIFFER]
     if not differing:
         return
-    stages = [stage.name for stage in table.scene.stages]
-    stage = table.scene.stages[stages.index(differing[0].stage)]
+    stages = {stage.name: stage for stage in table.scene.stages}
+    stage = stages[differing[0].stage]
     index = stage.stations.index(differing[0].station)
     for name, answer in zip(NAMES.values(), table.pair, strict=True):
-        earlier = [one for one in answer.gone_over if one.end.stage in stages[: stages.index(stage.name)]]
+        earlier = [
+            one for one in answer.gone_over if list(stages).index(one.end.stage) < list(stages).index(stage.name)
+        ]
         mine = [one for one in answer.gone_over if one.end.stage == stage.name]
         for one in (*earlier, *mine[: passed_by(table.scene, stage, answer, index)])[-1:]:
             yield (
-                f"Before that {name} passed a critical point ({mechanism(one.end)}) at {one.end.stage} "
-                f"{number(one.end.value, 5)} and went on along a state turned by {number(one.turned, 3)} rad."
+                f"Before that {name} passed a critical point ({mechanism(one.end)}) at "
+                f"{at_station(table.scene, one.end.stage, one.end.value)} and went on along a state turned by "
+                f"{number(one.turned, 3)} rad."
             )
-
-
-def load(value: float, unit: str) -> str:
-    """A load with its unit, a rotation also in degrees."""
-    degrees = f" ({number(math.degrees(value), 4)}°)" if unit == "rad" else ""
-    return f"{number(value, 5)} {unit}{degrees}"
-
-
-def distance(value: float, unit: str) -> str:
-    """A distance on the load axis, of a rotation in degrees."""
-    if not math.isfinite(value):
-        return "–"
-    return f"{number(math.degrees(value), 2)}°" if unit == "rad" else f"{number(value, 2)} {unit}"
 
 
 def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from enum import Enum
 
 from comparisons.audit import Audit
 from comparisons.branch_sheets import of_branches, of_criticals, of_ends
 from comparisons.case import Comparison
 from comparisons.claims import as_claimed, standings
+from comparisons.display_units import at_station, display_units, load_column, load_text
 from comparisons.documents import worst
-from comparisons.formats import along, component_names, components, number, percent, scaled_unit, vector
+from comparisons.formats import component_names, components, number, percent, vector
 from comparisons.geometry import bentness
 from comparisons.paper_sheets import of_paper
-from comparisons.quantities import load_unit, norm, unit_of
+from comparisons.quantities import norm, unit_of
 from comparisons.reaction_sheets import of_reactions
+from comparisons.sentences import place
 from comparisons.sheet import Sheet
 from comparisons.steps import Steps, contact_model, largest_difference, steps_of
 from comparisons.third import of_thirds
@@ -54,7 +56,7 @@ def by_subject(compared: Comparison) -> dict[Subject, tuple[Sheet, ...]]:
     rows = last_rows(compared)
     found = {
         Subject.VALUES: (
-            of_tolerances(compared.tolerances),
+            of_tolerances(compared.scene, compared.tolerances),
             of_criticals(compared),
             of_branches(compared),
             *(_values(compared, each) for each in shown_rows(compared)),
@@ -73,11 +75,11 @@ def by_subject(compared: Comparison) -> dict[Subject, tuple[Sheet, ...]]:
 def of_answer(scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = ()) -> tuple[Sheet, ...]:
     """All tables of one solver's answer, and how its N was found."""
     answered = (_answered(scene, answer, stage) for stage in scene.stages)
-    found = (of_tolerances(tolerances), *answered, of_ends(scene, answer), _events(answer))
+    found = (of_tolerances(scene, tolerances), *answered, of_ends(scene, answer), _events(scene, answer))
     return tuple(sheet for sheet in found if sheet.rows)
 
 
-def of_tolerances(tolerances: tuple[Tolerance, ...]) -> Sheet:
+def of_tolerances(scene: Scene, tolerances: tuple[Tolerance, ...]) -> Sheet:
     """How N was found for a tolerance."""
     body = tuple(
         (
@@ -85,7 +87,9 @@ def of_tolerances(tolerances: tuple[Tolerance, ...]) -> Sheet:
             str(found.n),
             ", ".join(str(n) for n in found.extrapolated) or "–",
             "–" if found.worst is None else percent(found.worst.fraction),
-            "–" if found.worst is None else f"{found.worst.probe} at {found.worst.station:g}",
+            "–"
+            if found.worst is None
+            else f"{found.worst.probe} at {load_text(scene, found.worst.stage, found.worst.station)}",
             "yes" if found.met else "no",
             ", ".join(str(n) for n in found.solved),
         )
@@ -133,7 +137,7 @@ def explanation(compared: Comparison) -> tuple[str, ...]:
         if steps is None:
             continue
         sentences.append(
-            f"{row.probe.name} at {row.station:g}: our difference of {share(row, row.difference)} is the "
+            f"{place(compared.scene, row)}: our difference of {share(row, row.difference)} is the "
             f"finite elements' own step of theory, {share(row, steps.stretch)} from bending to stretch and "
             f"{share(row, steps.shear)} from stretch to shear, and {_within_one_theory(compared, row, steps)}; "
             f"the source's figure of {percent(claim.bound)} is not ours to approach."
@@ -160,9 +164,9 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
     runs = compared.runs
     known = any(row.exact is not None for row in rows)
     last = not rows or rows[-1] is compared.rows[-1]
-    body = []
+    units, body = row_units(compared.scene, rows), []
     for row in rows:
-        factor, unit = value_unit(row)
+        factor, unit = units[row.unit]
         body.append(
             (
                 row.probe.name,
@@ -180,8 +184,7 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         )
     where = "no station"
     if rows:
-        stage = next(stage for stage in compared.scene.stages if stage.name == rows[0].stage)
-        where = f"{stage.name} {along(rows[0].station, load_unit(compared.scene, stage))}"
+        where = at_station(compared.scene, rows[0].stage, rows[0].station)
     return Sheet(
         f"{compared.scene.title or compared.scene.name}: {where}",
         (
@@ -276,7 +279,7 @@ def claims(compared: Comparison) -> Sheet:
             ("" if standing.claim.value is None else f"{number(standing.claim.value)} ± ")
             + percent(standing.claim.bound),
             percent(standing.difference),
-            f"{standing.worst.stage} {standing.worst.station:g}",
+            at_station(compared.scene, standing.worst.stage, standing.worst.station),
             f"{standing.met} of {standing.stations}",
             "met" if standing.holds else "not met",
         )
@@ -292,11 +295,10 @@ def claims(compared: Comparison) -> Sheet:
 
 
 def _stresses(scene: Scene, rows: tuple[Row, ...]) -> Sheet:
-    body = []
+    rows = tuple(row for row in rows if row.probe.quantity == "bending_stress")
+    units, body = row_units(scene, rows), []
     for row in rows:
-        if row.probe.quantity != "bending_stress":
-            continue
-        factor, unit = scaled_unit(row.unit, norm("bending_stress", row.fea))
+        factor, unit = units[row.unit]
         beam = scene.beams[row.probe.of]
         body.append(
             (
@@ -426,37 +428,44 @@ def _answered(scene: Scene, answer: Answer, stage: Stage) -> Sheet:
     stations = [station for station in answer.stations if station.stage == stage.name]
     scales = probe_scales(scene, (answer,))
     columns: dict[str, list[str]] = {}
+    units = display_units(
+        scene,
+        (
+            (unit_of(scene, probe, stage), max(norm(probe.quantity, at.values[probe.name]) for at in stations))
+            for probe in scene.probes_in(stage.name)
+            if stations
+        ),
+    )
     for probe in scene.probes_in(stage.name):
         found = [station.values[probe.name] for station in stations]
-        largest = max((norm(probe.quantity, values) for values in found), default=0.0)
-        factor, unit = scaled_unit(unit_of(scene, probe, stage), largest)
+        factor, unit = units.get(unit_of(scene, probe, stage), (1.0, ""))
         floor = ROUND_OFF * scales[stage.name, probe.name]
         texts = [dict(components(probe.quantity, values, factor, floor)) for values in found]
         for name in component_names(probe.quantity):
             columns[f"{f'{probe.name} {name}'.rstrip()}, {unit}"] = [each.get(name, "open") for each in texts]
-    load = load_unit(scene, stage)
+    heading, loads = load_column(scene, stage, [station.value for station in stations])
     return Sheet(
         f"{scene.title or scene.name}: {stage.name}, {answer.solver}",
-        (f"{stage.steps}, {load}", *columns),
-        tuple(zip((along(station.value, load) for station in stations), *columns.values(), strict=True)),
+        (heading, *columns),
+        tuple(zip(loads, *columns.values(), strict=True)),
         f"{answer.ending.name}: {answer.sentence or answer.ending.value}"
         if stations and stations[-1] is answer.stations[-1]
         else "",
     )
 
 
-def _events(answer: Answer) -> Sheet:
+def _events(scene: Scene, answer: Answer) -> Sheet:
     return Sheet(
         "Events",
         ("stage", "contact", "what", "at"),
-        tuple((e.stage, e.contact, e.kind, number(e.value, 6)) for e in answer.events),
+        tuple((e.stage, e.contact, e.kind, load_text(scene, e.stage, e.value)) for e in answer.events),
     )
 
 
-def value_unit(row: Row) -> tuple[float, str]:
-    """Factor and unit in which both values of a row print."""
-    size = max(norm(row.probe.quantity, row.cprbm), norm(row.probe.quantity, row.fea))
-    return scaled_unit(row.unit, 0.0 if size < ROUND_OFF * row.scale else size)
+def row_units(scene: Scene, rows: Sequence[Row]) -> Mapping[str, tuple[float, str]]:
+    """Displayed units of the values of rows, by SI unit; round-off counts as zero."""
+    sizes = ((row, norm(row.probe.quantity, value)) for row in rows for value in (row.cprbm, row.fea))
+    return display_units(scene, ((row.unit, 0.0 if size < ROUND_OFF * row.scale else size) for row, size in sizes))
 
 
 def share(row: Row, value: float, digits: int = 3) -> str:

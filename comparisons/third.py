@@ -11,7 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from comparisons.case import Comparison
-from comparisons.formats import percent, scaled_unit, vector
+from comparisons.display_units import display_units
+from comparisons.formats import percent, vector
 from comparisons.quantities import norm
 from comparisons.sheet import Sheet
 from comparisons.solid_limits import solid_limit
@@ -67,10 +68,11 @@ def of_thirds(compared: Comparison) -> Sheet:
     """The last station's rows beside the solid."""
     thirds = thirds_of(compared)
     last = [one for one in thirds if (one.row.stage, one.row.station) == (thirds[-1].row.stage, thirds[-1].row.station)]
-    body = []
+    sizes = ((one.row.unit, norm(one.row.probe.quantity, one.solid)) for one in last)
+    units, body = display_units(compared.scene, sizes), []
     for one in last:
         row = one.row
-        factor, unit = scaled_unit(row.unit, norm(row.probe.quantity, one.solid))
+        factor, unit = units[row.unit]
         fractions = (one.uncertainty, one.cprbm, one.bending, one.chosen)
         body.append(
             (

@@ -1,4 +1,4 @@
-"""An answer as a table with one number on each line, which tools for tables take as it is."""
+"""Answers and comparisons as tables with one number on each line: records in SI, files in the units of the scene."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import TypedDict
 
 from comparisons.case import Comparison
+from comparisons.display_units import file_unit
 from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
 from cprbm_scene import Answer, Probe, Scene
 from cprbm_scene.answer import Array
@@ -67,26 +68,31 @@ def _parts(scene: Scene, probe: Probe, values: Array) -> Iterator[tuple[str, flo
         yield name, None, float(value)
 
 
-ComparedNumber = TypedDict(
-    "ComparedNumber",
-    {
-        "scene": str,
-        "stage": str,
-        "station": float,
-        "station_unit": str,
-        "branch": int | None,
-        "probe": str,
-        "component": str,
-        "arc_length (m)": float | None,
-        "unit": str,
-        "cprbm": float | None,
-        "fea": float | None,
-        "difference": float,
-        "stated": float | None,
-        "word": str,
-    },
+class ComparedNumber(TypedDict):
+    """One number of a comparison in the SI ``unit``, with the values of both solvers; ``arc_length`` in m."""
+
+    scene: str
+    stage: str
+    station: float
+    station_unit: str
+    branch: int | None
+    probe: str
+    component: str
+    arc_length: float | None
+    unit: str
+    cprbm: float | None
+    fea: float | None
+    difference: float
+    stated: float | None
+    word: str
+
+
+_MEASURED = (
+    ("station_unit", ("station",)),
+    ("arc_length_unit", ("arc_length",)),
+    ("unit", ("value", "cprbm", "fea", "difference", "stated")),
 )
-"""One number of a comparison in the SI ``unit``, with the values of both solvers."""
+"""Columns of units, and the columns that have numbers in each."""
 
 
 def comparison_records(compared: Comparison) -> Iterator[ComparedNumber]:
@@ -110,7 +116,7 @@ def comparison_records(compared: Comparison) -> Iterator[ComparedNumber]:
                 "branch": row.branch,
                 "probe": row.probe.name,
                 "component": component,
-                "arc_length (m)": place,
+                "arc_length": place,
                 "unit": row.unit,
                 "cprbm": cprbm.get((component, place)),
                 "fea": fea.get((component, place)),
@@ -121,19 +127,35 @@ def comparison_records(compared: Comparison) -> Iterator[ComparedNumber]:
 
 
 def csv_of(scene: Scene, *answers: Answer) -> str:
-    """Answers to one scene as comma-separated values, with a line of headers."""
-    return _csv_text((number for answer in answers for number in numbers(scene, answer)), Number)
+    """Answers to one scene as comma-separated values in the units of the scene's file, with a line of headers."""
+    rows = (_in_file_units(scene, number) for answer in answers for number in numbers(scene, answer))
+    return _csv_text(rows, Number)
 
 
 def csv_of_comparisons(comparisons: Iterable[Comparison]) -> str:
-    """Comparisons as comma-separated values, with a line of headers."""
-    return _csv_text((record for each in comparisons for record in comparison_records(each)), ComparedNumber)
+    """Comparisons as comma-separated values in the units of each scene's file, with a line of headers."""
+    rows = (_in_file_units(each.scene, record) for each in comparisons for record in comparison_records(each))
+    return _csv_text(rows, ComparedNumber)
+
+
+def _in_file_units(scene: Scene, record: Mapping[str, object]) -> dict[str, object]:
+    """A record with its numbers, to 15 digits, and its units as the scene's file states them."""
+    row: dict[str, object] = {**record, "arc_length_unit": "m"}
+    for unit, columns in _MEASURED:
+        factor, row[unit] = file_unit(scene, str(row[unit]))
+        for column in columns:
+            number = row.get(column)
+            if factor != 1.0 and isinstance(number, float):
+                row[column] = float(f"{number / factor:.15g}")
+    return row
 
 
 def _csv_text(rows: Iterable[Mapping[str, object]], kind: type) -> str:
     """Rows of a ``kind`` as comma-separated values; also without rows a line of headers."""
     text = io.StringIO()
-    table = csv.DictWriter(text, fieldnames=list(kind.__annotations__), lineterminator="\n")
+    columns = list(kind.__annotations__)
+    columns.insert(columns.index("arc_length") + 1, "arc_length_unit")
+    table = csv.DictWriter(text, fieldnames=columns, lineterminator="\n")
     table.writeheader()
     table.writerows(rows)
     return text.getvalue()

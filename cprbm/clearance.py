@@ -34,7 +34,7 @@ from cprbm.faces import Face, faces_of
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
 from cprbm.outset import anchor
-from cprbm_scene import BeamContact, CircleContact, Scene, SelfContact
+from cprbm_scene import BeamContact, CircleContact, EdgeContact, Scene, SelfContact
 from cprbm_scene.answer import Array, Flags, Ints
 
 DISCS = 8  # of a beam
@@ -248,7 +248,7 @@ def clearances_of(scene: Scene, model: Model) -> Clearances:
         elif isinstance(contact, CircleContact):
             circles.append(i)
             reach[i] = half[i] + circle.reach(mine[0], contact.radius / model.unit_length)
-        else:
+        elif isinstance(contact, EdgeContact):
             edges.append(i)
             x, y = np.array(anchor(contact)) / model.unit_length if bodies[i] >= 0 else (0.0, 0.0)
             faces[i] = faces_of(contact, model.unit_length, (float(x), float(y)))

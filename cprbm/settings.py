@@ -66,9 +66,10 @@ class Settings(BaseModel):
         refuse(scene, "the CPRBM", "overlap at rest", *(() if scene.contacts else ("theory",)))
         named: Mapping[str, int] = dict.fromkeys(scene.beams, self.links) if isinstance(self.links, int) else self.links
         known, fewest = " or ".join(scene.beams), f"at least {FEWEST_LINKS} elements per beam"
-        unknown = [(beam, "no such beam", known) for beam in named if beam not in scene.beams]
-        few = [beam for beam in scene.beams if named.get(beam, 0) < FEWEST_LINKS]
-        wrong = [*unknown, *((beam, str(named.get(beam, "nothing")), fewest) for beam in few)]
+        wrong = [(beam, "no such beam", known) for beam in named if beam not in scene.beams]
+        wrong += [
+            (beam, str(named.get(beam, "nothing")), fewest) for beam in scene.beams if named.get(beam, 0) < FEWEST_LINKS
+        ]
         if wrong:
             raise SceneError(
                 [Mistake(f"settings.links.{beam}", found, allowed, scene.file) for beam, found, allowed in wrong]

@@ -17,7 +17,6 @@ from cprbm_scene.statement import (
     PinnedEnd,
     RotationDrive,
     Scene,
-    SlidingBody,
     TurningBody,
 )
 
@@ -28,75 +27,61 @@ def wrong_actions(scene: Scene) -> Iterator[Mistake]:
         return
     freedoms = Freedoms(scene)
     driven: dict[str, dict[str, Row]] = {}
-    for name, drive in scene.drives.items():
-        yield from _drive(scene, freedoms, name, drive, driven)
+    actions = {f"drives.{name}": drive for name, drive in scene.drives.items()}
+    loads = {f"loads.{name}": load for name, load in scene.loads.items() if isinstance(load, BodyLoad)}
+    for key, acting in (actions | loads).items():
+        if not _named(freedoms, acting) or any(acting.rules()):
+            continue
+        owner, row = freedoms.owner(acting), freedoms.row(acting)
+        mistake = _without_freedom(freedoms, key, acting)
+        if mistake is None and not any(scene.bodies[owner].rules()):
+            mistake = _driven_already(freedoms, key, acting, driven.setdefault(owner, {}))
+            if mistake is None and key in actions:
+                driven[owner][key] = row
+        if mistake is not None:
+            yield mistake
     for name, load in scene.loads.items():
-        if isinstance(load, BodyLoad):
-            yield from _body_load(scene, freedoms, name, load, driven)
-        elif isinstance(load, BeamForce | BeamMoment):
+        if isinstance(load, BeamForce | BeamMoment):
             yield from _held_end(scene, name, load)
 
 
-def _drive(
-    scene: Scene, freedoms: Freedoms, name: str, drive: Drive, driven: dict[str, dict[str, Row]]
-) -> Iterator[Mistake]:
-    turns = isinstance(drive, RotationDrive)
-    if not _named(freedoms, drive) or any(drive.rules()):
-        return
-    owner, what = freedoms.owner(drive), "body" if turns else "point"
-    if scene.bodies[owner].motion == "fixed":
-        of = "the rotation" if isinstance(drive, RotationDrive) else f"{drive.point!r}, a point"
-        found, allowed = f"a drive of {of} of the fixed body {owner!r}", f"a {what} that can move: "
-        movable = [
-            each
-            for each_name, body in scene.bodies.items()
-            if body.motion != "fixed"
-            for each in ([each_name] if turns and _can_turn(scene, each_name) else [] if turns else body.points)
-        ]
-        yield Mistake(f"drives.{name}.{what}", found, allowed + _listed(movable))
-    elif not any(scene.bodies[owner].rules()):
-        guide, row, others = freedoms.guide(owner), freedoms.row(drive), driven.setdefault(owner, {})
-        if held(row, guide) and turns:
-            yield Mistake(f"drives.{name}.body", f"the rotation of {owner!r}, which slides", "a free body's rotation")
-        elif held(row, guide):
-            found, allowed = f"a direction {_across(scene, owner)}", "a direction along which the point can move"
-            yield Mistake(f"drives.{name}.direction", found, allowed)
-        elif held(row, [*guide, *others.values()]):
-            first = " and ".join(f"drives.{other}" for other in others)
-            found = f"a freedom of {owner!r} that is driven already by {first}"
-            yield Mistake(f"drives.{name}", found, "one drive for each freedom")
-        else:
-            others[name] = row
+def _without_freedom(freedoms: Freedoms, key: str, acting: BodyLoad | Drive) -> Mistake | None:
+    """The mistake of a fixed body, or of a motion that a guide holds."""
+    scene, owner = freedoms.scene, freedoms.owner(acting)
+    body = scene.bodies[owner]
+    if isinstance(acting, Moment | RotationDrive):
+        what, place, direction = "a moment on" if isinstance(acting, Moment) else "a drive of", "body", "body"
+        across, allowed = f"the rotation of {owner!r}, which slides and does not turn", "a body that can turn"
+    else:
+        what = f"{'a force' if isinstance(acting, Force) else 'a drive'} at {acting.point!r}, a point of"
+        guide = "towards the pivot" if isinstance(body, TurningBody) else "across the slide"
+        across, allowed = f"a direction {guide} of {owner!r}", "a direction along which the point can move"
+        place, direction = "point", "direction"
+    if body.motion == "fixed":
+        movable = {name: each.points for name, each in scene.bodies.items() if each.motion != "fixed"}
+        names = movable if place == "body" else [point for points in movable.values() for point in points]
+        can_move = ", ".join(map(repr, names)) or "there is none"
+        found = f"{what} the fixed body {owner!r}"
+        return Mistake(f"{key}.{place}", found, f"a {place} that can move: {can_move}")
+    if not any(body.rules()) and held(freedoms.row(acting), freedoms.guide(owner)):
+        return Mistake(f"{key}.{direction}", across, allowed)
+    return None
 
 
-def _body_load(
-    scene: Scene, freedoms: Freedoms, name: str, load: BodyLoad, driven: dict[str, dict[str, Row]]
-) -> Iterator[Mistake]:
-    if not _named(freedoms, load):
-        return
-    owner = freedoms.owner(load)
-    if scene.bodies[owner].motion == "fixed":
-        of, movable = f"the fixed body {owner!r}", [n for n, body in scene.bodies.items() if body.motion != "fixed"]
-        if isinstance(load, Moment):
-            found, what, key = f"a moment on {of}", "a body", "body"
-        else:
-            found, what, key = f"a force at {load.point!r}, a point of {of}", "a point of a body", "point"
-        yield Mistake(f"loads.{name}.{key}", found, f"{what} that can move: {_listed(movable)}")
-    elif not any(load.rules()) and not any(scene.bodies[owner].rules()):
-        guide, row, drives = freedoms.guide(owner), freedoms.row(load), driven.get(owner, {})
-        if held(row, guide):
-            if isinstance(load, Moment):
-                found = f"a moment on {owner!r}, which slides and does not turn"
-                yield Mistake(f"loads.{name}.body", found, "a body that can turn")
-            else:
-                found, allowed = f"a force {_across(scene, owner)}", "a direction along which the body can move"
-                yield Mistake(f"loads.{name}.direction", found, allowed)
-            return
-        opposed = [other for other in drives if _opposed(freedoms, load, scene.drives[other])]
-        if opposed or held(row, [*guide, *drives.values()]):
-            first = " and ".join(f"drives.{other}" for other in opposed or drives)
-            found = f"a load on a freedom of {owner!r} that is driven by {first}"
-            yield Mistake(f"loads.{name}", found, "a load or a drive on one freedom, not both")
+def _driven_already(freedoms: Freedoms, key: str, acting: BodyLoad | Drive, driven: dict[str, Row]) -> Mistake | None:
+    """The mistake of a motion that earlier drives of the body hold, of loads only by drives from the start on."""
+    row, owner = freedoms.row(acting), freedoms.owner(acting)
+    drives = {name: freedoms.scene.drives[name.removeprefix("drives.")] for name in driven}
+    if isinstance(acting, BodyLoad):
+        drives = {name: drive for name, drive in drives.items() if drive.begins is None}
+    opposed = [name for name, drive in drives.items() if _opposed(freedoms, acting, drive)]
+    if not opposed and not held(row, [*freedoms.guide(owner), *(driven[name] for name in drives)]):
+        return None
+    first = " and ".join(opposed or drives)
+    if isinstance(acting, BodyLoad):
+        found = f"a load on a freedom of {owner!r} that is driven by {first}"
+        return Mistake(key, found, "a load or a drive on one freedom, not both")
+    return Mistake(key, f"a freedom of {owner!r} that is driven already by {first}", "one drive for each freedom")
 
 
 def _held_end(scene: Scene, name: str, load: BeamForce | BeamMoment) -> Iterator[Mistake]:
@@ -117,24 +102,10 @@ def _named(freedoms: Freedoms, acting: BodyLoad | Drive) -> bool:
     return acting.point in freedoms.owners
 
 
-def _opposed(freedoms: Freedoms, load: BodyLoad, drive: Drive) -> bool:
+def _opposed(freedoms: Freedoms, load: BodyLoad | Drive, drive: Drive) -> bool:
     """True for a force at the place of a driven displacement, with a component along the displacement."""
     if not isinstance(load, Force) or isinstance(drive, RotationDrive):
         return False
     apart = freedoms.places[load.point] - freedoms.places[drive.point]
     component = abs(float(unit(load.direction) @ unit(drive.direction)))
     return float(abs(apart).max()) <= NEGLIGIBLE * freedoms.extent and component > NEGLIGIBLE
-
-
-def _can_turn(scene: Scene, name: str) -> bool:
-    body = scene.bodies[name]
-    return body.motion in ("free", "turns") or (isinstance(body, SlidingBody) and body.turns)
-
-
-def _across(scene: Scene, owner: str) -> str:
-    guide = "towards the pivot" if isinstance(scene.bodies[owner], TurningBody) else "across the slide"
-    return f"{guide} of {owner!r}"
-
-
-def _listed(names: list[str]) -> str:
-    return ", ".join(map(repr, names)) or "there is none"

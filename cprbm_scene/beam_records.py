@@ -16,12 +16,12 @@ from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag, model_validator
 
-from cprbm_scene.curve_records import CurveField, shape_of
+from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, shape_of, with_half_waves
 from cprbm_scene.mistakes import Mistake
 from cprbm_scene.record import Name, Of, Record
-from cprbm_scene.units import NUMBER, STRESS, Number, PositiveLength
+from cprbm_scene.units import NUMBER, STRESS, Length, Number, PositiveLength
 
 Array = NDArray[np.float64]
 
@@ -113,10 +113,21 @@ class PaperBeam(Record):
     uniform: Literal["x", "y"]
 
 
+class Imperfection(Record):
+    """Offset of a beam's neutral line along the left normal, a sine of the arc length, zero at both ends.
+
+    ``amplitude`` in m, to the left if positive; a number of ``half_waves``.
+    """
+
+    amplitude: Length
+    half_waves: Annotated[int, Field(ge=1, le=MOST_HALF_WAVES)] = 1
+
+
 class Beam(Record):
     """Slender beam of rectangular section, free of stress in the shape of the ``curve``.
 
     ``thickness`` lies in the plane of motion, ``width`` across the plane, m.  Both are a number or vary along the beam.
+    An ``imperfection`` becomes a part of the curve: the beam then has the curve with the offset, as a spline.
     """
 
     curve: CurveField
@@ -126,6 +137,14 @@ class Beam(Record):
     start: BeamEnd
     end: BeamEnd
     paper: PaperBeam | None = None
+    imperfection: Imperfection | None = None
+
+    @model_validator(mode="after")
+    def _with_imperfection(self) -> Beam:
+        if self.imperfection is not None and not any(self.curve.rules()):
+            curve = with_half_waves(self.curve, self.imperfection.amplitude, self.imperfection.half_waves)
+            self.__dict__.update(curve=curve, imperfection=None)
+        return self
 
     def thickness_at(self, u: Array) -> Array:
         """Thickness at fractions ``u`` of the arc length, m, in the same shape."""

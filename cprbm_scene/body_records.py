@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, cast
 
-from pydantic import Field
+from pydantic import Field, create_model
 
 from cprbm_scene.beam_records import PointName
 from cprbm_scene.frozendict import frozendict
@@ -200,8 +200,29 @@ Load = Annotated[Moment | Force | BeamForce | BeamMoment | DistributedLoad, Fiel
 BodyLoad = Moment | Force
 
 
-class DisplacementDrive(Record):
-    """Prescribed displacement of a body's ``point`` along ``direction`` (of any length but zero), m."""
+_From = create_model(  # type: ignore[call-overload]
+    "_From", __base__=Record, **{"from": (Annotated[Name | None, Of("stage")], None)}
+)
+"""Field with a name that Python reserves."""
+
+
+class _Drive(_From):
+    """Prescribed motion, from the begin of the first stage, or of the stage ``from``: before that the motion is free.
+
+    From its stage on the drive holds the value that the motion has there, or goes on from it.
+    """
+
+    @property
+    def begins(self) -> str | None:
+        """Name of the stage before which the motion is free; None for a drive that holds from the start."""
+        return cast("str | None", getattr(self, "from"))
+
+
+class DisplacementDrive(_Drive):
+    """Prescribed displacement of a body's ``point`` along ``direction`` (of any length but zero), m.
+
+    With ``from`` the displacement is free before the named stage, and then holds the value that it has there.
+    """
 
     unit: ClassVar[Unit] = LENGTH
     kind: Literal["displacement"]
@@ -213,8 +234,11 @@ class DisplacementDrive(Record):
         return nonzero("direction", self.direction)
 
 
-class RotationDrive(Record):
-    """Prescribed rotation of a ``body``, counter-clockwise, rad."""
+class RotationDrive(_Drive):
+    """Prescribed rotation of a ``body``, counter-clockwise, rad.
+
+    With ``from`` the rotation is free before the named stage, and then holds the value that it has there.
+    """
 
     unit: ClassVar[Unit] = ANGLE
     kind: Literal["rotation"]

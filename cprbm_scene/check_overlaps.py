@@ -51,19 +51,12 @@ def repeated_contacts(scene: Scene) -> Iterator[Mistake]:
     """Contacts of the same beams, or of the same beam and rigid shape."""
     seen: dict[object, str] = {}
     for name, contact in scene.contacts.items():
-        if isinstance(contact, RigidContact):
-            shape = tuple(value for field, value in contact if field not in {"thick", "paper"})
-            first = seen.setdefault(shape, name)
-            found, key = f"the beam and the shape of contacts.{first} again", f"contacts.{name}"
-            allowed = "each beam and shape once"
-        else:
-            first = seen.setdefault(frozenset(contact.beams), name)
-            paired = isinstance(contact, BeamContact)
-            what, key = ("pair", "between") if paired else ("beam", "beam")
-            found, key = f"the {what} of contacts.{first} again", f"contacts.{name}.{key}"
-            allowed = "each pair of beams once" if paired else "each beam once"
+        rigid, paired = isinstance(contact, RigidContact), isinstance(contact, BeamContact)
+        shape = tuple(value for field, value in contact if field not in {"thick", "paper"})
+        first = seen.setdefault(shape if rigid else frozenset(contact.beams), name)
         if first != name:
-            yield Mistake(key, found, allowed)
+            what, part = ("beam and the shape", "") if rigid else ("pair", ".between") if paired else ("beam", ".beam")
+            yield Mistake(f"contacts.{name}{part}", f"the {what} of contacts.{first} again", f"each {what} once")
 
 
 def overlapping_beams(scene: Scene) -> Iterator[Mistake]:

@@ -21,23 +21,23 @@ from itertools import pairwise
 from math import dist
 
 import numpy as np
-from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
 from cprbm_scene.check_overlaps import OVERLAP
 from cprbm_scene.closest import half_thickness
 from cprbm_scene.curve_records import MEETING, SHORTEST, shape_of
-from cprbm_scene.curves import least, unit_vector
+from cprbm_scene.curves import ParametricCurve, least, unit_vector
 from cprbm_scene.mistakes import Mistake
 from cprbm_scene.statement import (
     CircleContact,
+    EllipseContact,
     FunctionContact,
     HalfPlaneContact,
     LineContact,
     Point,
-    Polynomial,
     RigidContact,
     Scene,
+    SplineContact,
 )
 
 Array = NDArray[np.float64]
@@ -45,6 +45,8 @@ _SAMPLES = 2001
 _ON_EDGE = 257
 """Samples of a function, from the nearest of which Newton's method starts."""
 _NEWTON_STEPS = 20
+_SIZED_BY = {"beam-function": "range", "beam-spline": "points", "beam-ellipse": "semi_axes"}
+"""Keys of the extents of curves by the kinds of contacts."""
 
 
 def overlapping_rigid_shapes(scene: Scene) -> Iterator[Mistake]:
@@ -75,54 +77,51 @@ def overlapping_rigid_shapes(scene: Scene) -> Iterator[Mistake]:
                 if circle
                 else f"on the wrong side of what it may touch, or overlapping it, {by}"
             )
-            side = "circle from outside" if circle else "edge from the free side"
+            side = f"circle from {contact.side}" if isinstance(contact, CircleContact) else "edge from the free side"
             allowed = f"a beam that touches the {side} or is apart (overlap at most {OVERLAP:g} of {of})"
             yield Mistake(f"contacts.{name}", f"the beam {contact.beam!r} {what}", allowed)
 
 
 def _proportions(key: str, contact: RigidContact, length: float) -> Iterator[Mistake]:
     """Mistakes of sizes and coordinates beside the beam's ``length``, m; the first counts."""
-    places, key_of_places = tuple[Point, ...](), key
+    places, sizes, where = tuple[Point, ...](), list[tuple[str, float]](), key
     match contact:
         case CircleContact(center=center, radius=radius):
-            places, key_of_places = (center,), f"{key}.center"
-            if not SHORTEST * length <= radius <= length / SHORTEST:
-                found = f"{radius:g} m, which is {radius / length:.3g} of the beam's length"
-                allowed = f"a radius between {SHORTEST:g} and {1.0 / SHORTEST:g} of the beam's length"
-                yield Mistake(f"{key}.radius", found, allowed)
-        case LineContact(points=points):
-            places = points
-            for i, (one, other) in enumerate(pairwise(points), start=1):
-                if not dist(one, other) >= SHORTEST * length:
-                    found = f"a point {dist(one, other):.3g} m from the one before"
-                    allowed = f"at least {SHORTEST:g} of the beam's length between them"
-                    yield Mistake(f"{key}.points[{i}]", found, allowed)
+            places, sizes, where = (center,), [("radius", radius)], f"{key}.center"
+        case LineContact(points=places):
+            sizes = [(f"points[{i}]", dist(*ends)) for i, ends in enumerate(pairwise(places), start=1)]
         case HalfPlaneContact(point=point):
             places = (point,)
-        case FunctionContact(curve=curve):
-            places = (curve.start, curve.end)
-            extent = shape_of(curve).length
-            if not SHORTEST * length <= extent:
-                found = f"an edge of {extent:.3g} m, which is {extent / length:.3g} of the beam's length"
-                yield Mistake(f"{key}.range", found, f"at least {SHORTEST:g} of the beam's length")
+        case FunctionContact(curve=curve) | SplineContact(curve=curve) | EllipseContact(curve=curve):
+            places, sizes = (curve.start, curve.end), [(_SIZED_BY[contact.kind], shape_of(curve).length)]
+    for part, size in sizes:
+        if not SHORTEST * length <= size <= length / SHORTEST:
+            found = f"{size:.3g} m, which is {size / length:.3g} of the beam's length"
+            allowed = f"between {SHORTEST:g} and {1.0 / SHORTEST:g} of the beam's length"
+            yield Mistake(f"{key}.{part}", found, allowed)
     largest = max(abs(coordinate) for place in places for coordinate in place)
     if not SHORTEST * largest <= length:
         found = f"coordinates up to {largest:.3g} m beside a beam of {length:.3g} m"
-        yield Mistake(key_of_places, found, f"coordinates of which the beam's length is at least {SHORTEST:g}")
+        yield Mistake(where, found, f"coordinates of which the beam's length is at least {SHORTEST:g}")
 
 
 def distance_from(contact: RigidContact) -> Callable[[Array], Array]:
     """The distance d (k,), m, as a function of places (k, 2), m."""
     match contact:
         case CircleContact():
-            return lambda p: np.asarray(np.hypot(*(p - np.array(contact.center)).T) - contact.radius)
+            sign = 1.0 if contact.side == "outside" else -1.0
+            return lambda p: np.asarray(sign * (np.hypot(*(p - np.array(contact.center)).T) - contact.radius))
         case LineContact():
             sign = 1.0 if contact.side == "left" else -1.0
             return lambda p: _from_line(np.array(contact.points), sign, p, closed=contact.closed)
         case HalfPlaneContact():
             return lambda p: np.asarray((p - np.array(contact.point)) @ unit_vector(contact.normal))
-        case FunctionContact():
-            return lambda p: _from_function(contact.curve, 1.0 if contact.side == "above" else -1.0, p)
+        case FunctionContact() | SplineContact() | EllipseContact():
+            curve, left = shape_of(contact.curve), contact.side in ("left", "inside")
+            if isinstance(contact, FunctionContact):
+                left = ((contact.side == "above") == (contact.range[0] < contact.range[1])) == (contact.axis == "x")
+            assert isinstance(curve, ParametricCurve)
+            return lambda p: _from_curve(curve, 1.0 if left else -1.0, p, closed=isinstance(contact, EllipseContact))
         case _:
             raise TypeError(type(contact))
 
@@ -147,22 +146,18 @@ def _from_line(points: Array, sign: float, p: Array, *, closed: bool) -> Array:
     return np.asarray(np.where(behind, -1.0, 1.0) * np.hypot(away[:, 0], away[:, 1]))
 
 
-def _from_function(curve: Polynomial, sign: float, p: Array) -> Array:
-    f = np.array(curve.coefficients)
-    f1 = polynomial.polyder(f)
-    f2 = polynomial.polyder(f1)
-    low, high = sorted(curve.range)
-    v, w = (p[:, 0], p[:, 1]) if curve.axis == "x" else (p[:, 1], p[:, 0])
-    samples = np.linspace(low, high, _ON_EDGE)
-    squares = (samples - v[:, None]) ** 2 + (polynomial.polyval(samples, f) - w[:, None]) ** 2
-    at = samples[squares.argmin(axis=1)]
+def _from_curve(curve: ParametricCurve, sign: float, p: Array, *, closed: bool) -> Array:
+    samples = curve.samples[:: max(1, len(curve.samples) // _ON_EDGE)]
+    samples = samples if closed else np.append(samples, 1.0)
+    places = curve.place(samples)
+    w = samples[((places[:, 0] - p[:, :1]) ** 2 + (places[:, 1] - p[:, 1:]) ** 2).argmin(axis=1)]
     for _ in range(_NEWTON_STEPS):
-        slope, rest = polynomial.polyval(at, f1), polynomial.polyval(at, f) - w
-        bent = 1.0 + slope**2 + rest * polynomial.polyval(at, f2)
+        away, along = curve.place(w) - p, curve.derivative(w, 1)
+        slope, bent = (away * along).sum(axis=1), (along**2 + away * curve.derivative(w, 2)).sum(axis=1)
         # beyond the centre of curvature the distance has a maximum: the sample stays
-        step = np.where(bent > 0.0, (at - v + rest * slope) / np.where(bent > 0.0, bent, 1.0), 0.0)
-        at = np.clip(at - step, low, high)
-    slope, rest = polynomial.polyval(at, f1), w - polynomial.polyval(at, f)
-    side = sign * (rest - slope * (v - at))
-    beyond = ((at <= low) & (v - at + rest * slope < 0.0)) | ((at >= high) & (v - at + rest * slope > 0.0))
-    return np.asarray(np.where(beyond | (side >= 0.0), 1.0, -1.0) * np.hypot(v - at, rest))
+        w = w - np.where(bent > 0.0, slope / np.where(bent > 0.0, bent, 1.0), 0.0)
+        w = w % 1.0 if closed else np.clip(w, 0.0, 1.0)
+    away, along = p - curve.place(w), curve.derivative(w, 1)
+    slope, side = (away * along).sum(axis=1), sign * (along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0])
+    beyond = ((w <= 0.0) & (slope < 0.0)) | ((w >= 1.0) & (slope > 0.0))
+    return np.asarray(np.where((beyond & (not closed)) | (side >= 0.0), 1.0, -1.0) * np.hypot(away[:, 0], away[:, 1]))

@@ -14,7 +14,7 @@ from cprbm_scene.mistakes import Mistake, first_of
 from cprbm_scene.mobility import wrong_mobility
 from cprbm_scene.names import records, repeated_names, unknown_names
 from cprbm_scene.offset import OffsetQuestion
-from cprbm_scene.questions import repeated_stages, wrong_claims, wrong_probes, wrong_spacings
+from cprbm_scene.questions import wrong_claims, wrong_probes, wrong_spacings, wrong_stages
 from cprbm_scene.record import Record
 from cprbm_scene.statement import Scene
 
@@ -40,7 +40,7 @@ _CHECKS = (
     wrong_spacings,
     overlapping_beams,
     overlapping_rigid_shapes,
-    repeated_stages,
+    wrong_stages,
     wrong_probes,
     wrong_claims,
 )

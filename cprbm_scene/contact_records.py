@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import combinations, islice, pairwise
+from math import cos, sin
 from typing import Annotated, ClassVar, Literal
 
+import numpy as np
 from pydantic import Field
 
-from cprbm_scene.curve_records import MOST_POINTS, Polynomial, graph_rules
+from cprbm_scene.curve_records import MOST_POINTS, Polynomial, Spline, graph_rules
 from cprbm_scene.curves import unit_vector
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake
 from cprbm_scene.record import Name, Named, Of, Record, nonzero
-from cprbm_scene.units import Coefficients, Direction, Length, Point, PositiveLength
+from cprbm_scene.units import ANGLE, Coefficients, Direction, Length, Point, PositiveLength
 
 BACKWARDS = 1e-3
 """1 + cos of the angle between two pieces of a line, below which the line turns back on itself: 2.6 degrees."""
@@ -130,11 +132,12 @@ class RigidContact(Record):
 
 
 class CircleContact(RigidContact):
-    """Contact of a beam with a rigid circle of ``radius`` about ``center`` from outside."""
+    """Contact of a beam with a rigid circle of ``radius`` about ``center``, from outside or inside (``side``)."""
 
     kind: Literal["beam-circle"]
     center: Point
     radius: PositiveLength
+    side: Literal["outside", "inside"] = "outside"
 
 
 class LineContact(RigidContact):
@@ -218,7 +221,57 @@ class FunctionContact(RigidContact):
         return graph_rules(self.curve)
 
 
+class SplineContact(RigidContact):
+    """Contact of a beam with a rigid edge along a :class:`Spline` through ``points``, on the free ``side``.
+
+    ``start_direction`` and ``end_direction`` are those of the spline.  As with a :class:`LineContact`, the solid lies
+    behind the edge and ends at the edge's ends.
+    """
+
+    kind: Literal["beam-spline"]
+    points: Annotated[tuple[Point, ...], Field(min_length=3)]
+    start_direction: Direction | None = None
+    end_direction: Direction | None = None
+    side: Literal["left", "right"]
+
+    @property
+    def curve(self) -> Spline:
+        """The edge as a curve."""
+        directions = {"start_direction": self.start_direction, "end_direction": self.end_direction}
+        return Spline(kind="spline", points=self.points, **directions)
+
+    def shape_rules(self) -> Iterator[Mistake]:
+        """Mistakes of the spline."""
+        return self.curve.rules()
+
+
+class EllipseContact(RigidContact):
+    """Contact of a beam with a rigid ellipse about ``center``, from outside or inside (``side``).
+
+    ``semi_axes`` a and b, m; ``angle`` of the first axis, counter-clockwise from x.
+    """
+
+    kind: Literal["beam-ellipse"]
+    center: Point
+    semi_axes: tuple[PositiveLength, PositiveLength]
+    angle: Annotated[float, ANGLE] = 0.0
+    side: Literal["outside", "inside"] = "outside"
+
+    @property
+    def curve(self) -> Spline:
+        """The edge as a closed curve, counter-clockwise, within a·(2π/512)⁴/384 = 6e-11 a of the ellipse."""
+        turn, c, s = np.linspace(0.0, 2.0 * np.pi, 513), cos(self.angle), sin(self.angle)
+        x, y = self.semi_axes[0] * np.cos(turn), self.semi_axes[1] * np.sin(turn)
+        places = np.array(self.center) + np.column_stack((x * c - y * s, x * s + y * c))
+        points = tuple((x, y) for x, y in places.tolist())
+        return Spline(kind="spline", points=points, start_direction=(-s, c), end_direction=(-s, c))
+
+
 EdgeContact = LineContact | HalfPlaneContact | FunctionContact
 """Contacts with edges on which a beam may lie up to its own pin; the edge then holds the pin like a stop."""
 
-Contact = Annotated[BeamContact | SelfContact | CircleContact | EdgeContact, Field(discriminator="kind")]
+
+Contact = Annotated[
+    BeamContact | SelfContact | CircleContact | EdgeContact | SplineContact | EllipseContact,
+    Field(discriminator="kind"),
+]

@@ -141,6 +141,10 @@ class ParametricCurve:
         """Largest absolute curvature, 1/m."""
         return -least(lambda w: -self._bend(w), self.samples)
 
+    def derivative(self, w: Array, order: int) -> Array:
+        """Derivatives (n, 2) of the place by the parameter, m, at parameters ``w`` (n,)."""
+        return np.asarray(self._size * self._q(w, order))
+
     def speed(self, w: Array) -> Array:
         """|q'|, a pure number, at parameters of any shape."""
         along = self._q(w, 1)

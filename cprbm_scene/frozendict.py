@@ -1,7 +1,6 @@
-"""A mapping that stays as it is: of a record's named parts, of settings, of what an answer holds.
+"""Immutable mapping with a hash, for named parts of records, settings and answers.
 
-It can be a key itself and goes to another process, neither of which ``types.MappingProxyType`` does; Python 3.15 has
-such a type of this name built in.
+``types.MappingProxyType`` has no hash and cannot be pickled.  Python 3.15 has a built-in ``frozendict``.
 """
 
 from __future__ import annotations
@@ -12,8 +11,8 @@ K = TypeVar("K")
 V = TypeVar("V")
 
 
-class frozendict(dict[K, V]):  # noqa: N801 - as the built-in mappings are called
-    """A ``dict`` whose every way to change it raises TypeError; its hash asks that all values have one."""
+class frozendict(dict[K, V]):  # noqa: N801 - lower case, as the built-in mappings
+    """Immutable ``dict``: changes raise TypeError; the hash needs hashable values."""
 
     __slots__ = ()
 
@@ -27,13 +26,13 @@ class frozendict(dict[K, V]):  # noqa: N801 - as the built-in mappings are calle
         raise KeyError(f"found {key!r}; allowed: {', '.join(map(repr, self)) or 'none'}")
 
     def __hash__(self) -> int:  # type: ignore[override]
-        """Of the items, in whatever order they stand: equal mappings have equal hashes."""
+        """Hash of the items without their order: equal mappings have equal hashes."""
         return hash(frozenset(self.items()))
 
     def __reduce__(self) -> tuple[type[frozendict[K, V]], tuple[dict[K, V]]]:
-        """By its items as a whole: what pickles and copies a ``dict`` would put in one after the other."""
+        """Pickle of all items at once: the pickle of a ``dict`` would set items one after the other."""
         return type(self), (dict(self),)
 
     def __repr__(self) -> str:
-        """As it could be written."""
+        """Text of an expression with the same value."""
         return f"frozendict({super().__repr__()})"

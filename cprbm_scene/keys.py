@@ -1,4 +1,4 @@
-"""Which keys a table of a scene file may have, read from the records themselves."""
+"""Keys and kinds of the tables of a scene file, from the annotations of the records."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ def keys_at(loc: tuple[int | str, ...], root: type[Record]) -> tuple[str, ...]:
 
 
 def is_tag(loc: tuple[int | str, ...], depth: int, root: type[Record]) -> bool:
-    """Whether pydantic put the tag of a union at ``depth`` of ``loc``, where no key stands."""
+    """True if ``loc`` has the tag of a union at ``depth``: a tag is no key of the file."""
     return get_origin(_bare(_place(loc[:depth], root))) in (Union, UnionType)
 
 
 def tags_at(loc: tuple[int | str, ...], root: type[Record]) -> tuple[str, ...]:
-    """Kinds (or joints, or motions) of which the table at ``loc`` may be one."""
+    """Kinds, joints or motions of the table at ``loc``."""
     return tuple(tag for record in get_args(_bare(_place(loc, root))) for tag in _tags(record))
 
 
-def _place(loc: tuple[int | str, ...], root: type[Record]) -> Any:  # noqa: ANN401 - annotations are whatever they are
+def _place(loc: tuple[int | str, ...], root: type[Record]) -> Any:  # noqa: ANN401 - annotations have no type
     """The annotation at ``loc``."""
     place: Any = root
     for part in loc:
@@ -34,7 +34,7 @@ def _place(loc: tuple[int | str, ...], root: type[Record]) -> Any:  # noqa: ANN4
     return place
 
 
-def _below(place: Any, part: int | str) -> Any:  # noqa: ANN401 - annotations are whatever they are
+def _below(place: Any, part: int | str) -> Any:  # noqa: ANN401 - annotations have no type
     """The annotation one step below ``place``."""
     if isinstance(place, type) and issubclass(place, BaseModel):
         return place.model_fields[str(part)].annotation
@@ -44,7 +44,7 @@ def _below(place: Any, part: int | str) -> Any:  # noqa: ANN401 - annotations ar
     return next(each for each in reversed(get_args(place)) if each is not ...)
 
 
-def _bare(place: Any) -> Any:  # noqa: ANN401 - annotations are whatever they are
+def _bare(place: Any) -> Any:  # noqa: ANN401 - annotations have no type
     """An annotation without its metadata and without None."""
     while get_origin(place) is Annotated:
         place = get_args(place)[0]
@@ -55,8 +55,8 @@ def _bare(place: Any) -> Any:  # noqa: ANN401 - annotations are whatever they ar
     return place
 
 
-def _tags(record: Any) -> tuple[str, ...]:  # noqa: ANN401 - annotations are whatever they are
-    """Under which names a member of a union goes."""
+def _tags(record: Any) -> tuple[str, ...]:  # noqa: ANN401 - annotations have no type
+    """Tags of a member of a union."""
     if get_origin(record) is Annotated:
         return tuple(each.tag for each in get_args(record) if isinstance(each, Tag))
     fields = record.model_fields

@@ -44,15 +44,15 @@ def wrong_mobility(scene: Scene) -> Iterator[Mistake]:
     acting = [*scene.bodies.values(), *scene.drives.values()]
     sound = not any(key.startswith(("drives", "pins")) or key.endswith(".point") for key in unknown)
     sound = sound and not any(mistake for record in acting for mistake in record.rules())
-    supports = list(_supports(scene, Freedoms(scene) if sound else None))
-    yield from supports
+    loose = list(unsupported(scene, Freedoms(scene) if sound else None))
+    yield from (mistake for mistake, names in loose if not _acted_on(scene, names))
     if not sound or any(_owners(scene, pin)[0] == _owners(scene, pin)[1] for pin in scene.pins.values()):
         return
     freedoms = Freedoms(scene)
     if scene.pins:
         yield from _held_twice(scene, freedoms)
     held_otherwise = scene.contacts or scene.stops or scene.assembly is not None
-    if not supports and (scene.pins or not held_otherwise):
+    if not loose and (scene.pins or not held_otherwise):
         yield from _loose(scene, freedoms)
 
 
@@ -63,8 +63,7 @@ def _owners(scene: Scene, pin: BodyPin) -> list[str]:
 def _pins(scene: Scene) -> Iterator[Mistake]:
     """Pins within a body, between fixed bodies, or between distant points."""
     places = {point: scene.place_of(point) for point in scene.owners}
-    first = next((place for body in scene.bodies.values() for place in body.points.values()), (0.0, 0.0))
-    extent = max((abs(a - b) for place in places.values() for a, b in zip(place, first, strict=True)), default=0.0)
+    extent = float(np.ptp(list(places.values()), axis=0).max()) if places else 0.0
     for name, pin in scene.pins.items():
         if any(point not in places for point in pin.points):
             continue
@@ -80,36 +79,55 @@ def _pins(scene: Scene) -> Iterator[Mistake]:
             yield Mistake(key, found, f"at most {MEETING:g} of the scene's extent between them")
 
 
-def _supports(scene: Scene, freedoms: Freedoms | None) -> Iterator[Mistake]:
-    """Scenes without ground or drives, beams without supports, bodies without a way to a support."""
-    if all(body.motion == "free" for body in scene.bodies.values()) and not scene.drives:
-        yield Mistake("bodies", "no fixed body", 'at least one body with motion = "fixed"')
+def unsupported(scene: Scene, freedoms: Freedoms | None) -> Iterator[tuple[Mistake, set[str]]]:
+    """Scenes without ground or drives, beams without supports, bodies without a way to a support.
+
+    Beside each mistake stand the names of the bodies and beams that move together; without ``freedoms`` of beams only.
+    """
+    drives = [drive for drive in scene.drives.values() if scene.holds(drive, scene.stages[0].name)]
+    if all(body.motion == "free" for body in scene.bodies.values()) and not drives:
+        yield Mistake("bodies", "no fixed body", 'at least one body with motion = "fixed"'), set()
         return
     joints = {}
     for name, beam in scene.beams.items():
         ends = [end for end in (beam.start, beam.end) if not isinstance(end, FreeEnd)]
         joints[name] = [end.point for end in ends]
         if not ends:
-            yield Mistake(f"beams.{name}", "two free ends", "at least one end that meets a body")
+            allowed = "at least one end that meets a body, or a contact that holds the beam"
+            yield Mistake(f"beams.{name}", "two free ends", allowed), {name}
         elif len(ends) == 1 and isinstance(ends[0], PinnedEnd):
             found = "a pin at one end and nothing at the other: the beam turns freely"
-            yield Mistake(f"beams.{name}", found, "a weld, or joints at both ends")
+            yield Mistake(f"beams.{name}", found, "a weld, joints at both ends, or a contact or a load"), {name}
     if freedoms is None:
         return
-    links = [joints[name] for name in joints] + [list(pin.points) for pin in scene.pins.values()]
-    met = [{freedoms.owners[point] for point in points} for points in links]
+    met = {name: {freedoms.owners[point] for point in points} for name, points in joints.items()}
+    met |= {name: {freedoms.owners[point] for point in pin.points} for name, pin in scene.pins.items()}
     for name, body in scene.bodies.items():
-        together = _connected(name, met)
+        together = _connected(name, list(met.values()))
         rows = [row for each in together for row in freedoms.guide(each)]
-        rows += [freedoms.row(drive) for drive in scene.drives.values() if freedoms.owner(drive) in together]
+        rows += [freedoms.row(drive) for drive in drives if freedoms.owner(drive) in together]
         if rank(rows) == FREEDOMS:
             continue
         found = f"a {_KINDS.get(body.motion, 'free')} body that "
-        if any(name in bodies for bodies in met):
-            allowed = "beams that lead to a fixed body, or slides, pivots and drives that hold it"
-            yield Mistake(f"bodies.{name}", f"{found}no fixed body holds", allowed)
+        if any(name in bodies for bodies in met.values()):
+            found += "no fixed body holds"
+            allowed = "beams that lead to a fixed body, or slides, pivots, drives, contacts and loads that hold it"
         else:
-            yield Mistake(f"bodies.{name}", f"{found}no beam meets", "a beam's end or a pin at one of its points")
+            found, allowed = (
+                f"{found}no beam meets",
+                "a beam's end, a pin, a contact or a load on it",
+            )
+        yield Mistake(f"bodies.{name}", found, allowed), together | {beam for beam in met if met[beam] & together}
+
+
+def _acted_on(scene: Scene, names: set[str]) -> bool:
+    """True if a contact with other parts, a load or a drive may hold the bodies and beams of the ``names``."""
+    acting = (*scene.loads.values(), *scene.drives.values())
+    points, owners = {str(getattr(each, "point", None)) for each in acting}, scene.owners
+    moved = {getattr(each, "body", getattr(each, "beam", None)) for each in acting}
+    moved |= {owners[point] for point in points & owners.keys()}
+    touching = ({*contact.beams, getattr(contact, "body", contact.beams[0])} for contact in scene.contacts.values())
+    return bool(names & moved) or any(parts & names and parts - names for parts in touching)
 
 
 def _connected(body: str, met: Sequence[set[str]]) -> set[str]:
@@ -140,7 +158,11 @@ def _loose(scene: Scene, freedoms: Freedoms) -> Iterator[Mistake]:
     parts: list[Part] = [("body", name) for name in scene.bodies] + [("beam", name) for name in scene.beams]
     rows: list[Motion] = [{("body", name): row} for name in scene.bodies for row in freedoms.guide(name)]
     rows += [row for pin in scene.pins.values() for row in _pin_rows(freedoms, pin)]
-    rows += [{("body", freedoms.owner(drive)): freedoms.row(drive)} for drive in scene.drives.values()]
+    rows += [
+        {("body", freedoms.owner(drive)): freedoms.row(drive)}
+        for drive in scene.drives.values()
+        if scene.holds(drive, scene.stages[0].name)
+    ]
     for name, beam in scene.beams.items():
         for end in (beam.start, beam.end):
             if not isinstance(end, FreeEnd):

@@ -58,6 +58,7 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
         "body": scene.bodies,
         "beam": scene.beams,
         "stage": [stage.name for stage in scene.stages],
+        "load": scene.loads,
         "load or drive": (*scene.loads, *scene.drives),
         "beam or contact with a rigid edge": [
             *scene.beams,
@@ -66,10 +67,11 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
     }
     for key, record in records(scene):
         for field, info in type(record).model_fields.items():
-            for kind in (each.kind for each in info.metadata if isinstance(each, Of)):
+            for of in (each for each in info.metadata if isinstance(each, Of)):
                 for part, name in _named(getattr(record, field)):
-                    if name not in known[kind]:
-                        yield unknown_name(f"{key}.{field}{part}".removeprefix("."), name, kind, known[kind])
+                    if name not in known[of.kind]:
+                        place = f"{key}.{of.key or field}{part}".removeprefix(".")
+                        yield unknown_name(place, name, of.kind, known[of.kind])
 
 
 def _named(value: object) -> Iterator[tuple[str, str]]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from math import isclose
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, WithJsonSchema, model_validator
 
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake
@@ -92,13 +92,15 @@ def _of_value(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
 
 
 Station = Annotated[float, Following(_of_stage)]
+_SEVERAL = {"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 2}]}
 
 
 class Stage(Record):
     """Part of the loading: the values of a load or drive, in the order of stepping.
 
     Loads and drives are zero before a stage steps them (such a drive holds the initial place) and keep their last value
-    in later stages.
+    in later stages.  A list of loads in place of a name steps them ``together``: every load has the value of the
+    station, and ``steps`` names the first.
 
     ``beyond`` selects the path at a critical point, where the state ceases to be a minimum of the potential
     energy: ``stop``, or ``jump`` to the state at the end of the energy descent.  Load steps are then short enough
@@ -109,11 +111,20 @@ class Stage(Record):
     """
 
     name: Name
-    steps: Annotated[Name, Of("load or drive")]
+    steps: Annotated[Name, Of("load or drive"), WithJsonSchema(_SEVERAL)]
+    together: Annotated[tuple[Name, ...], Of("load", key="steps")] = ()
     stations: Annotated[tuple[Station, ...], Field(min_length=1, max_length=10_001)]
     shown: tuple[Station, ...] = ()
     critical_limit: Annotated[float, Field(gt=0.0), Following(_of_stage)] | None = None
     beyond: Literal["stop", "jump"] | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _first(cls, data: object) -> object:
+        """The data with the first of several names of ``steps``."""
+        if isinstance(data, Mapping) and isinstance(names := data.get("steps"), tuple) and len(names) > 1:
+            return {**data, "steps": names[0], "together": names}
+        return data
 
     def rules(self) -> Iterator[Mistake]:
         """Repeated stations, indistinguishable in an answer, and shown values without a station."""
@@ -125,6 +136,8 @@ class Stage(Record):
             if any(isclose(value, other, rel_tol=1e-9) for other in beside):
                 allowed = "each value once in a stage; a further stage may go back to it"
                 yield Mistake(f"stations[{j}]", f"{value:g} again", allowed)
+        if self.together and (self.together[0] != self.steps or len(set(self.together)) < len(self.together)):
+            yield Mistake("steps", f"{list(self.together)}", "different loads, each once")
         stations = set(self.stations)
         for j, value in enumerate(self.shown):
             if value not in stations:

@@ -100,13 +100,20 @@ def wrong_claims(scene: Scene) -> Iterator[Mistake]:
             yield Mistake(f"{key}.station", f"{claim.station:g}", f"a station of a stage: {listed}")
 
 
-def repeated_stages(scene: Scene) -> Iterator[Mistake]:
-    """Stages with the same name: an answer could not tell their stations apart."""
+def wrong_stages(scene: Scene) -> Iterator[Mistake]:
+    """Stages with the same name, with loads of different units together, or with a drive that is free there."""
     seen: set[str] = set()
     for i, stage in enumerate(scene.stages):
         if stage.name in seen:
             yield Mistake(f"stages[{i}].name", f"{stage.name!r} again", "each stage's name once")
         seen.add(stage.name)
+        units = {str(scene.loads[load].unit) for load in stage.together if load in scene.loads}
+        if len(units) > 1:
+            yield Mistake(f"stages[{i}].steps", f"loads in {' and '.join(sorted(units))}", "loads of one unit")
+        drive = scene.drives.get(stage.steps)
+        if drive is not None and not scene.holds(drive, stage.name):
+            found = f"{stage.steps!r}, a drive that is free until the stage {drive.begins!r}"
+            yield Mistake(f"stages[{i}].steps", found, "a drive that holds, or a load")
 
 
 def wrong_spacings(scene: Scene) -> Iterator[Mistake]:

@@ -146,20 +146,21 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
     """
     given = dict(parameters or {})
     scene = _record(Scene, {**data, "parameters": {}} if given and "parameters" not in data else data, file, given)
+    scene = scene.displayed_in(_units(data))
     if scene.parameters:
-        scene._source = _Source(data, file, given)
+        scene._read = _Again(data, file, given)
     return scene
 
 
 @dataclass(frozen=True, slots=True)
-class _Source:
-    """Plain data of a scene with parameters."""
+class _Again:
+    """Another reading of the plain data of a scene with parameters."""
 
     data: dict[str, Any]
     file: str
     parameters: dict[str, float | str]
 
-    def read(self, values: Mapping[str, float | str]) -> Scene:
+    def __call__(self, values: Mapping[str, float | str]) -> Scene:
         """The scene with other values of parameters."""
         return scene_from(self.data, file=self.file, parameters={**self.parameters, **values})
 

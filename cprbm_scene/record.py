@@ -36,9 +36,10 @@ Named = Annotated[Mapping[Name, T], AfterValidator(_freeze)]
 
 @dataclass(frozen=True, slots=True)
 class Of:
-    """Kind of the named part of the scene, such as ``beam``; a tuple or table names several."""
+    """Kind of the named part of the scene, such as ``beam``; a tuple or table names several, at another ``key``."""
 
     kind: str
+    key: str = ""
 
 
 class Record(BaseModel):

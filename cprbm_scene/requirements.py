@@ -6,17 +6,33 @@ from collections.abc import Iterator
 from typing import Literal
 
 from cprbm_scene.check_overlaps import overlap_at_rest
+from cprbm_scene.freedoms import Freedoms
 from cprbm_scene.mistakes import Mistake, SceneError
-from cprbm_scene.statement import BeamContact, Scene
+from cprbm_scene.mobility import unsupported
+from cprbm_scene.statement import BeamContact, CircleContact, EllipseContact, Scene, SplineContact
 
-Requirement = Literal["theory", "overlap at rest"]
+Requirement = Literal["theory", "overlap at rest", "from", "together", "support", "edge"]
 
 
 def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
     """Kinds of requirements, with the keys, the values found, and values that every solver allows."""
     if scene.theory != "bending":
         yield "theory", Mistake("theory", repr(scene.theory), "'bending'", scene.file)
+    for name, drive in scene.drives.items():
+        if not scene.holds(drive, scene.stages[0].name):
+            found = f"a drive that is free before the stage {drive.begins!r}"
+            yield "from", Mistake(f"drives.{name}.from", found, "drives that hold from the start", scene.file)
+    for i, stage in enumerate(scene.stages):
+        if stage.together:
+            yield "together", Mistake(f"stages[{i}].steps", f"{list(stage.together)}", "one name", scene.file)
+    for mistake, _ in unsupported(scene, Freedoms(scene)):
+        yield "support", Mistake(mistake.key, mistake.found, "joints, guides and drives that hold it", scene.file)
     for name, contact in scene.contacts.items():
+        if isinstance(contact, SplineContact | EllipseContact) or (
+            isinstance(contact, CircleContact) and contact.side == "inside"
+        ):
+            allowed = "a circle from outside, a line, a half-plane or a function"
+            yield "edge", Mistake(f"contacts.{name}", f"{contact.kind!r}, {contact.side}", allowed, scene.file)
         if isinstance(contact, BeamContact) and (overlap := overlap_at_rest(scene, contact)):
             found = f"beams that overlap at the start by {overlap:.3g} m"
             yield "overlap at rest", Mistake(f"contacts.{name}", found, "beams that touch or are apart", scene.file)

@@ -1,7 +1,6 @@
-"""The JSON schema of a scene file, by which editors complete keys and mark mistakes as they are typed.
+"""JSON schema of a scene file: editors complete keys and mark mistakes with it.
 
-It is made from the records, and says of keys and kinds what they say.  What ties records together is beyond a schema,
-and told by reading.
+The schema follows from the records.  Rules between records need the reader.
 """
 
 from __future__ import annotations
@@ -11,12 +10,12 @@ from typing import Any
 from cprbm_scene.statement import Scene
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
-"""What editors of TOML know best; nothing here needs a later one."""
+"""Dialect of the schema that editors of TOML know."""
 
 
 def schema() -> dict[str, Any]:
     """The schema as plain data."""
     found = Scene.model_json_schema(mode="validation")
-    # where a scene was read from is no key of a file
+    # the name of the file is no key of the file
     found["properties"].pop("file")
     return {"$schema": DIALECT, **found, "title": "Scene"}

@@ -9,8 +9,9 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Literal, Protocol, TypeVar
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Literal, TypeVar
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
@@ -50,6 +51,7 @@ from cprbm_scene.contact_records import (
     CircleContact,
     Contact,
     EdgeContact,
+    EllipseContact,
     FunctionContact,
     HalfPlaneContact,
     LineContact,
@@ -58,6 +60,7 @@ from cprbm_scene.contact_records import (
     Related,
     RigidContact,
     SelfContact,
+    SplineContact,
 )
 from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
 from cprbm_scene.frozendict import frozendict
@@ -88,6 +91,7 @@ __all__ = [
     "DistributedLoad",
     "Drive",
     "EdgeContact",
+    "EllipseContact",
     "FixedBody",
     "Force",
     "FreeBody",
@@ -118,6 +122,7 @@ __all__ = [
     "Size",
     "SlidingBody",
     "Spline",
+    "SplineContact",
     "Stage",
     "Stop",
     "Tolerance",
@@ -130,11 +135,11 @@ Curve = NeutralLine
 T = TypeVar("T")
 
 
-class Source(Protocol):
-    """Data of a scene with parameters, for another reading."""
+@dataclass(frozen=True, slots=True)
+class _Display:
+    """Units of tables and figures, which are no part of the question: scenes with different ones are equal."""
 
-    def read(self, values: Mapping[str, float | str]) -> Scene:
-        """The scene with other values of parameters."""
+    units: Units = field(default=Units(), compare=False)
 
 
 class Scene(Record):
@@ -143,7 +148,8 @@ class Scene(Record):
     Names of points, bodies, beams, contacts, stops, pins, loads and drives are unique across the scene.
     ``may_cross`` lists pairs that may pass through each other without a contact: two beams, or a beam and a contact
     with a rigid edge.  ``verdict_limit`` is the largest total uncertainty, a fraction of a probe's scale, for the
-    verdict AGREE; a probe may have another limit.  ``units`` are those of a file; a scene from a file has SI units.
+    verdict AGREE; a probe may have another limit.  ``units`` are those of a file; a scene from a file has SI units, and
+    ``display_units`` remember the file's.
     ``theory`` is the beam theory of the CPRBM: bending alone, with stretch, or with stretch and shear.
     """
 
@@ -168,7 +174,8 @@ class Scene(Record):
     claims: tuple[Claim, ...] = ()
     verdict_limit: PositiveShare = 0.015
     file: str = ""
-    _source: Source | None = PrivateAttr(default=None)
+    _read: Callable[[Mapping[str, float | str]], Scene] | None = PrivateAttr(default=None)
+    _display: _Display = PrivateAttr(default=_Display())
 
     def rules(self) -> Iterator[Mistake]:
         """Pairs of the same name."""
@@ -216,13 +223,18 @@ class Scene(Record):
             >>> hinge.beams["beam1"].thickness
             0.0019
         """
-        if self._source is None or self._source.read({}) != self:
+        if self._read is None or self._read({}) != self:
             raise ValueError("found a scene without parameters or altered after reading; allowed: a scene from a file")
-        return self._source.read(values)
+        return self._read(values)
 
     def __repr__(self) -> str:
         """Name, and numbers of beams, contacts and probes."""
         return f"<Scene {self.name}: {len(self.beams)} beams, {len(self.contacts)} contacts, {len(self.probes)} probes>"
+
+    @property
+    def display_units(self) -> Units:
+        """Units of the scene's file, for tables and figures; ``model_fields_set`` has those that the file states."""
+        return self._display.units
 
     def limit(self, probe: Probe) -> float:
         """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""
@@ -232,6 +244,11 @@ class Scene(Record):
         """The probes that are asked in a stage."""
         return tuple(probe for probe in self.probes if probe.asked_in(stage))
 
+    def holds(self, drive: Drive, stage: str) -> bool:
+        """True if a drive prescribes its motion in a stage; False in stages before the drive's ``from``."""
+        names = [each.name for each in self.stages]
+        return drive.begins not in names[names.index(stage) + 1 :]
+
     def stepped(self, stage: Stage) -> Load | Drive:
         """The stepped load or drive of a stage.
 
@@ -239,6 +256,12 @@ class Scene(Record):
             KeyError: no load or drive has the stage's name of ``steps``.
         """
         return self.loads[stage.steps] if stage.steps in self.loads else self.drives[stage.steps]
+
+    def displayed_in(self, units: Units) -> Scene:
+        """The same scene with other units for tables and figures."""
+        scene = self.model_copy()
+        scene._display = _Display(units)
+        return scene
 
     def place_of(self, point: str) -> Point:
         """Initial position of a body's ``point``, m.

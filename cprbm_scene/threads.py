@@ -1,7 +1,7 @@
-"""One thread of BLAS while a solver works: more of them cost more than they bring for matrices as small as ours.
+"""One thread of BLAS while a solver works: for small matrices further threads cost more time than they save.
 
-A process that has loaded its BLAS can be held to that by threadpoolctl alone.  Where this is not installed, BLAS has
-the threads that the process was given, and the program ``cprbm`` gives itself one (:mod:`comparisons.threads`).
+In a process with a loaded BLAS only threadpoolctl can limit the threads.  Without threadpoolctl BLAS keeps the threads
+of the process, and the program ``cprbm`` limits them at its start (:mod:`comparisons.threads`).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def one_thread() -> AbstractContextManager[object]:
-    """Hold the libraries of linear algebra that are loaded to one thread each, as far as that can be done."""
+    """Context with one thread for each loaded library of linear algebra; without effect if threadpoolctl is missing."""
     try:
         libraries = _loaded(len(sys.modules))
     except ImportError:
@@ -29,9 +29,9 @@ def one_thread() -> AbstractContextManager[object]:
 
 @lru_cache(maxsize=1)
 def _loaded(modules: int) -> ThreadpoolController:
-    """The libraries that are loaded, for which threadpoolctl reads the process's map of memory: dear beside a solve.
+    """Controller of the loaded libraries, cached: threadpoolctl reads the process's map of memory, which takes long.
 
-    None is loaded but with a module that is imported, so they are those of as many ``modules``.
+    Libraries are loaded with Python modules, so that an equal number of ``modules`` means equal libraries.
     """
     from threadpoolctl import ThreadpoolController
 

@@ -1,7 +1,4 @@
-"""What a solver says while it works, through ``logging``: nobody listens unless somebody asks for the level INFO.
-
-A record carries, beside its sentence, how many of how many steps are ``done``, by which a bar may be drawn.
-"""
+"""Progress of a solver as records of ``logging`` at the level INFO, with the numbers of stations for a progress bar."""
 
 from __future__ import annotations
 
@@ -12,7 +9,7 @@ from cprbm_scene.statement import Scene
 
 
 def station_reached(logger: logging.Logger, scene: Scene, reached: int, station: StationAnswer) -> None:
-    """Say that a solver has come to a ``station``, which is the ``reached``-th of the scene's."""
+    """Log that a solver has come to the ``station`` with the number ``reached`` of the scene."""
     if not logger.isEnabledFor(logging.INFO):
         return
     stage = next(stage for stage in scene.stages if stage.name == station.stage)

@@ -7,9 +7,11 @@ from comparisons.budgets.parts import Budget
 from comparisons.budgets.poisson import ClaimedRatio, last_budgets
 from comparisons.choices import Count
 from comparisons.claims import claim_difference
+from comparisons.display_units import at_station
 from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent
 from comparisons.sheet import Sheet
+from cprbm_scene import Scene
 
 _HEADERS = {
     "contact": "contact",
@@ -34,7 +36,7 @@ def sentences_of(account: Account) -> tuple[str, ...]:
     """Of each claim what our difference is made of; or why there is no budget."""
     if account.missing:
         return (f"{account.scene.name} has no error budget: {'; '.join(account.missing)}.",)
-    claimed = tuple(f"{_made_of(found.budget)} {_as_theirs(found)}" for found in account.claims)
+    claimed = tuple(f"{_made_of(account.scene, found.budget)} {_as_theirs(found)}" for found in account.claims)
     return claimed if account.runs.solid is None else (*claimed, _missed(account))
 
 
@@ -185,14 +187,15 @@ def _signed(budget: Budget, value: float) -> str:
     return f"{_cell(budget, value, sign=True)} %"
 
 
-def _made_of(budget: Budget) -> str:
+def _made_of(scene: Scene, budget: Budget) -> str:
     row = budget.row
     parts = budget.parts.by_name()
     told = {name: part for name, part in parts.items() if abs(part) > _TOLD * row.difference}
     listed = ", ".join(f"{_HEADERS[name]} {_signed(budget, part)}" for name, part in told.items())
     left = sum(part for name, part in parts.items() if name not in told)
     return (
-        f"{row.probe.name} at {row.station:g}: our difference of {percent(row.fraction(row.difference))} is "
+        f"{row.probe.name} at {at_station(scene, row.stage, row.station)}: our difference of "
+        f"{percent(row.fraction(row.difference))} is "
         f"{listed}, and {_signed(budget, left)} for all else."
     )
 

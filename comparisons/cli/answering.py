@@ -57,6 +57,6 @@ def told(scene: Scene, answer: Answer, found: tuple[Tolerance, ...], complaints:
         return NOT_WITHIN
     for reached in found:
         if not reached.met:
-            click.echo(f"cprbm: {scene.name}: {reached.sentence}", err=True)
+            click.echo(f"cprbm: {scene.name}: {reached.sentence(scene)}", err=True)
             return NOT_WITHIN
     return 0

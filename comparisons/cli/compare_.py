@@ -182,8 +182,9 @@ def _show(comparison: Comparison | OffsetComparison, question: Question, *, quie
             click.echo(sentence + "\n")
     verdict = comparison.verdict
     click.echo(headline(question.name, verdict, verdict.sentence))
-    for tolerance in _beyond(comparison):
-        click.echo(f"{question.name}: {tolerance.sentence}")
+    if not isinstance(comparison, OffsetComparison):
+        for tolerance in _beyond(comparison):
+            click.echo(f"{question.name}: {tolerance.sentence(comparison.scene)}")
 
 
 def exit_code(finished: Sequence[Comparison | OffsetComparison]) -> int:

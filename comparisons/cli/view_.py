@@ -16,7 +16,10 @@ from comparisons.cli.options import numerical, one_of_both, parameters, settings
 
 if TYPE_CHECKING:
     from comparisons.viewing.frames import Coloured
-    from cprbm_scene import Answer
+    from cprbm_scene import Answer, Scene
+
+_ROUNDING = 1e-9
+"""Share of a station by which a typed station may differ: decimal digits are rounded."""
 
 _QUANTITIES = ("bending_stress", "combined_stress", "moment")
 
@@ -32,7 +35,7 @@ _QUANTITIES = ("bending_stress", "combined_stress", "moment")
 @click.option("--quantity", type=click.Choice(_QUANTITIES), default=_QUANTITIES[0], show_default=True,
               help="What colours the beams.")  # fmt: skip
 @click.option("--station", metavar="[STAGE:]VALUE",
-              help="The station to show, of several the last, in SI.  [default: the last of all]")  # fmt: skip
+              help="The station to show, in the file's units.  [default: the last of all]")  # fmt: skip
 @numerical
 @click.option("-q", "--quiet", is_flag=True, help="Do not say what was written.")
 @verbose
@@ -58,6 +61,7 @@ def command(
     from comparisons.audit import audit
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
+    from comparisons.display_units import at_station
     from comparisons.viewing.shown import KINDS, files, kind_of
     from comparisons.viewing.space import DrawingError
     from comparisons.viewing.strips import with_stresses
@@ -70,7 +74,7 @@ def command(
     if kind is None:
         raise click.BadParameter(f"found {path.name!r}; allowed: a name that ends in {', '.join(KINDS)}",
                                  param_hint="--out")  # fmt: skip
-    wanted = None if station is None else _wanted(station, [(s.name, v) for s in scene.stages for v in s.stations])
+    wanted = None if station is None else _wanted(scene, station)
     choices = Choices(links, formulation, elements, kinematics, penetration, across)
     check(choices, scene)
     showing.room_for(None, path.parent)
@@ -91,25 +95,31 @@ def command(
             f"{WHAT_DRAWS}"
         ) from None
     if not quiet:
-        click.echo(f"{path}: {scene.name} by {solver}, {seen.stations[-1].stage} {seen.stations[-1].value:g}.")
+        click.echo(
+            f"{path}: {scene.name} by {solver}, {at_station(scene, seen.stations[-1].stage, seen.stations[-1].value)}."
+        )
     return code
 
 
-def _wanted(text: str, known: list[tuple[str, float]]) -> tuple[str, float]:
-    """The last of the known stations that a text names.
+def _wanted(scene: Scene, text: str) -> tuple[str, float]:
+    """The last station of the scene that a text names, by its value in the units of the scene's file.
 
     Raises:
-        click.BadParameter: it names none.
+        click.BadParameter: the text names no station.
     """
+    from comparisons.display_units import file_unit
+    from comparisons.quantities import load_unit
+
     stage, _, value = text.rpartition(":")
     try:
         number = float(value)
     except ValueError:
         number = float("nan")
-    for name, each in reversed(known):
-        if stage in ("", name) and abs(each - number) <= 1e-9 * max(abs(each), abs(number)):
-            return name, each
-    allowed = ", ".join(f"{name}:{each:g}" for name, each in known[:40]) + (", ..." if len(known) > 40 else "")
+    known = [(s.name, v, v / file_unit(scene, load_unit(scene, s))[0]) for s in scene.stages for v in s.stations]
+    for name, load, typed in reversed(known):
+        if stage in ("", name) and abs(typed - number) <= _ROUNDING * max(abs(typed), abs(number)):
+            return name, load
+    allowed = ", ".join(f"{name}:{typed:g}" for name, _, typed in known[:40]) + (", ..." if len(known) > 40 else "")
     raise click.BadParameter(f"found {text!r}; allowed: one of {allowed}", param_hint="--station")
 
 

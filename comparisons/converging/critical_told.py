@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from comparisons.converging.critical import CriticalFamily
+from comparisons.display_units import distance_text, with_unit
 from comparisons.documents import Plain, plain
 from comparisons.formats import number
-from comparisons.sentences import distance, load
 from comparisons.sheet import Sheet
+from cprbm_scene import Scene
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
 
@@ -44,17 +45,20 @@ def entry(sizes: Sequence[int], family: CriticalFamily) -> Plain:
     }
 
 
-def sheet_of(title: str, sizes: Sequence[int], families: Sequence[CriticalFamily]) -> Sheet:
+def sheet_of(scene: Scene, title: str, sizes: Sequence[int], families: Sequence[CriticalFamily]) -> Sheet:
     """Critical values against N, and their limits."""
     body = tuple(
         (
             family.stage if family.place == 0 else f"{family.stage}, {family.place + 1}",
             f"{_NAMES[family.series.method]} ({family.series.variant})",
             family.mechanism,
-            *(number(family.critical[n].value, 6) if n in family.critical else "–" for n in sizes),
+            *(
+                with_unit(scene, family.critical[n].value, family.unit, 6) if n in family.critical else "–"
+                for n in sizes
+            ),
             "–" if family.found is None else number(family.found.order),
-            "–" if family.found is None else load(float(family.found.value[0]), family.unit),
-            "–" if family.found is None else distance(float(family.found.uncertainty[0]), family.unit),
+            "–" if family.found is None else with_unit(scene, float(family.found.value[0]), family.unit, 5),
+            "–" if family.found is None else distance_text(scene, float(family.found.uncertainty[0]), family.unit),
         )
         for family in families
     )
@@ -62,11 +66,11 @@ def sheet_of(title: str, sizes: Sequence[int], families: Sequence[CriticalFamily
         f"{title}: critical values against N",
         ("stage", "solver", "how", *(str(n) for n in sizes), "order", "limit", "±"),
         body,
-        "Of the load or drive that the stage steps, SI. The order is observed at the three finest sizes that count.",
+        "Of the load or drive that the stage steps. The order is observed at the three finest sizes that count.",
     )
 
 
-def sentences_of(families: Sequence[CriticalFamily]) -> tuple[str, ...]:
+def sentences_of(scene: Scene, families: Sequence[CriticalFamily]) -> tuple[str, ...]:
     """How far the limits of the CPRBM and of the finite elements in ``bending`` are apart."""
     found = []
     fea = {(each.stage, each.place): each for each in families if each.series.variant == "bending"}
@@ -78,8 +82,8 @@ def sentences_of(families: Sequence[CriticalFamily]) -> tuple[str, ...]:
         may = float(one.found.uncertainty[0] + other.found.uncertainty[0])
         same = "by the same mechanism" if one.mechanism == other.mechanism else "by different mechanisms"
         found.append(
-            f"The limits of the critical value in {one.stage} are {distance(apart, one.unit)} apart within bending, "
-            f"where {distance(may, one.unit)} are stated, {same}: {one.mechanism} in the CPRBM, {other.mechanism} in "
-            "the finite elements."
+            f"The limits of the critical value in {one.stage} are {distance_text(scene, apart, one.unit)} apart within "
+            f"bending, where {distance_text(scene, may, one.unit)} are stated, {same}: {one.mechanism} in the CPRBM, "
+            f"{other.mechanism} in the finite elements."
         )
     return tuple(found)

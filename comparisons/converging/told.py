@@ -9,8 +9,9 @@ from comparisons import documents
 from comparisons.converging import critical_told
 from comparisons.converging.critical import critical_families
 from comparisons.converging.families import STANDARD_AT, Convergence, Family
+from comparisons.display_units import at_station, display_unit
 from comparisons.documents import Plain, plain
-from comparisons.formats import number, percent, scaled_unit, vector
+from comparisons.formats import number, percent, vector
 from comparisons.sheet import Sheet
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
@@ -65,7 +66,7 @@ def _entries(found: Convergence, family: Family) -> Iterable[Plain]:
 def sheets_of(found: Convergence) -> tuple[Sheet, ...]:
     """Critical values, the limits at the last station, and over all stations orders and how far limits are apart."""
     title = found.scene.title or found.scene.name
-    critical = critical_told.sheet_of(title, found.sizes, critical_families(found.scene, found.series))
+    critical = critical_told.sheet_of(found.scene, title, found.sizes, critical_families(found.scene, found.series))
     of_probes = (_limits(found), _orders(found)) if found.families else ()
     return (*((critical,) if critical.rows else ()), *of_probes)
 
@@ -77,7 +78,7 @@ def sentences_of(found: Convergence) -> tuple[str, ...]:
         for series in found.series
         for n, why in series.why.items()
     )
-    return (*ended, *critical_told.sentences_of(critical_families(found.scene, found.series)))
+    return (*ended, *critical_told.sentences_of(found.scene, critical_families(found.scene, found.series)))
 
 
 def shown_size(found: Convergence) -> int:
@@ -114,7 +115,7 @@ def _limits(found: Convergence) -> Sheet:
         if cprbm.found is None:
             body.append((cprbm.probe.name, "", *(["–"] * (7 if exact else 6)), cprbm.why))
             continue
-        factor, unit = scaled_unit(cprbm.unit, cprbm.size(cprbm.found.value))
+        factor, unit = display_unit(found.scene, cprbm.unit, cprbm.size(cprbm.found.value))
         apart = between(cprbm, fea)
         body.append(
             (
@@ -129,7 +130,7 @@ def _limits(found: Convergence) -> Sheet:
             )
         )
     return Sheet(
-        f"{found.scene.title or found.scene.name}: limits at {stage.name} {stage.stations[-1]:g}",
+        f"{found.scene.title or found.scene.name}: limits at {at_station(found.scene, stage.name, stage.stations[-1])}",
         (
             "probe",
             "unit",
@@ -177,7 +178,7 @@ def _orders(found: Convergence) -> Sheet:
                 percent(max((error / worst.scale for error in errors if error is not None), default=None)),
                 _share(worst, far),
                 _share(worst, may),
-                f"{worst.stage} {worst.station:g}",
+                at_station(found.scene, worst.stage, worst.station),
                 f"{within} of {len(told)}",
             )
         )

@@ -16,10 +16,10 @@ import numpy as np
 
 from comparisons.case import Comparison
 from comparisons.cells import signed
-from comparisons.figures import along_axis
-from comparisons.formats import number, percent, scaled_unit, vector
+from comparisons.display_units import display_unit, load_text
+from comparisons.formats import percent, vector
 from comparisons.geometry import edge_places, length, points
-from comparisons.quantities import load_unit, norm, unit_of
+from comparisons.quantities import norm, unit_of
 from comparisons.reporting.outlines import Frame, arrows, band, circle, dots, frame, line, turned
 from comparisons.stations import station_of
 from comparisons.viewing.moved import Motion
@@ -357,15 +357,13 @@ def _edge(scene: Scene, seen: Frame, name: str, edge: CircleContact | EdgeContac
 
 
 def _label(scene: Scene, stage: Stage, value: float) -> str:
-    factor, step_unit = along_axis(load_unit(scene, stage), max(map(abs, stage.stations)))
-    apart = "" if step_unit == "°" else " "
-    return f"{stage.name}, {stage.steps} = {number(value / factor, 4)}{apart}{step_unit}"
+    return f"{stage.name}, {stage.steps} = {load_text(scene, stage.name, value)}"
 
 
 def _unit(scene: Scene, probe: Probe, reached: list[_Both]) -> tuple[float, str]:
     """The power of a thousand in which the largest value of all stations reads best, and the unit with its prefix."""
     sizes = [norm(probe.quantity, each.values[probe.name]) for _, *both in reached for each in both]
-    return scaled_unit(unit_of(scene, probe, reached[-1][0]), max(sizes))
+    return display_unit(scene, unit_of(scene, probe, reached[-1][0]), max(sizes))
 
 
 def _words(compared: Comparison) -> dict[tuple[str, str, float], tuple[str, str]]:

@@ -52,6 +52,7 @@ class State:
 LIBRARIES = (
     Library("numpy", "numpy", "every number", ">=2.0"),
     Library("scipy", "scipy.linalg", "linear algebra", ">=1.13"),
+    Library("numba", "numba", "the compiled chain", ">=0.61"),
     Library("scikit-fem", "skfem", "the finite elements", ">=12.0,<13"),
     Library("shapely", "shapely", "outlines that cross", ">=2.1"),
     Library("pydantic", "pydantic", "reading scenes and settings", ">=2.9"),

@@ -30,8 +30,9 @@ import math
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
+from comparisons.display_units import at_station
 from comparisons.formats import percent
-from cprbm_scene import SceneError
+from cprbm_scene import Scene, SceneError
 
 FIRST = 10
 """N with which a search begins."""
@@ -248,9 +249,8 @@ class Tolerance:
     solved: tuple[int, ...]
     ended: str = ""
 
-    @property
-    def sentence(self) -> str:
-        """What it has come to."""
+    def sentence(self, scene: Scene) -> str:
+        """What the search has found, with stations in the units of the scene's file."""
         what = f"{self.n} {'links' if self.solver == 'cprbm' else 'elements'} per beam"
         if self.extrapolated and self.solver == "solid":
             coarse, fine = self.extrapolated
@@ -260,10 +260,10 @@ class Tolerance:
             what = f"{len(self.probes)} probes extrapolated from N = {coarse}, {fine}, the others at N = {fine}"
         found = self.trouble or "no row has a value"
         if self.worst is not None:
-            row = self.worst
-            found = f"{row.probe} at {row.stage} {row.station:g} states {percent(row.fraction)}"
+            row, found = self.worst, f"states {percent(self.worst.fraction)}"
             if not math.isfinite(row.fraction):
-                found = f"{row.probe} at {row.stage} {row.station:g} has a value at one N and none at another"
+                found = "has a value at one N and none at another"
+            found = f"{row.probe} at {at_station(scene, row.stage, row.station)} {found}"
         met = "within" if self.met else "NOT within"
         ended = f"; {self.ended}" if self.ended else ""
         return f"{self.solver.upper()}: {met} {percent(self.asked)}: {what}; at worst {found}{ended}."

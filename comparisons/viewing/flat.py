@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from comparisons.bodies_drawn import draw_bodies, draw_stops
-from comparisons.figures import along_axis, canvas
-from comparisons.formats import number
-from comparisons.quantities import load_unit
+from comparisons.display_units import load_text, with_unit
+from comparisons.figures import canvas, show_lengths
 from comparisons.viewing.frames import (
     ARROW,
     COLOURS,
@@ -55,9 +54,7 @@ def title_of(scene: Scene, frame: Frame, *, symbols: bool = True) -> str:
     """The scene's name, and the stage and its load or drive at the station; without ``symbols`` in plain letters."""
     station = frame.station
     stage = next(each for each in scene.stages if each.name == station.stage)
-    factor, unit = along_axis(load_unit(scene, stage), station.value)
-    said = f"{scene.name}, {station.stage}: {stage.steps} = {number(station.value / factor, 4)}"
-    said += unit if unit == "°" else f" {unit}"
+    said = f"{scene.name}, {station.stage}: {stage.steps} = {load_text(scene, stage.name, station.value)}"
     return said if symbols else said.replace("·", " ").replace("°", " deg").replace("µ", "u")
 
 
@@ -76,21 +73,21 @@ def _window(bounds: Bounds) -> tuple[Array, Array]:
 def _draw(figure: Figure, scene: Scene, frame: Frame, bounds: Bounds, quantity: Coloured) -> None:
     axes = figure.add_subplot()
     low, high = _window(bounds)
-    axes.set_xlim(1e3 * low[0], 1e3 * high[0])
-    axes.set_ylim(1e3 * low[1], 1e3 * high[1])
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
     axes.set_aspect("equal", adjustable="box")
     for obstacle in frame.obstacles:
         line = "-" if obstacle.known else "--"
         around = obstacle.outline if obstacle.round else np.concatenate([obstacle.outline, obstacle.solid[::-1]])
-        axes.fill(*(1e3 * around.T), facecolor=RIGID, alpha=0.55, linewidth=0.0, zorder=0.5)
-        axes.plot(*(1e3 * obstacle.outline.T), line, color=INK, linewidth=0.9, zorder=0.6)
+        axes.fill(*around.T, facecolor=RIGID, alpha=0.55, linewidth=0.0, zorder=0.5)
+        axes.plot(*obstacle.outline.T, line, color=INK, linewidth=0.9, zorder=0.6)
     for strip in frame.strips.values():
-        band = 1e3 * np.concatenate([strip.rest_layer(-1.0), strip.rest_layer(1.0)[::-1]])
+        band = np.concatenate([strip.rest_layer(-1.0), strip.rest_layer(1.0)[::-1]])
         axes.fill(*band.T, facecolor=PALE, edgecolor="#aab0b7", linewidth=0.5, zorder=1.0)
-    factor, unit = shown_unit(quantity, bounds.most)
+    factor, unit = shown_unit(scene, quantity, bounds.most)
     coloured = None
     for strip in frame.strips.values():
-        right, left = 1e3 * strip.layer(-1.0), 1e3 * strip.layer(1.0)
+        right, left = strip.layer(-1.0), strip.layer(1.0)
         values = colour_values(strip, quantity) / factor
         coloured = axes.pcolormesh(
             np.stack([right[:, 0], left[:, 0]]),
@@ -107,9 +104,9 @@ def _draw(figure: Figure, scene: Scene, frame: Frame, bounds: Bounds, quantity: 
         axes.plot(*around.T, "-", color=INK, linewidth=0.45, zorder=2.1, solid_joinstyle="round")
     draw_bodies(axes, scene, frame.places, "-", INK)
     draw_stops(axes, scene, frame.places)
-    _arrows(axes, frame, bounds)
-    axes.set_xlabel("x, mm")
-    axes.set_ylabel("y, mm")
+    _arrows(axes, scene, frame, bounds)
+    show_lengths(scene, axes.xaxis, "x")
+    show_lengths(scene, axes.yaxis, "y")
     axes.set_title(title_of(scene, frame), loc="left", fontsize=10)
     if coloured is not None:
         bar = figure.colorbar(coloured, ax=axes, shrink=0.85, pad=0.02, aspect=28)
@@ -117,11 +114,11 @@ def _draw(figure: Figure, scene: Scene, frame: Frame, bounds: Bounds, quantity: 
         bar.outline.set_linewidth(0.4)
 
 
-def _arrows(axes: Axes, frame: Frame, bounds: Bounds) -> None:
+def _arrows(axes: Axes, scene: Scene, frame: Frame, bounds: Bounds) -> None:
     """Resultants of contacts, each with its head where it presses, and dots at all places of a zone."""
     if bounds.force <= 0.0:
         for spots in frame.station.touching.values():
-            axes.plot(*(1e3 * spots.T), ".", color=FORCE, markersize=3.0, zorder=5.0)
+            axes.plot(*spots.T, ".", color=FORCE, markersize=3.0, zorder=5.0)
         return
     longest = ARROW * float(max(bounds.high - bounds.low)) / bounds.force
     named: set[str] = set()
@@ -130,9 +127,9 @@ def _arrows(axes: Axes, frame: Frame, bounds: Bounds) -> None:
         if size < LEAST * bounds.force:
             continue
         if len(push.places) > 1:
-            axes.plot(*(1e3 * push.places.T), ".", color=FORCE, markersize=1.6, zorder=4.9)
-        head = 1e3 * push.middle
-        tail = head - 1e3 * longest * push.resultant
+            axes.plot(*push.places.T, ".", color=FORCE, markersize=1.6, zorder=4.9)
+        head = push.middle
+        tail = head - longest * push.resultant
         axes.annotate(
             "",
             xy=(head[0], head[1]),
@@ -144,7 +141,7 @@ def _arrows(axes: Axes, frame: Frame, bounds: Bounds) -> None:
             named.add(push.contact)
             way = push.resultant / size
             axes.annotate(
-                f"{number(size)} N",
+                with_unit(scene, size, "N", 3),
                 (tail[0], tail[1]),
                 textcoords="offset points",
                 xytext=(-13.0 * way[0], -9.0 * way[1]),

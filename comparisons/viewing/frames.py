@@ -10,8 +10,8 @@ from typing import Literal
 import numpy as np
 
 from comparisons.bodies_drawn import Places
-from comparisons.formats import scaled_unit
-from comparisons.geometry import length
+from comparisons.display_units import display_unit
+from comparisons.geometry import longest
 from comparisons.viewing.moved import Obstacle, obstacles, points_at
 from comparisons.viewing.pushes import Push, pushes_at
 from comparisons.viewing.strips import Strip, strips_at
@@ -87,11 +87,6 @@ def frames_of(scene: Scene, answer: Answer) -> list[Frame]:
     ]
 
 
-def longest(scene: Scene) -> float:
-    """Length of the longest beam, m."""
-    return max(length(beam.curve) for beam in scene.beams.values())
-
-
 def colour_values(strip: Strip, quantity: Coloured) -> Array:
     """Of each section (n,) what colours it, SI."""
     match quantity:
@@ -103,9 +98,10 @@ def colour_values(strip: Strip, quantity: Coloured) -> Array:
             return strip.moment
 
 
-def shown_unit(quantity: Coloured, most: float) -> tuple[float, str]:
-    """By what the quantity is divided as it is shown, up to ``most``, and the unit then: of stresses MPa."""
-    return (1e6, "MPa") if UNITS[quantity] == "Pa" else scaled_unit(UNITS[quantity], most)
+def shown_unit(scene: Scene, quantity: Coloured, most: float) -> tuple[float, str]:
+    """Displayed unit of the quantity with the largest value ``most``; of stresses in a file without this unit MPa."""
+    stated = "stress" in scene.display_units.model_fields_set
+    return (1e6, "MPa") if UNITS[quantity] == "Pa" and not stated else display_unit(scene, UNITS[quantity], most)
 
 
 def bounds_of(scene: Scene, frames: Sequence[Frame], quantity: Coloured) -> Bounds:

@@ -85,7 +85,7 @@ def some(frames: Sequence[Frame]) -> list[Frame]:
 def _in_space(scene: Scene, frames: Sequence[Frame], bounds: Bounds, quantity: Coloured) -> list[bytes]:
     from comparisons.viewing.space import pictures
 
-    factor, unit = shown_unit(quantity, bounds.most)
+    factor, unit = shown_unit(scene, quantity, bounds.most)
     title = f"{flat.TITLES[quantity].partition(',')[0]}, {unit.replace('·', ' ').replace('µ', 'u')}"
     views = [_view(scene, frame, bounds) for frame in frames]
     return pictures(views, bounds, quantity, factor, title)

@@ -52,11 +52,11 @@ def test_it_has_one_line_with_the_worst_station_and_how_often_it_is_met(hinge, r
     ((text, theirs, _, at, how_often, word),) = sheet.rows
     assert text == EVERYWHERE.text
     assert theirs == "0.500 %"
-    assert at == f"load {worst:g}"
+    assert at == f"load {worst:g} N·m"
     assert how_often == f"{met} of 10"
     assert word == ("met" if met == 10 else "not met")
     (sentence,) = sheets.explanation(comparison)
-    assert f"at {worst:g}" in sentence
+    assert f"at load {worst:g} N·m" in sentence
 
 
 def test_met_everywhere_but_once_is_not_met(hinge):

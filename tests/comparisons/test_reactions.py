@@ -137,7 +137,7 @@ def test_the_neighbouring_stations_of_a_long_stage_give_the_derivative_without_a
     found = comparison_of(many).reactions
     assert [at.absence for at in found] == [Absence.NOT_PERTURBED, *[None] * (len(stations) - 2), Absence.NOT_PERTURBED]
     assert all(abs(at.difference) <= at.allowed for at in found[1:-1])
-    assert "No value at 2 stations: no even neighbours in a long stage." in summary(found)
+    assert "No value at 2 stations: no even neighbours in a long stage." in summary(many, found)
     assert comparison_of(uneven).reactions[1].absence is Absence.NOT_PERTURBED
 
 
@@ -189,8 +189,8 @@ def test_a_wrong_multiplier_is_apart_and_named():
     slight, gross = (comparison_of(scene, Spring(share=1.0 + off)) for off in (least, 2.0 * MESH_ALLOWANCE))
     assert [at.apart for at in slight.reactions] == [True, True, False]
     assert [at.apart for at in gross.reactions] == [True, True, True]
-    said = summary(gross.reactions)
-    assert "within the allowance at 0 of 3 stations. Beyond the allowance: push0 0.002 (-0.200 %), " in said
+    said = summary(scene, gross.reactions)
+    assert "within the allowance at 0 of 3 stations. Beyond the allowance: push0 0.002 m (-0.200 %), " in said
 
 
 def test_the_forces_of_two_oblique_drives_of_a_point_are_told_apart():

@@ -108,7 +108,7 @@ def written(tmp_path_factory):
 
 def test_all_parts_stand_in_the_folder_and_on_the_page(written):
     out, page, data = written
-    for name in ("comparison.json", "answers.json", "convergence.json", "bench.json", "scene.toml", "shapes.svg"):
+    for name in ("comparison.json", "answers.json.gz", "convergence.json", "bench.json", "scene.toml", "shapes.svg"):
         assert (out / "hinge" / name).is_file(), name
         assert name.endswith(".svg") or f'href="hinge/{name}"' in page
     assert (out / "hinge" / "scene.toml").read_text("utf-8").startswith("# The rotational hinge")
@@ -228,7 +228,7 @@ def test_a_report_is_written_whatever_its_verdict(tmp_path, files, fea, word):
     assert code == 0
     text = page.decode()
     assert text.count(f'class="badge {word}"') == 3  # of all, in the table, at the chapter
-    assert f"load, F = {'0.7000 N' if word == 'UNDECIDED' else '1.300 N'}" in text  # the last that both have reached
+    assert f"load, F = {'0.7 N' if word == 'UNDECIDED' else '1.3 N'}" in text  # the last that both have reached
 
 
 @pytest.mark.usefixtures("undrawn")

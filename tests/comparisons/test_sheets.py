@@ -86,12 +86,12 @@ def test_by_how_much_paper_is_off_at_most_and_at_last_and_why():
         shares = {row.station: contact_model(found.runs, row) / row.denominator for row in rows}
         worst = max(shares, key=shares.get)
         said = [cell(sheet, "BD.rotation", header) for header in sheet.headers]
-        assert sheet.headers[3] == f"at load {last:g}"
-        assert said[2] == f"load {worst:g}"
+        assert sheet.headers[3] == f"at load {last:g} N·m"
+        assert said[2] == f"load {worst:g} N·m"
         for told, station in ((said[1], worst), (said[3], last)):
             assert float(told.removesuffix(" %")) == pytest.approx(100.0 * shares[station], rel=1e-2)
         assert ("In paper: the chord is held." in sheet.note) is (paper is early)
-        assert ("It ended before load 0.335: joint 3 presses beyond the end." in sheet.note) is (paper is early)
+        assert ("It ended before load 0.335 N·m: joint 3 presses beyond the end." in sheet.note) is (paper is early)
         assert all(contact_model(found.runs, row) is None for row in found.rows if row.station > last)
 
 

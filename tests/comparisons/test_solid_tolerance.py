@@ -83,7 +83,7 @@ def test_the_search_ends_at_its_bound_and_says_so(hinge):
     _, found = solved(scene, "solid", Choices(), 1e-4, Solvers(solid=solid), lambda text: None)
     assert not found.met
     assert max(found.solved) == LARGEST
-    assert "no mesh of more than 160 elements" in found.sentence
+    assert "no mesh of more than 160 elements" in found.sentence(hinge)
 
 
 def test_what_no_mesh_can_meet_is_not_looked_for_on_the_finest(hinge):
@@ -91,7 +91,7 @@ def test_what_no_mesh_can_meet_is_not_looked_for_on_the_finest(hinge):
     _, found = solved(of_stage(hinge), "solid", Choices(), 1e-9, Solvers(solid=solid), lambda text: None)
     assert not found.met
     assert max(found.solved) < LARGEST
-    assert "would not do either" in found.sentence
+    assert "would not do either" in found.sentence(hinge)
 
 
 def test_a_mesh_too_coarse_to_arrive_counts_for_nothing(hinge):
@@ -103,7 +103,7 @@ def test_a_mesh_too_coarse_to_arrive_counts_for_nothing(hinge):
     answer, found = solved(of_stage(hinge), "solid", Choices(), 1e-2, Solvers(solid=never), lambda text: None)
     assert not found.met
     assert not answer.completed
-    assert "ended early" in found.sentence
+    assert "ended early" in found.sentence(hinge)
 
 
 def test_a_comparison_has_all_meshes_of_the_solid_and_solves_none_twice(hinge, right):

@@ -232,7 +232,7 @@ def test_where_nothing_draws_the_line_that_helps_is_told(tmp_path, monkeypatch, 
 def test_the_command_shows_the_station_that_is_asked(tmp_path, capsys):
     path = tmp_path / "t.png"
     assert run(["view", "tapered", "-n", "10", "--station", "0.7", "--quantity", "moment", "--out", str(path)]) == 0
-    assert f"{path}: tapered by cprbm, load 0.7." in capsys.readouterr().out
+    assert f"{path}: tapered by cprbm, load 0.7 N." in capsys.readouterr().out
     with Image.open(path) as picture:
         assert picture.size[0] > 600
 

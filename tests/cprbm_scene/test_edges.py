@@ -1,4 +1,4 @@
-"""Rigid lines, half-planes and functions: names, keys, proportions, and the start on the free side or just touching."""
+"""Rigid edges: names, keys, proportions, and the start on the free side or just touching."""
 
 import math
 from itertools import pairwise
@@ -8,6 +8,7 @@ import pytest
 
 from cprbm_scene import FunctionContact, HalfPlaneContact, LineContact, SceneError, scene_from
 from cprbm_scene.check_rigid import distance_from
+from cprbm_scene.statement import CircleContact, EllipseContact, SplineContact
 from tests.cprbm_scene.editing import REMOVED, edited, mistakes
 
 T, L = 0.002, 0.1
@@ -20,7 +21,9 @@ FUNCTION = {
     "range": [-0.1, 0.1],
     "side": "above",
 }
-KINDS = [LINE, HALF_PLANE, FUNCTION]
+ELLIPSE = {"kind": "beam-ellipse", "center": [0.0, -0.03], "semi_axes": [0.05, 0.03]}
+SPLINE = {"kind": "beam-spline", "points": [[-0.1, -0.01], [0.0, 0.0], [0.1, -0.01]], "side": "left"}
+KINDS = [LINE, HALF_PLANE, FUNCTION, ELLIPSE, SPLINE]
 
 
 def over(contact, gap=0.0, *, thick=True, start="weld"):
@@ -70,6 +73,8 @@ def test_a_beam_on_the_wrong_side_is_told_how_deep(contact, thick):
         "beam-line": ("side", "right"),
         "beam-function": ("side", "below"),
         "beam-half-plane": ("normal", [0, -1.0]),
+        "beam-ellipse": ("side", "inside"),
+        "beam-spline": ("side", "right"),
     }
     key, value = other[contact["kind"]]
     assert list(mistakes((f"contacts/touch/{key}", value), base=over(contact, 0.001, thick=thick))) == [
@@ -107,7 +112,7 @@ def test_a_beam_may_be_joined_to_what_it_touches(joint):
         (LINE, "points", [[0.0, 0.0], [0.0, 0.0]], "points[1]", "0 m from the one before"),
         (LINE, "points", [[-0.1, 0.0], [0.2, 0.0], [0.1, 0.0]], "points[1]", "turns back on itself"),
         (LINE, "points", [[0.0, -0.1], [0.1, -0.1], [0.1, -0.05], [0.05, -0.2]], "points", "meet itself"),
-        (LINE, "points", [[0.0, 0.0], [1e7, 0.0]], "", "coordinates up to"),
+        (LINE, "points", [[0.0, 0.0], [1e7, 0.0]], "points[1]", "1e+08 of the beam's length"),
         (LINE, "side", "above", "side", "one of 'left' or 'right'"),
         (LINE, "body", "graund", "body", "is 'ground' meant?"),
         (LINE, "beam", "beem", "beam", "is 'beam' meant?"),
@@ -117,7 +122,7 @@ def test_a_beam_may_be_joined_to_what_it_touches(joint):
         (HALF_PLANE, "normal", [0.0, 0.0], "normal", "a direction"),
         (HALF_PLANE, "point", [1e6, 0.0], "", "coordinates up to"),
         (FUNCTION, "range", [0.1, 0.1], "range", "two different values"),
-        (FUNCTION, "range", [0.0, 1e-12], "range", "at least 1e-06 of the beam's length"),
+        (FUNCTION, "range", [0.0, 1e-12], "range", "between 1e-06 and 1e+06 of the beam's length"),
         (FUNCTION, "coefficients", [0.0], "coefficients", "at least 2 of them"),
         (FUNCTION, "coefficients", [0.0, 1e5], "coefficients", "a slope of at most 1000"),
         (FUNCTION, "side", "left", "side", "one of 'above' or 'below'"),
@@ -188,6 +193,32 @@ def test_distances_from_lines_and_functions():
 
     plane = HalfPlaneContact(kind="beam-half-plane", beam="b", body="g", point=(0.1, 0.2), normal=(3.0, 4.0))
     assert distance_from(plane)(p) == pytest.approx((p - (0.1, 0.2)) @ (0.6, 0.8))
+
+
+def test_distances_from_ellipses_splines_and_from_inside_a_circle():
+    turn, out = np.linspace(0.0, 6.2, 40), np.linspace(-0.4, 0.9, 40)
+    # reference: a place at the distance d along the normal of an ellipse, with d above the least radius b²/a = 0.5
+    # of curvature inside
+    outward = np.column_stack((np.cos(turn) / 2.0, np.sin(turn)))
+    outward /= np.hypot(*outward.T)[:, None]
+    on = np.column_stack((2.0 * np.cos(turn), np.sin(turn)))
+    rotated = np.array([[0.6, 0.8], [-0.8, 0.6]])
+    base = {"kind": "beam-ellipse", "beam": "b", "body": "g", "center": (0.1, 0.2), "semi_axes": (2.0, 1.0)}
+    ellipse = EllipseContact(**base, angle=math.atan2(0.8, 0.6))
+    p = (0.1, 0.2) + (on + out[:, None] * outward) @ rotated
+    assert distance_from(ellipse)(p) == pytest.approx(out, abs=1e-8)
+    assert distance_from(ellipse.model_copy(update={"side": "inside"}))(p) == pytest.approx(-out, abs=1e-8)
+    # reference: the spline of three points is the parabola through them
+    spline = SplineContact(
+        kind="beam-spline", beam="b", body="g", points=((-1.0, 1.0), (0.0, 0.0), (1.0, 1.0)), side="right"
+    )
+    parabola = FunctionContact(
+        kind="beam-function", beam="b", body="g", axis="x", coefficients=(0, 0, 1.0), range=(-1.0, 1.0), side="below"
+    )
+    p = np.random.default_rng(2).uniform(-0.5, 0.5, (40, 2)) + np.array((0.0, 0.3))
+    assert distance_from(spline)(p) == pytest.approx(distance_from(parabola)(p), abs=1e-9)
+    hole = CircleContact(kind="beam-circle", beam="b", body="g", center=(0.0, 0.3), radius=0.5, side="inside")
+    assert distance_from(hole)(p) == pytest.approx(0.5 - np.hypot(*(p - (0.0, 0.3)).T))
 
 
 @pytest.mark.parametrize("contact", KINDS)

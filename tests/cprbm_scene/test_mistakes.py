@@ -8,6 +8,7 @@ INF, NAN = float("inf"), float("nan")
 BEAM = "beams/beam1"
 START = HINGE["beams"]["beam1"]["curve"]["start"]
 HUGE = 1 << 40_000
+TWO = two_lines(0.01)
 
 RECORDS = [
     (f"{BEAM}/thicknes", 0.002, "beams.beam1.thicknes", "is 'thickness' meant"),
@@ -61,6 +62,9 @@ TIES = [
     ("stages/0/steps", "N", "stages[0].steps", "names no load"),
     ("may_cross", [["beam1", "beam3"]], "may_cross[0][1]", "a beam or contact with a rigid edge: 'beam1', 'beam2'"),
     ("may_cross", [["beam1", "beam1"]], "may_cross[0]", "two different names"),
+    ("drives", {"D": {"kind": "rotation", "body": "BD", "from": "loud"}}, "drives.D.from", "is 'load' meant"),
+    ("stages/0/steps", ["M", "F"], "stages[0].steps[1]", "names no load"),
+    ("stages/0/steps", ["M", "M"], "stages[0].steps", "different loads, each once"),
     ("probes/0/stages", ["loud"], "probes[0].stages[0]", "the name of a stage: 'load'"),
     ("probes/0/of", "b", "probes[0].of", "names no point, body, beam, contact or stop"),
     ("loads/A", {"kind": "moment", "body": "BD"}, "loads.A", "bodies.AC.points.A has too"),
@@ -189,16 +193,22 @@ def test_a_beam_lost_in_large_coordinates():
     assert "at coordinates up to 1e+06" in found["beams.upper.curve"]
 
 
-def test_a_beam_with_two_free_ends():
-    data = edited(("beams/upper/start", {"joint": "free"}), base=two_lines(0.01))
-    assert "two free ends" in mistakes(base=data)["beams.upper"]
-
-
-def test_a_beam_that_turns_about_its_only_pin():
-    data = edited(("beams/upper/start/joint", "pin"), base=two_lines(0.01))
-    assert "turns freely" in mistakes(base=data)["beams.upper"]
-
-
-def test_a_body_that_leads_to_no_fixed_one():
-    data = edited(("bodies/block/points/S", [0.0, 0.0]), ("beams/lower/start/point", "S"), base=two_lines(0.01))
-    assert "no fixed body holds" in mistakes(base=data)["bodies.block"]
+@pytest.mark.parametrize(
+    ("edits", "key", "words"),
+    [
+        ([("beams/upper/start", {"joint": "free"})], "beams.upper", "two free ends"),
+        ([("beams/upper/start/joint", "pin")], "beams.upper", "turns freely"),
+        ([("bodies/block/points/S", [0, 0]), ("beams/lower/start/point", "S")], "bodies.block", "no fixed body holds"),
+    ],
+)
+def test_a_part_without_support_needs_a_contact_or_a_load(edits, key, words):
+    bent = {**TWO["beams"]["lower"], "curve": {"kind": "line", "start": [0.0, 0.5], "end": [0.1, 0.5]}}
+    bent |= {"start": {"joint": "weld", "point": "far0"}, "end": {"joint": "weld", "point": "far1"}}
+    elsewhere = [
+        ("bodies/wall", {"motion": "fixed", "points": {"far0": [0.0, 0.5]}}),
+        ("bodies/far", {"motion": "free", "points": {"far1": [0.1, 0.5]}}),
+        ("beams/far", bent),
+        ("loads/F/point", "far1"),
+    ]
+    assert mistakes(*edits, base=TWO) == {}
+    assert words in mistakes(*edits, *elsewhere, ("contacts", {}), base=TWO)[key]

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from cprbm_scene import Mistake, SceneError, scene_from
 from cprbm_scene.freedoms import AXES, Freedoms, unit
+from cprbm_scene.requirements import refuse
 from cprbm_scene.statement import Point, RotationDrive, Scene, SlidingBody, TurningBody
 
 Array = NDArray[np.float64]
@@ -106,9 +107,11 @@ def without_dead_point(data: dict[str, Any]) -> Scene:
     """The scene of plain ``data``.
 
     Raises:
-        SceneError: the data are no valid scene, or pins, guides and drives alone do not let a drive reach a station.
+        SceneError: the data are no valid scene, no solver answers the scene, or pins, guides and drives alone do not
+            let a drive reach a station.
     """
     scene = scene_from(data)
+    refuse(scene, "a random scene", "theory")
     if not scene.pins or not scene.drives:
         return scene
     linkage = Linkage(scene)

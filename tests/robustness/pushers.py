@@ -7,9 +7,10 @@ from copy import deepcopy
 
 import numpy as np
 
-from cprbm_scene import FreeEnd, scene_from
+from cprbm_scene import FreeEnd
 from tests.robustness.actions import ENERGY, Action, force_of, led
 from tests.robustness.chance import RedrawError, any_of, between, happens, rounded, sign
+from tests.robustness.dead_points import without_dead_point
 from tests.robustness.draft import Data, Draft
 from tests.robustness.estimate import BARS, Estimate, State
 from tests.robustness.obstacles import Obstacle, Spot, is_clear, rigid
@@ -38,7 +39,7 @@ def push(draft: Draft) -> None:
     x, y = draft.frame.direction((0.0, sign(rng)))
     load: Data = {"kind": "beam_force", "beam": beam, "at": place / BARS, "direction": [x, y]}
     stages = [{"name": "push", "steps": "push", "stations": [1.0]}]
-    model = Estimate(scene_from({**draft.data, "loads": {"push": load}, "stages": stages, "probes": ENERGY}))
+    model = Estimate(without_dead_point({**draft.data, "loads": {"push": load}, "stages": stages, "probes": ENERGY}))
     rest = State(np.zeros(model.unknowns), {})
     nodes = model.shape(rest.q, beam)
     tangent = (nodes[place + 1] - nodes[place - 1]) / np.hypot(*(nodes[place + 1] - nodes[place - 1]))

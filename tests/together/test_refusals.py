@@ -15,6 +15,7 @@ from cprbm_scene import Ending, SceneError, scene_from
 from fea_reference import solid
 from tests.cprbm_scene.editing import edited, two_lines
 from tests.cprbm_scene.test_pins import LINKAGE
+from tests.together.features import CIRCLE, held_by, probes
 
 TAPERED = Path(cases.__file__).parent / "tapered.toml"
 T = 0.002
@@ -57,6 +58,52 @@ def test_the_exact_solution_and_the_solid_do_not_answer_an_overlap():
     assert (answer.ending, "contacts.touch" in answer.sentence) == (Ending.NOT_COVERED, True)
     with pytest.raises(SceneError, match=r"contacts\.touch: found beams that overlap .* for the solid"):
         solid.answer(stacked(0.99e-3))
+
+
+def resting():
+    """A slider with a round nose that a dead weight presses on a leaf spring: contact and load hold the slider."""
+    data = held_by(CIRCLE | {"center": [0.07, 0.0105]})
+    data["bodies"]["slider"] = {"motion": "slides", "along": [0.0, 1.0], "points": {"N": [0.07, 0.02]}}
+    return edited(("contacts/c/body", "slider"), ("loads/F/point", "N"), base=data)
+
+
+def three_points():
+    """A strip without joints on two circles, which the nose of a driven punch presses down."""
+    data = held_by(CIRCLE) | {"probes": probes("c.force")}
+    data["bodies"] = {"wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}}}
+    data["bodies"]["punch"] = {"motion": "slides", "along": [0.0, 1.0], "points": {"P": [0.05, 0.02]}}
+    nose = data["contacts"]["c"] | {"center": [0.05, 0.0105], "body": "punch"}
+    rollers = {name: data["contacts"]["c"] | {"center": [x, -0.0105]} for name, x in (("l", 0.01), ("r", 0.09))}
+    free = {"joint": "free"}
+    drive = {"kind": "displacement", "point": "P", "direction": [0.0, -1.0]}
+    changes = [("beams/beam/start", free), ("beams/beam/end", free), ("contacts", {"c": nose, **rollers})]
+    return edited(*changes, ("loads", {}), ("drives", {"d": drive}), ("stages/0/steps", "d"), base=data)
+
+
+@pytest.mark.parametrize(("data", "key"), [(resting(), "bodies.slider"), (three_points(), "beams.beam")])
+def test_parts_that_contacts_and_loads_hold_are_read_and_refused(data, key):
+    scene = scene_from(data)
+    for solver in (cprbm, fea_reference, solid):
+        with pytest.raises(SceneError, match=rf"^{re.escape(key)}: found .* hold it, for the "):
+            solver.answer(scene)
+    assert key in elastica_reference.answer(scene).sentence
+
+
+@pytest.mark.parametrize(
+    "edge",
+    [
+        {"kind": "beam-circle", "center": [0.05, 0.0], "radius": 0.06, "side": "inside"},
+        {"kind": "beam-ellipse", "center": [0.05, -0.04], "semi_axes": [0.03, 0.02], "angle": 0.3},
+        {"kind": "beam-spline", "points": [[0.0, -0.03], [0.05, -0.01], [0.1, -0.03]], "side": "left"},
+    ],
+    ids=["inside", "ellipse", "spline"],
+)
+def test_edges_that_no_solver_answers_yet(edge):
+    scene = scene_from(held_by(edge))
+    for solver in (cprbm, fea_reference, solid):
+        with pytest.raises(SceneError, match=rf"^contacts\.c: found '{edge['kind']}'.* or a function, for the "):
+            solver.answer(scene)
+    assert "contacts.c" in elastica_reference.answer(scene).sentence
 
 
 @pytest.mark.parametrize("solver", [cprbm, fea_reference])

@@ -44,7 +44,7 @@ def test_the_size_of_the_hint_makes_the_limit(away, cprbm, fea, options):
 
 def test_the_sentence_names_the_row_that_decides(hinge):
     found = compared(hinge, altered(C, with_value("BD.rotation", [0.9]), 0.67), F)
-    assert found.verdict.because.startswith("1 of 126 rows differ, first of all BD.rotation at load 0.67: ")
+    assert found.verdict.because.startswith("1 of 126 rows differ, first of all BD.rotation at load 0.67 N·m: ")
     assert "--solver cprbm,fea,solid" in found.verdict.because
     assert found.verdict.sentence.startswith(found.verdict.because)
 
