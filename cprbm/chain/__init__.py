@@ -1,9 +1,10 @@
-"""The chain: beams as rigid or compliant links with torsional springs, and the rows that act on them."""
+"""The chain: beams as rigid or compliant links with torsional springs, and rows."""
 
 from cprbm.chain.arrays import RowArrays, add_row_gradient, link_arrays, row_arrays, row_values
 from cprbm.chain.beam import BeamChain, ChainUnits, Theory
 from cprbm.chain.form import Form
 from cprbm.chain.kernel import Blocks, Joints, Links, empty_blocks, evaluate_chains, strain_energy
+from cprbm.chain.loads import hidden_flexibility
 from cprbm.chain.mechanism import Mechanism, Row, mechanism_of
 from cprbm.chain.rows import add_rows, apart_ends, stop_angle
 
@@ -23,6 +24,7 @@ __all__ = [
     "apart_ends",
     "empty_blocks",
     "evaluate_chains",
+    "hidden_flexibility",
     "link_arrays",
     "mechanism_of",
     "row_arrays",

@@ -1,7 +1,7 @@
-"""Arrays of a mechanism for the compiled kernels, and the kernel of its rows.
+"""Arrays of a mechanism for the compiled kernels, and the kernel of rows.
 
-The gradient of the Lagrangian by z is that of the chains plus Σ μ ∂f/∂z of the rows; by the multiplier of a row with
-prescribed value it is f(z) − f*.
+The gradient of the Lagrangian by z is the chains' gradient plus Σ μ ∂f/∂z of the rows.  By the multiplier of a row
+with prescribed value the gradient is f(z) − f*.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from math import cos, sin
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from cprbm.chain.compiled import compiled
 from cprbm.chain.kernel import Joints, Links
 from cprbm.chain.mechanism import PER_LINK, Mechanism
 from cprbm_scene.answer import Array, Ints
@@ -73,7 +73,7 @@ def row_arrays(m: Mechanism) -> RowArrays:
     )
 
 
-@njit(cache=True)
+@compiled
 def row_values(z: Array, rows: RowArrays) -> Array:  # pragma: no cover
     """f of all rows."""
     values = rows.constant.copy()
@@ -86,7 +86,7 @@ def row_values(z: Array, rows: RowArrays) -> Array:  # pragma: no cover
     return values
 
 
-@njit(cache=True)
+@compiled
 def add_row_gradient(z: Array, rows: RowArrays, weight: Array, gradient: Array) -> None:  # pragma: no cover
     """Add Σ weight ∂f/∂z of all rows to ``gradient``."""
     for t in range(rows.linear_row.size):

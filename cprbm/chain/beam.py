@@ -1,4 +1,4 @@
-"""One beam as a chain of rigid links and torsional springs.
+"""A beam as a chain of rigid links and torsional springs.
 
 =========  =====================================================================================
 symbol     meaning
@@ -8,15 +8,15 @@ s_j        arc length of node j: start, joints, end; link j runs from node j to 
 P_j        node j at rest
 L_j, ψ_j   length and angle of link j at rest
 b_i        turn of the neutral line along element i at rest
-k_i        stiffness of joint i, one over ∫ ds/EI along its element
-m_i        first moment ∫ (s − s_i) ds/EI of the element's flexibility about its middle
+k_i        stiffness of joint i, the inverse of ∫ ds/EI along the element
+m_i        first moment ∫ (s − s_i) ds/EI of the element's flexibility about the middle
 1/EA       mean of the axial compliance along a link; E is Young's modulus, A the area
 1/GA_s     mean of the shear compliance along a link; G = E/2(1 + ν), A_s = 5/6 A
 β_j        h²/12 times the mean of 1/EI along a link
 =========  =====================================================================================
 
 The plain chain has P_j on the neutral line.  The corrected chain has the nodes of the spline through the neutral line
-(:mod:`cprbm.chain.spline`) and the fields m, β, which :mod:`cprbm.chain.kernel` derives.
+(:mod:`cprbm.chain.spline`) and the fields m, β of :mod:`cprbm.chain.kernel`.
 All numbers are in the units of the mechanism.
 """
 
@@ -45,7 +45,7 @@ SAMPLES_PER_ELEMENT = 64
 
 @dataclass(frozen=True, eq=False)
 class ChainUnits:
-    """Units of a mechanism: ``length`` (m), ``moment`` (N·m), and the place of its ``origin`` (2,), m."""
+    """Units of a mechanism: ``length`` (m), ``moment`` (N·m), and place of the ``origin`` (2,), m."""
 
     length: float
     moment: float
@@ -140,7 +140,7 @@ class BeamChain:
     def angle_weights(self, s: Array) -> tuple[Ints, Array]:
         """Links (k, 4) and weights (k, 4) of their angles in the section's angle at arc lengths ``s``.
 
-        The cubic through the nearest four angles, which stand at borders of elements and at the beam's ends; of a plain
+        The cubic through the nearest four angles, at borders of elements and at the beam's ends; of a plain
         chain the line through two.
         """
         places = np.concatenate([self.arcs[:1], 0.5 * (self.arcs[2:-1] + self.arcs[1:-2]), self.arcs[-1:]])
@@ -155,19 +155,27 @@ class BeamChain:
                     weights[:, i] *= (s - at[:, j]) / (at[:, i] - at[:, j])
         return columns, weights
 
+    def rest_angle(self, s: Array) -> Array:
+        """Angle of the neutral line's tangent at rest at arc lengths ``s`` (k,), continuous along the beam."""
+        tangents = tangents_on(self.section.beam.curve, s / self.length)
+        exact = np.arctan2(tangents[:, 1], tangents[:, 0])
+        links, weights = self.angle_weights(s)
+        near = (weights * self.link_angle[links]).sum(axis=1)
+        return np.asarray(near + np.remainder(exact - near + np.pi, 2.0 * np.pi) - np.pi)
+
     def flexibility(self, borders: Array, weight: Callable[[Array], Array]) -> Array:
         """Integrals (k,) of weight(s)/EI between ``borders`` (k + 1,)."""
         return _integrals(lambda s: weight(s) / self.section.rigidity(s), borders, self.knots)
 
     def leaving_angle(self, end: Literal["start", "end"]) -> float:
-        """Angle at rest at which the neutral line leaves one of its ends."""
+        """Angle at rest at which the neutral line leaves an end."""
         return self.end_angles[0] if end == "start" else self.end_angles[1] + np.pi
 
 
 def beam_chain(
     name: str, beam: Beam, material: Material, links: int, theory: Theory, units: ChainUnits, *, corrected: bool
 ) -> BeamChain:
-    """A beam cut into elements: of equal length, or evenly along an axis if the plain chain's beam asks for that.
+    """A beam cut into elements: of equal length, or of the plain chain evenly along the axis named by the beam.
 
     Args:
         name, beam, material: of the scene.
@@ -221,7 +229,7 @@ def _corrected(chain: BeamChain) -> BeamChain:
     lean[[0, -1]] = 0.0
     middles = chain.arcs[1:-1]
     first = chain.flexibility(chain.borders, lambda s: s)
-    # half of an inner link belongs to either joint beside it, an end link to its only joint
+    # half of an inner link belongs to either joint, an end link to the only joint
     share = np.ones(len(L))
     share[1:-1] = 0.5
     grown = share * L
@@ -237,7 +245,7 @@ def _corrected(chain: BeamChain) -> BeamChain:
 
 
 def _with_chords(chain: BeamChain, nodes: Array) -> BeamChain:
-    """The chain with nodes at rest, and the lengths and angles of the links between them."""
+    """The chain with nodes at rest, and lengths and angles of links."""
     chords = np.diff(nodes, axis=0)
     return replace(
         chain,
@@ -259,7 +267,7 @@ def _borders(beam: Beam, count: int, length: float, axis: Literal["x", "y"] | No
 
 
 def _integrals(function: Callable[[Array], Array], borders: Array, knots: Array) -> Array:
-    """Integrals (k,) of a function that is smooth between ``knots`` over the intervals between ``borders`` (k + 1,)."""
+    """Integrals (k,) of a function, smooth between ``knots``, over the intervals between ``borders`` (k + 1,)."""
     places = np.union1d(borders, knots[(knots > borders[0]) & (knots < borders[-1])])
     half = 0.5 * np.diff(places)
     middle = 0.5 * (places[1:] + places[:-1])

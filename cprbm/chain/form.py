@@ -1,4 +1,4 @@
-"""Forms: the functions of the unknowns that joints, guides, drives, stops and loads prescribe or work on.
+"""Forms: functions of the unknowns for joints, guides, drives, stops and loads.
 
 =======  ====================================================================================
 symbol   meaning
@@ -13,7 +13,7 @@ A, B     coefficients of cos φ − 1 and sin φ
     f(z) = c + Σ a_i z_i + Σ [A (cos φ − 1) + B sin φ]
 
 A body with the reference point X₀, displacement q and rotation φ carries the point X to X + q + (R(φ) − 1)(X − X₀).
-The coordinate of that point along d is a form with A = d·(X − X₀) and B = d·J(X − X₀), J the quarter turn.
+The point's coordinate along d is a form with A = d·(X − X₀) and B = d·J(X − X₀), J the quarter turn.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class Form:
 
 
 def unknown(index: int, rest: float = 0.0) -> Form:
-    """Change of an unknown from its value at rest."""
+    """Change of an unknown from the value at rest."""
     return Form(-rest, ((index, 1.0),))
 
 

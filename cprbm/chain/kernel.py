@@ -47,8 +47,8 @@ from math import cos, sin
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from cprbm.chain.compiled import compiled
 from cprbm_scene.answer import Array, Ints
 
 FD, FDD = 0, 1
@@ -111,7 +111,7 @@ def empty_blocks(links: int, joints: int) -> Blocks:
     )
 
 
-@njit(cache=True)
+@compiled
 def _partials_of_links(z: Array, links: Links, force: Array) -> None:  # pragma: no cover
     """Write F_N, F_Q, F_NN, F_NQ, F_QQ, N, Q, cos θ, sin θ of the links alone."""
     for j in range(links.length.size):
@@ -124,7 +124,7 @@ def _partials_of_links(z: Array, links: Links, force: Array) -> None:  # pragma:
         row[5], row[6], row[7], row[8] = N, Q, a, b
 
 
-@njit(cache=True)
+@compiled
 def _partials_of_joints(
     z: Array, links: Links, joints: Joints, force: Array, rate: Array, cross: Array
 ) -> None:  # pragma: no cover
@@ -159,7 +159,7 @@ def _partials_of_joints(
             _add_half(right, of, 4, joints.half_behind[i], -0.25, d)
 
 
-@njit(cache=True)
+@compiled
 def _add_half(side: Array, of: Array, at: int, w: float, quarter: float, d: float) -> None:  # pragma: no cover
     """Add the partials of −w Q̂²/2 of a half link to those of its link and its joint."""
     a, b = cos(quarter * d), sin(quarter * d)
@@ -175,7 +175,7 @@ def _add_half(side: Array, of: Array, at: int, w: float, quarter: float, d: floa
     side[4] -= w * a * a
 
 
-@njit(cache=True)
+@compiled
 def evaluate_chains(
     z: Array, links: Links, joints: Joints, blocks: Blocks, gradient: Array
 ) -> None:  # pragma: no cover
@@ -211,7 +211,7 @@ def evaluate_chains(
         _turn_joint(joints.before[i], links, force, rate[i], cross[i], blocks, gradient)
 
 
-@njit(cache=True)
+@compiled
 def _turn_joint(
     j: int, links: Links, force: Array, of: Array, X: float, blocks: Blocks, gradient: Array
 ) -> None:  # pragma: no cover
@@ -239,7 +239,7 @@ def _turn_joint(
         P[0, 0, 0], P[0, 0, 1], P[0, 1, 0], P[0, 1, 1] = X * b * v, -X * a * v, -X * b * u, X * a * u
 
 
-@njit(cache=True)
+@compiled
 def strain_energy(z: Array, links: Links, joints: Joints) -> float:  # pragma: no cover
     """Energy of joints and links at a solution of the link equations."""
     energy = 0.0

@@ -4,12 +4,16 @@
 symbol   meaning
 =======  ====================================================================================
 F        value of a load
-f        what the load works on: its energy is −F f(z)
+f        quantity with the load's energy −F f(z)
 C(s)     neutral line, a sum of weights and nodes
 =======  ====================================================================================
 
-A force on a beam works on the displacement of C(s), a distributed load on the integral of that, and a moment on the
-section's angle at s.  All three are linear in the unknowns of the chain.
+A force on a beam works on the displacement of C(s), a distributed load on the displacement's integral, and a moment
+on the section's angle at s.  All three are linear in the unknowns of the chain.
+
+The chain smears a load at a place over some links.  Between places less than three links apart a part of the
+flexibility is missing, of order h³ for forces and h for moments.  The potential energy gets the part back; the
+equilibrium of the rest of the beam is independent of the part.
 """
 
 from __future__ import annotations
@@ -21,7 +25,7 @@ from scipy.sparse import csr_matrix
 
 from cprbm.chain.beam import BeamChain
 from cprbm.chain.form import Form
-from cprbm.chain.mechanism import Mechanism, Row
+from cprbm.chain.mechanism import Mechanism, Row, UnitLoad
 from cprbm_scene.answer import Array, Ints
 from cprbm_scene.statement import BeamForce, BeamMoment, Force, Load, Moment
 
@@ -30,7 +34,7 @@ GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(2)
 
 
 def load_row(m: Mechanism, name: str, load: Load) -> Row:
-    """Row of one load."""
+    """Row of a load."""
     per_force, per_moment = -1.0 / m.units.force, -1.0 / m.units.moment
     match load:
         case Moment():
@@ -43,16 +47,12 @@ def load_row(m: Mechanism, name: str, load: Load) -> Row:
             chain, at = m.chains[load.beam], load.at * m.chains[load.beam].length
             links, weights = (each[0] for each in chain.angle_weights(np.array([at])))
             form = _weighted(m.beam_angles(load.beam), chain.link_angle, links, weights)
-            softness = _moment_softness(chain, at, links, weights)
-            return Row(name, form, driven=False, unit=per_moment, softness=softness)
+            return Row(name, form, driven=False, unit=per_moment, unit_load=_unit_moment(chain, at, links, weights))
         case BeamForce():
             chain, at = m.chains[load.beam], load.at * m.chains[load.beam].length
-            weights, size = chain.line.weights(np.array([at])), hypot(*load.direction)
-            link = int(np.clip(np.searchsorted(chain.arcs, at) - 1, 0, chain.links - 1))
-            across = (int(m.beam_angles(load.beam)[link]), load.direction[0] / size, load.direction[1] / size)
+            weights = chain.line.weights(np.array([at]))
             form = _displaced(m, load.beam, weights, load.direction)
-            softness = _force_softness(chain, at, weights)
-            return Row(name, form, driven=False, unit=per_force, softness=softness, across=across)
+            return Row(name, form, driven=False, unit=per_force, unit_load=_unit_force(m, load, at, weights))
         case _:
             chain = m.chains[load.beam]
             weights = integrated_weights(chain, load.along[0] * chain.length, load.along[1] * chain.length)
@@ -61,7 +61,7 @@ def load_row(m: Mechanism, name: str, load: Load) -> Row:
 
 
 def integrated_weights(chain: BeamChain, begin: float, end: float) -> csr_matrix:
-    """Weights (1, N + 2) of the nodes in the integral of C from one arc length to another."""
+    """Weights (1, N + 2) of the nodes in the integral of C between two arc lengths."""
     inner = chain.arcs[(chain.arcs > begin) & (chain.arcs < end)]
     places = np.concatenate([[begin], inner, [end]])
     half = 0.5 * np.diff(places)
@@ -85,29 +85,50 @@ def _weighted(indices: Ints, rest: Array, used: Ints, factors: Array) -> Form:
     )
 
 
-def _moment_softness(chain: BeamChain, at: float, links: Ints, weights: Array) -> float:
-    """Turn at ``at`` under a unit moment there, less the turn that the chain shows.
-
-    The moment acts before the place, and turns the beam by ∫ ds/EI; joint i of the chain has the share W_i, the sum of
-    the weights of all angles behind it.
-    """
-    behind = np.cumsum(np.bincount(links, weights, minlength=chain.links)[::-1])[::-1][1:]
-    share = np.clip((at - chain.borders[:-1]) / np.diff(chain.borders), 0.0, 1.0)
-    return float((share - behind**2) @ (1.0 / chain.stiffness))
+def _unit_moment(chain: BeamChain, at: float, links: Ints, weights: Array) -> UnitLoad:
+    """A unit moment: the moment of a joint is the sum of the weights of all angles behind the joint."""
+    behind = np.cumsum(np.bincount(links, weights, minlength=chain.links)[::-1])[::-1]
+    return UnitLoad(chain.name, at, 0, np.asarray(behind[1:], dtype=float), np.zeros(chain.links))
 
 
-def _force_softness(chain: BeamChain, at: float, weights: csr_matrix) -> float:
-    """Displacement across a straight beam at ``at`` under a unit force there, less the one that the chain shows.
-
-    A cantilever has the moment (at − s) before the place, ∫ M² ds/EI.  The chain has the moments of the weights about
-    the joints, and their sums as shear forces of the links.
-    """
-    arcs, joints = chain.arcs, chain.arcs[1:-1]
-    nodal = np.zeros(len(arcs))
+def _unit_force(m: Mechanism, load: BeamForce, at: float, weights: csr_matrix) -> UnitLoad:
+    """A unit force across the straight beam: moments of the nodes' weights about the joints, their sums as shear."""
+    chain, size = m.chains[load.beam], hypot(*load.direction)
+    nodal = np.zeros(chain.links + 1)
     nodal[weights.indices] = weights.data
     shear = np.cumsum(nodal[::-1])[::-1][1:]
-    moments = np.cumsum((nodal * arcs)[::-1])[::-1][2:] - joints * shear[1:]
-    shown = moments @ (moments / chain.stiffness - chain.skew * (shear[:-1] + shear[1:]))
-    shown += float((chain.lean * chain.link_length + chain.half_lean) @ shear**2)
-    places = np.union1d(chain.borders[chain.borders < at], at)
-    return float(chain.flexibility(places, lambda s: (at - s) ** 2).sum() - shown)
+    moments = np.cumsum((nodal * chain.arcs)[::-1])[::-1][2:] - chain.arcs[1:-1] * shear[1:]
+    link = int(np.clip(np.searchsorted(chain.arcs, at) - 1, 0, chain.links - 1))
+    angle = int(m.beam_angles(load.beam)[link])
+    return UnitLoad(chain.name, at, 1, moments, shear, angle, (load.direction[0] / size, load.direction[1] / size))
+
+
+def hidden_flexibility(m: Mechanism) -> Array:
+    """Flexibility (rows, rows) of loads at places of beams, less the flexibility of the chains.
+
+    A straight cantilever has the moments (a − s)^p before the place a of a load, p = 0 for a moment and 1 for a force,
+    and the flexibility ∫ M M′ ds/EI.
+    """
+    hidden = np.zeros((len(m.rows), len(m.rows)))
+    loads = [(number, row.unit_load) for number, row in enumerate(m.rows) if row.unit_load is not None]
+    for i, one in loads:
+        for j, other in loads:
+            if one.beam == other.beam:
+                hidden[i, j] = _exact(m.chains[one.beam], one, other) - _shown(m.chains[one.beam], one, other)
+    return hidden
+
+
+def _exact(chain: BeamChain, one: UnitLoad, other: UnitLoad) -> float:
+    until = min(one.at, other.at)
+    places = np.union1d(chain.borders[chain.borders < until], until)
+
+    def product(s: Array) -> Array:
+        return np.asarray((one.at - s) ** one.power * (other.at - s) ** other.power)
+
+    return float(chain.flexibility(places, product).sum()) if len(places) > 1 else 0.0
+
+
+def _shown(chain: BeamChain, one: UnitLoad, other: UnitLoad) -> float:
+    mixed = one.moments * (other.shear[:-1] + other.shear[1:]) + other.moments * (one.shear[:-1] + one.shear[1:])
+    bent = one.moments @ (other.moments / chain.stiffness) - 0.5 * chain.skew @ mixed
+    return float(bent + (chain.lean * chain.link_length + chain.half_lean) @ (one.shear * other.shear))

@@ -1,19 +1,19 @@
-"""Numbering of a mechanism's unknowns, and its rows.
+"""Numbering of a mechanism's unknowns, and rows.
 
 =======  ====================================================================================
 symbol   meaning
 =======  ====================================================================================
-z        unknowns: the chain of every beam, then bodies, then nodes that bodies carry, then multipliers
-p, n, θ  of a chain: position of the first node; force, angle, and position behind it, of each link
+z        unknowns: the chain of every beam, then bodies, then nodes carried by bodies, then multipliers
+p, n, θ  of a chain: position of the first node; force, angle and position of the rear node, of every link
 q, φ     displacement of a moving body's first point, rotation of the body
-f, μ     form of a row and its multiplier
+f, μ     form and multiplier of a row
 =======  ====================================================================================
 
-Joints, guides, drives, loads and stops are rows of one kind.  Either the value of a row is prescribed (joint, guide,
-drive, stop at its limit): f(z) = f*.  Or its force is prescribed (load, stop within its limits): μ = μ*.
-A row adds μ (f(z) − f*) to the Lagrangian, so that its force on the mechanism is −μ ∂f/∂z.
-Positions are in units of the longest beam, from the middle of the mechanism; forces and moments follow from the largest
-EI over that length.
+Joints, guides, drives, loads and stops are rows of the same kind.  Either the value of a row is prescribed (joint,
+guide, drive, stop at a limit): f(z) = f*.  Or the force of a row is prescribed (load, stop within the limits): μ = μ*.
+A row adds μ (f(z) − f*) to the Lagrangian and exerts the force −μ ∂f/∂z on the mechanism.
+Positions are in units of the longest beam, from the middle of the mechanism; units of force and moment follow from
+the largest EI over this length.
 """
 
 from __future__ import annotations
@@ -33,6 +33,26 @@ PER_LINK = 5
 """Unknowns of a link: force (2), angle, position of the node behind it (2)."""
 
 
+@dataclass(frozen=True, eq=False)
+class UnitLoad:
+    """A unit moment or a unit force across a straight beam, at a place.
+
+    Attributes:
+        beam, at: the beam's name and the arc length.
+        power: of the distance from the place in the moment along the beam: 0 of a moment, 1 of a force.
+        moments, shear: of the chain's joints (N,) and links (N + 1,) before the place.
+        angle: index of the link's angle, −1 of a moment; direction: of the force.
+    """
+
+    beam: str
+    at: float
+    power: int
+    moments: Array
+    shear: Array
+    angle: int = -1
+    direction: tuple[float, float] = (0.0, 0.0)
+
+
 @dataclass(frozen=True, slots=True)
 class Row:
     """A row.
@@ -43,8 +63,7 @@ class Row:
         driven: whether the value is prescribed at first.
         limit: whether the row is a stop: f ≥ 0, and the force only pushes.
         unit: f per unit (SI) of the load or drive that steps the row; of a load, μ per unit, with the sign of μ.
-        softness: change of f by a unit of its own force that the chain does not show; the energy is −softness μ²/2.
-        across: index of the angle and direction (2,) of a force on a beam, whose softness acts across the link alone.
+        unit_load: of a force or moment at a place of a beam.
     """
 
     name: str
@@ -52,8 +71,7 @@ class Row:
     driven: bool = True
     limit: bool = False
     unit: float = 0.0
-    softness: float = 0.0
-    across: tuple[int, float, float] | None = None
+    unit_load: UnitLoad | None = None
 
 
 @dataclass(eq=False)
@@ -85,7 +103,7 @@ class Mechanism:
                 self.bodies[name] = self.allocate(np.zeros(3))
 
     def allocate(self, values: Iterable[float]) -> int:
-        """Index of the first of new unknowns with these values at rest."""
+        """Index of the first of new unknowns with given values at rest."""
         index = len(self.rest)
         self.rest.extend(float(value) for value in values)
         return index
@@ -103,7 +121,7 @@ class Mechanism:
         return self.units.place(next(iter(self.scene.bodies[body].points.values())))
 
     def carried(self, body: str, place: Array, direction: Direction) -> Form:
-        """Coordinate along ``direction`` of what lies at ``place`` (2,) at rest and moves with a body."""
+        """Coordinate along ``direction`` of a place on a body, at ``place`` (2,) at rest."""
         if body not in self.bodies:
             return Form(float(np.dot(direction, place)))
         return carried_coordinate(self.bodies[body], self.reference(body), place, direction)
@@ -127,7 +145,7 @@ class Mechanism:
         return unknown(index, self.rest[index])
 
     def attach_node(self, body: str, place: Array) -> int:
-        """Index of the x of a new node that lies at ``place`` (2,) at rest and moves with a body."""
+        """Index of the x of a new node on a body, at ``place`` (2,) at rest."""
         node = self.allocate(place)
         for axis, direction in (("x", X_AXIS), ("y", Y_AXIS)):
             form = node_coordinate(node, direction) - self.carried(body, place, direction)
@@ -157,7 +175,7 @@ def mechanism_of(scene: Scene, links: Mapping[str, int], theory: Theory, *, corr
 
 
 def _units(scene: Scene) -> ChainUnits:
-    """Units: the longest beam, the largest EI over that length, the middle of the beams' ends."""
+    """Units: the longest beam, the largest EI over this length, the middle of the beams' ends."""
     length = max(arc_length(beam.curve) for beam in scene.beams.values())
     rigidity = max(
         scene.materials[beam.material].youngs_modulus

@@ -3,12 +3,12 @@
 =======  ====================================================================================
 symbol   meaning
 =======  ====================================================================================
-β        angle from the line between a stop's two points to the direction in which the beam leaves its pin
+β        angle from the line between a stop's two points to the beam's direction away from the pin
 β₀       β as drawn, in (−π, π]
 =======  ====================================================================================
 
 A stop has the rows β − β_least ≥ 0 and β_most − β ≥ 0.  The names of a joint's rows are ``beam@start.x``, ``.y``,
-``.turn``; a stop's rows are ``stop.least`` and ``stop.most``; a load's and a drive's row has its name.
+``.turn``; a stop's rows are ``stop.least`` and ``stop.most``; the row of a load or a drive has the same name.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ END: tuple[Literal["start"], Literal["end"]] = ("start", "end")
 
 
 def add_rows(m: Mechanism) -> None:
-    """Add all rows of the scene to its mechanism."""
+    """Add all rows of the scene to the mechanism."""
     for rows in (_guides, _beam_ends, _body_pins, _drives, _stops, _loads, _assembly):
         m.rows.extend(rows(m))
 
@@ -47,7 +47,7 @@ def ends_of(scene: Scene, beam: str) -> tuple[BeamEnd, BeamEnd]:
 
 
 def apart_ends(m: Mechanism) -> list[tuple[str, str]]:
-    """Beams and their ends that are drawn apart from their points, in a scene with an assembly."""
+    """Beams with ends drawn apart from their points, in a scene with an assembly."""
     found = []
     for beam in m.scene.beams if m.scene.assembly is not None else ():
         nodes = m.chains[beam].nodes[[0, -1]]
@@ -130,7 +130,7 @@ def stop_angle(m: Mechanism, name: str) -> Form:
 
 
 def _assembly(m: Mechanism) -> Iterator[Row]:
-    """Moments on ends that are drawn apart; a beam without such an end takes the moment at its end."""
+    """Moments on ends drawn apart, of other beams on the end."""
     if m.scene.assembly is None:
         return
     apart = dict(apart_ends(m))

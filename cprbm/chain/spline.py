@@ -9,11 +9,11 @@ Q        control polygon P − D²P/24
 C(s)     neutral line: the uniform cubic B-spline with the control polygon Q
 =======  ====================================================================================
 
-A chain whose elements have the constant curvature κ has its nodes at C − κ h²/8 n, on the tangents at the borders of
-elements.  The B-spline of P alone lies κ h²/6 inside the polygon; D²P/24 = κ h²/24 n makes up the difference, so that C
+A chain of elements with the constant curvature κ has nodes at C − κ h²/8 n, on the tangents at the borders of
+elements.  The B-spline of P alone lies κ h²/6 inside the polygon; D²P/24 = κ h²/24 n makes up the difference: C
 is right to fourth order.  The half links at both ends are continued to full links of the same curvature.
 C is linear in the nodes, has a continuous second derivative, and follows rigid motions exactly.
-At rest the nodes are those whose spline meets the neutral line at every joint.
+At rest the spline of the nodes meets the neutral line at every joint.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ LINEAR = np.array([[1.0, -1.0], [0.0, 1.0]])
 
 @dataclass(frozen=True, eq=False)
 class NeutralLine:
-    """Curve of one beam: pieces between ``arcs`` (count,), each linear in the nodes.
+    """Curve of a beam: pieces between ``arcs`` (count,), linear in the nodes.
 
     Attributes:
         control: matrix from nodes to control points.
@@ -89,10 +89,10 @@ class NeutralLine:
 
 
 def spline_line(arcs: Array) -> NeutralLine:
-    """Spline of a corrected chain: all pieces of one size, but half pieces at both ends."""
+    """Spline of a corrected chain: all pieces of equal size, but half pieces at both ends."""
     pieces = len(arcs) - 1
     offset = np.zeros(pieces)
-    # the first half link is the second half of its continued link
+    # the first half link is the second half of the continued link
     offset[0] = 0.5
     return NeutralLine(arcs, control_polygon(len(arcs)), CUBIC, np.full(pieces, arcs[2] - arcs[1]), offset)
 
@@ -103,7 +103,7 @@ def polygon_line(arcs: Array) -> NeutralLine:
 
 
 def control_polygon(count: int) -> csr_matrix:
-    """Matrix (count + 2, count) from nodes to control points, with one more control point beyond either end."""
+    """Matrix (count + 2, count) from nodes to control points, with a further control point beyond either end."""
     inner = identity(count, format="lil")
     # the outer links are half links: the continued link has twice their length
     inner[0, 0], inner[0, 1] = 2.0, -1.0
@@ -117,7 +117,7 @@ def control_polygon(count: int) -> csr_matrix:
 
 
 def nodes_through(places: Array, control: csr_matrix) -> Array:
-    """Nodes (count, 2) whose spline meets the inner ``places`` (count, 2); the outer two are kept."""
+    """Nodes (count, 2) of the spline through the inner ``places`` (count, 2); the outer two are kept."""
     count = len(places)
     inner = (control[1:-3] + 4.0 * control[2:-2] + control[3:-1]) / 6.0
     ends = identity(count, format="csr")

@@ -1,6 +1,6 @@
-"""The assembly: ends that are drawn apart from their points go to their points, before the first stage.
+"""The assembly: ends drawn apart from their points go to the points, before the first stage.
 
-Three parts: moments grow on the ends while these are free; the ends go straight to their points; the moments vanish.
+Three parts: moments grow on the free ends; the ends go straight to their points; the moments vanish.
 The rows of the ends have a prescribed force in the first part and a prescribed value in the others.  Stops act in the
 last part.
 """
@@ -49,7 +49,7 @@ def assembled(system: System, settings: Settings) -> Driver:
 
 
 def without_repeated(system: System, state: State) -> State:
-    """The state without rows that repeat others."""
+    """The state without repeated rows."""
     repeated = repeated_rows(system, state)
     return replace(state, driven=(state.driven | state.repeated) & ~repeated, repeated=repeated)
 
@@ -79,7 +79,7 @@ def _part(driver: Driver, way: Way, sentence: str) -> None:
 
 
 def _loose_rows(system: System) -> Flags:
-    """Rows of the ends that are drawn apart."""
+    """Rows of the ends drawn apart."""
     names = {f"{beam}@{end}.{axis}" for beam, end in apart_ends(system.mechanism) for axis in "xy"}
     return np.array([row.name in names for row in system.mechanism.rows], dtype=bool)
 

@@ -3,13 +3,13 @@
 =======  ====================================================================================
 symbol   meaning
 =======  ====================================================================================
-κ, φ     smallest curvature of the energy and its mode
+κ, φ     smallest curvature of the energy, mode
 τ        tangent dθ/dt of the branch
 t_c      fraction of the way at the critical point
 =======  ====================================================================================
 
 At a fold the branch turns back: τ grows along φ, and κ² is linear in t_c − t.  At a bifurcation another branch
-crosses: τ has no part in φ, and κ is linear in t_c − t.  A stop that opens may leave a state that is no minimum: κ is
+crosses: τ has no part in φ, and κ is linear in t_c − t.  After the opening of a stop the state may be no minimum: κ is
 positive just before, and the moment of the stop vanishes.
 """
 
@@ -65,14 +65,14 @@ class CriticalPoint:
 
 
 def opened_stop(before: Solved, after: Solved, t: float, what: str) -> CriticalPoint:
-    """Critical point at a stop that opens, with the states before and after it opens."""
+    """Critical point at an opening stop, with the states before and after."""
     mode = softest(after.factors)
     kept = softest(before.factors).curvature
     return CriticalPoint(t, 0.0, Loss.STOP, what, before, Mode(kept, mode.change), mode.curvature)
 
 
 def critical_point(trail: list[Reached], beyond: float, change: Array) -> CriticalPoint | None:
-    """The fold or bifurcation between the last minimum of a branch and ``beyond``; None where none explains its end.
+    """The fold or bifurcation between the last minimum of a branch and ``beyond``; None without an explanation.
 
     Args:
         trail: last minima on the branch in order.

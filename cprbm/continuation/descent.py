@@ -1,10 +1,10 @@
-"""Energy descent from a state that is no minimum to a minimum.
+"""Energy descent to a minimum.
 
 =======  ====================================================================================
 symbol   meaning
 =======  ====================================================================================
-α        strength of the springs that hold the links to the last state, energy α/2 Σ L (θ − θ_k)²
-κ, φ     smallest curvature and its mode
+α        strength of springs from the links to the last state, energy α/2 Σ L (θ − θ_k)²
+κ, φ     smallest curvature, mode
 =======  ====================================================================================
 
 Each step minimises Π plus the energy of the springs, so that Π falls from step to step.  The descent begins with the
@@ -57,7 +57,7 @@ SAME = 1e-6
 
 
 def descend(system: System, saddle: Solved, mode: Mode, target: Array, acting: Flags, iterations: int) -> Solved:
-    """The minimum under ``target`` to which the energy's decrease leads from a state at or beyond a critical point.
+    """The minimum under ``target``, by decrease of the energy from a state at or beyond a critical point.
 
     Raises:
         NotConvergedError: the descent does not end.
@@ -93,7 +93,7 @@ def descend(system: System, saddle: Solved, mode: Mode, target: Array, acting: F
 
 
 def _kicked(system: System, start: State, mode: Mode, acting: Flags, iterations: int) -> tuple[State, float]:
-    """The lower of the states after a first step in either sense of the mode, and the springs of that step.
+    """The lower of the states after a first step in either sense of the mode, and the springs' strength.
 
     Raises:
         NotConvergedError: no step works.

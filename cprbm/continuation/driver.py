@@ -1,4 +1,4 @@
-"""Load steps from one station to the next.
+"""Load steps between stations.
 
 =======  ====================================================================================
 symbol   meaning
@@ -8,12 +8,12 @@ t        fraction of the way to the next station
 =======  ====================================================================================
 
 A step starts Newton's method at the last state under the next targets.  A step is accepted if the equilibrium has a
-certificate and loses no direction, no stop changes in it, and the test for jumps finds the same branch.  Otherwise the
-step is halved; after an accepted step the next one is twice as long.  A step ends where a stop closes or opens.
+certificate and loses no direction, no stop changes, and the test for jumps finds the same branch.  Otherwise the
+step is halved; after an accepted step the next step is twice as long.  A step ends where a stop closes or opens.
 
-A step that is refused at the smallest size means that the branch ends.  The zero of κ then tells a fold from a
-bifurcation.  The stage says what follows: the end of the solve, or a descent to the minimum that the energy's decrease
-leads to.  Without a word of the stage only a fold is passed, and only to a state beside it.
+A step refused at the smallest size marks the end of the branch.  The zero of κ then tells a fold from a
+bifurcation.  The stage chooses the end of the solve or a descent to a minimum.  Without a
+choice of the stage only a fold is passed, and only to a state near by.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class StepError(Exception):
 
 @dataclass(frozen=True, eq=False)
 class Passed:
-    """A critical point on the way, its ``value`` and uncertainty (SI), and the minimum to which the descent led."""
+    """A critical point on the way, ``value`` and uncertainty (SI), and the minimum after the descent."""
 
     point: CriticalPoint
     value: float
@@ -77,7 +77,7 @@ class Passed:
 
 @dataclass(eq=False)
 class Driver:
-    """Load stepping of one system.
+    """Load stepping of a system.
 
     Attributes:
         system, settings: what is solved.
@@ -161,7 +161,7 @@ class Driver:
         return solved
 
     def _held(self, target: Array) -> Array:
-        """Targets with those of stops at zero: a closed stop holds its limit, an open one has no force."""
+        """Targets with zeros for stops: a closed stop stays at the limit, an open stop has no force."""
         return np.where(self.system.limits, 0.0, target)
 
     def _moving(self, way: Way) -> Array:
@@ -190,7 +190,7 @@ class Driver:
         return [Reached(t, after)]
 
     def _ended(self, way: Way, trail: list[Reached], t: float, beyond: Beyond, refused: StepError) -> list[Reached]:
-        """Leave a branch whose next step is refused at the smallest size; the trail from there on.
+        """Leave a branch at the smallest step; the trail from there on.
 
         Raises:
             StepError: the solve ends.
@@ -201,7 +201,7 @@ class Driver:
         return self._leave(way, point, point.last, beyond)
 
     def _locked(self, way: Way, t: float, trail: list[Reached], refused: StepError) -> CriticalPoint:
-        """The bifurcation of a straight beam that must become shorter.
+        """The bifurcation of a straight beam under shortening.
 
         Raises:
             StepError: something else keeps the step from being made.
@@ -254,7 +254,7 @@ class Driver:
         return f"{point.sentence} at {way.name} = {way.value(point.t):.6g}" if way.name else point.sentence
 
     def _landed(self, descent: Callable[[int], Solved], point: CriticalPoint, *, beside: bool) -> Solved | None:
-        """The minimum of a descent with its certificate; None without one, or where it is not beside as it must be."""
+        """The certified minimum of a descent; None without a minimum, or with a minimum too far away."""
         try:
             landed = descent(self.settings.iterations)
         except NotConvergedError:

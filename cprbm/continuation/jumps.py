@@ -1,4 +1,4 @@
-"""The test for a step from one branch of minima to another.
+"""The test for a step to another branch of minima.
 
 =======  ====================================================================================
 symbol   meaning
@@ -8,9 +8,9 @@ symbol   meaning
 Π₀′, Π₁′ power of the step at both ends; Π″ their rates
 =======  ====================================================================================
 
-On one branch Δθ is near the mean of both tangents, and the change of Π near Hermite's quadrature
-(Π₀′ + Π₁′)/2 + (Π₀″ − Π₁″)/12.  Steps on one branch reached 0.43 and 0.18 of the two limits' units in all built-in
-cases, steps to another branch 0.69 and 0.23 at least: one of the two tests is enough for an alarm.
+On a single branch Δθ is near the mean of both tangents, and the change of Π near Hermite's quadrature
+(Π₀′ + Π₁′)/2 + (Π₀″ − Π₁″)/12.  Steps on a single branch reached 0.43 and 0.18 in all
+built-in cases, steps to another branch 0.69 and 0.23 at least: either test is enough for an alarm.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ SMALLEST_WORK = 1e-9
 
 
 def jumped(before: Solved, after: Solved, change: Array) -> bool:
-    """True if a step between two minima, in which the targets ``change``, left the branch."""
+    """True if a step between two minima, with a ``change`` of the targets, left the branch."""
     system = before.system
     rates = tangent(before, change), tangent(after, change)
     angles = system.angles

@@ -3,11 +3,11 @@
 =======  ====================================================================================
 symbol   meaning
 =======  ====================================================================================
-e        event function of a stop: f within its limits, −μ at a limit; both are positive or zero
+e        event function of a stop: f of an open stop, −μ of a closed stop; both are positive or zero
 =======  ====================================================================================
 
-A step is solved with the rows frozen.  Where e < 0 at its end, the first zero of e is located by Brent's method; the
-step ends there, and the stop closes or opens.
+A step is solved with the rows frozen.  Where e < 0 at the end of the step, Brent's method locates the first zero of e.
+The step ends there, and the stop closes or opens.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ CHANGES = 20
 
 
 def event_values(solved: Solved, acting: Flags) -> Array:
-    """e of all rows; infinite for rows that are no acting stops."""
+    """e of all rows; infinite for all rows but acting stops."""
     state = solved.state
     values = np.where(state.driven, -state.multipliers(solved.system), solved.values)
     return np.where(solved.system.limits & acting, values, np.inf)
@@ -43,7 +43,7 @@ def event_values(solved: Solved, acting: Flags) -> Array:
 def first_event(
     before: Solved, after: Solved, acting: Flags, solve: Callable[[float], Solved]
 ) -> tuple[float, int] | None:
-    """Fraction of a step at the first event, and the number of its row; None without one.
+    """Fraction of a step at the first event, and the number of the row; None without an event.
 
     Args:
         before, after: the step.
@@ -61,7 +61,7 @@ def first_event(
 
 
 def changed(state: State, row: int, system: System) -> State:
-    """The state with one stop closed or opened."""
+    """The state with a stop closed or opened."""
     driven, z = state.driven.copy(), state.z.copy()
     driven[row] = not driven[row]
     z[system.rows.first + row] = 0.0
@@ -69,7 +69,7 @@ def changed(state: State, row: int, system: System) -> State:
 
 
 def with_stops(system: System, state: State, acting: Flags, iterations: int, springs: Springs | None = None) -> Solved:
-    """Equilibrium near a state in which no stop is passed and none pulls.
+    """Equilibrium near a state with all stops within limits or pushing.
 
     Raises:
         NotConvergedError: no equilibrium was found.

@@ -1,20 +1,20 @@
-"""Why no step leads on where beams cannot change their length: straight beams, and beams that are drawn taut.
+"""Why no step leads on where beams cannot change their length: straight beams and taut beams.
 
 =======  ====================================================================================
 symbol   meaning
 =======  ====================================================================================
-n, ν     forces of the links and multipliers of the rows that balance without any load
+n, ν     forces of the links and multipliers of the rows in balance without any load
 N        part of n along the link
-v, v_t   value that is stepped, value at which beams are taut
+v, v_t   stepped value, value of the taut state
 F        largest force of a link
 =======  ====================================================================================
 
-A straight beam between held ends has such forces n, ν, and a row that repeats others.  Their work in a change df* of
-the rows, −Σ ν df*, is Σ n times the elongation that the change asks of the beam.  A beam in bending alone cannot become
-longer; where it must become shorter, it buckles to either side, and the straight branch ends in a bifurcation at once.
+A straight beam between held ends has such forces n, ν, and a repeated row.  Their work in a change df* of
+the rows, −Σ ν df*, is Σ n times the elongation asked of the beam.  A beam in bending alone cannot become
+longer; under shortening the beam buckles to either side, and the straight branch ends in a bifurcation at once.
 
-A bent beam may be drawn until it is taut.  There F grows like (v_t − v)^−p, so that F/F′ = (v_t − v)/p falls evenly to
-zero, as it does for no force with a limit.
+A bent beam may be drawn taut.  There F grows like (v_t − v)^−p, so that F/F′ = (v_t − v)/p falls evenly to zero.
+No force with a limit has this law.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ NEAR = 2.0
 
 
 def elongation(solved: Solved, change: Array) -> float:
-    """Elongation that a change of the targets asks of a straight beam, over the longest beam; zero without one."""
+    """Elongation asked of a straight beam by a change of the targets, over the longest beam; zero without any."""
     system, repeated = solved.system, np.flatnonzero(solved.state.repeated)
     if not len(repeated):
         return 0.0
@@ -47,7 +47,7 @@ def elongation(solved: Solved, change: Array) -> float:
 
 
 def locked_beam(solved: Solved) -> str:
-    """Name of the straight beam that balances the force of a repeated row; empty without one."""
+    """Name of the straight beam in balance with a repeated row; empty without a repeated row."""
     system, repeated = solved.system, np.flatnonzero(solved.state.repeated)
     if not len(repeated):
         return ""

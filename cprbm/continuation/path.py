@@ -6,8 +6,8 @@ symbol   meaning
 t        fraction of the way, from 0 to 1
 f*, μ*   targets of the rows, linear in t
 Π        potential energy: strain energy and energy of the rows with prescribed force
-Π′       dΠ/dt of equilibria: Σ −μ df*/dt of prescribed values, Σ (f − c μ) dμ*/dt of prescribed forces
-c        softness of a row, which the chain does not show
+Π′       dΠ/dt of equilibria: Σ −μ df*/dt of prescribed values, Σ f dμ*/dt of prescribed forces,
+         less the part of the flexibility that the chain does not show
 =======  ====================================================================================
 """
 
@@ -19,7 +19,7 @@ import numpy as np
 
 from cprbm.chain import add_row_gradient, row_values, strain_energy
 from cprbm.equilibrium.newton import Solved
-from cprbm.equilibrium.system import State, System, softness_of
+from cprbm.equilibrium.system import State, System, hidden_forces
 from cprbm_scene.answer import Array
 
 
@@ -57,7 +57,8 @@ class Reached:
 def potential(system: System, state: State) -> float:
     """Π in units of moment."""
     mu = np.where(state.driven | state.repeated, 0.0, state.multipliers(system))
-    acting = mu @ row_values(state.z, system.rows) - 0.5 * (softness_of(system, state.z) @ mu**2)
+    hidden = hidden_forces(system, state.z, mu)
+    acting = mu @ row_values(state.z, system.rows) - 0.5 * hidden @ system.hidden @ hidden
     return float(strain_energy(state.z, system.links, system.joints) + acting)
 
 
@@ -74,9 +75,10 @@ def tangent(solved: Solved, change: Array) -> Array:
 
 def power(solved: Solved, change: Array) -> float:
     """Π′."""
-    mu = solved.state.multipliers(solved.system)
-    of_row = np.where(solved.state.driven, -mu, solved.values - softness_of(solved.system, solved.state.z) * mu)
-    return float(of_row @ change)
+    system, state = solved.system, solved.state
+    of_row = np.where(state.driven, -state.multipliers(system), solved.values)
+    hidden, changing = (hidden_forces(system, state.z, forces) for forces in (state.multipliers(system), change))
+    return float(of_row @ change - hidden @ system.hidden @ changing)
 
 
 def power_rate(solved: Solved, change: Array, rate: Array) -> float:
@@ -85,17 +87,14 @@ def power_rate(solved: Solved, change: Array, rate: Array) -> float:
     slope = np.zeros(system.size)
     add_row_gradient(state.z, system.rows, np.where(state.driven, 0.0, change), slope)
     forced = np.where(state.driven, 0.0, change)
-    return float(
-        slope @ rate - (change - forced) @ rate[system.rows.first :] - softness_of(system, state.z) @ forced**2
-    )
+    hidden = hidden_forces(system, state.z, forced)
+    return float(slope @ rate - (change - forced) @ rate[system.rows.first :] - hidden @ system.hidden @ hidden)
 
 
 def turned(before: Solved, after: Solved) -> float:
     """Largest turn of a link or a body between two states, rad."""
     system = before.system
-    change = np.abs(after.state.z - before.state.z)
-    bodies = [index + 2 for index in system.mechanism.bodies.values()]
-    return float(max(change[system.angles].max(), change[bodies].max(initial=0.0)))
+    return float(np.abs(after.state.z - before.state.z)[system.turns].max())
 
 
 def under(state: State, target: Array) -> State:

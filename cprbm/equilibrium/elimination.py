@@ -3,34 +3,33 @@
 =========  =====================================================================================
 symbol     meaning
 =========  =====================================================================================
-A          block of one chain in the Hessian of the Lagrangian, with three springs ρ at its first node and angle
+A          block of a chain in the Hessian of the Lagrangian, with three springs ρ at the first node and angle
 T          tridiagonal block of the angles
 B, D       coupling of the chains with the border, block of the border
-X          A⁻¹ Bᵀ, kept for the pairs of a border column and a chain that it touches
+X          A⁻¹ Bᵀ, kept for pairs of a border column and a touched chain
 G          Schur complement D − B X
 m          number of links of a chain
 =========  =====================================================================================
 
-Each chain is eliminated without pivoting: the balance of forces gives the forces n by sums from the end, T gives the
-angles, the link equations give the positions by sums from the start.  By Sylvester's law A has 2m negative eigenvalues,
-one for each link equation, and those of T, the number of negative pivots.
+The chains are eliminated without pivoting: the balance of forces gives the forces n by sums from the end, T gives the
+angles, the link equations give the positions by sums from the start.  By Sylvester's law A has 2m negative eigenvalues
+for the link equations, and as many as T has negative pivots.
 
-The border holds the bodies and the nodes that they carry, the multipliers of the rows, and three unknowns of each chain
-that take its springs away again (1 on the diagonal, √ρ beside it); a contact adds its multiplier and its local motions.
-The multiplier of a row with prescribed force is no unknown; 1 stands on its diagonal.
+The border holds bodies, nodes carried by bodies, the multipliers of the rows, and three unknowns per chain against the
+springs (1 on the diagonal, √ρ beside the diagonal).  A contact adds a multiplier and local motions.
+The multiplier of a row with prescribed force is no unknown; 1 stands on the diagonal.
 
-So the Hessian has neg(A) + neg(G) negative eigenvalues.  Each equality takes one: what is left is the number of
-independent directions in which the energy falls.
+So the Hessian has neg(A) + neg(G) negative eigenvalues.  The equalities account for as many; the
+rest is the number of independent directions with falling energy.
 """
 
 from __future__ import annotations
 
-from math import cos, sin
+from math import cos, isfinite, sin
 from typing import NamedTuple
 
-from numba import njit
-
 from cprbm.chain import Blocks, RowArrays
+from cprbm.chain.compiled import compiled
 from cprbm.chain.mechanism import PER_LINK
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -72,9 +71,9 @@ class Border(NamedTuple):
     entry_value: Array
 
 
-@njit(cache=True)
+@compiled
 def factor_chains(beams: Beams, blocks: Blocks, pivot: Array, ratio: Array) -> int:  # pragma: no cover
-    """Factor T of all chains in place of ``pivot`` and ``ratio``; the number of negative pivots."""
+    """Write the inverse pivots of T of all chains, and their ratios; the number of negative pivots."""
     negative = 0
     for beam in range(beams.first.size):
         start = beams.first_link[beam]
@@ -83,19 +82,20 @@ def factor_chains(beams: Beams, blocks: Blocks, pivot: Array, ratio: Array) -> i
             if j == start:
                 pivot[j] += beams.springs[beam, 2]
             else:
-                ratio[j] = blocks.next_turn[j - 1] / pivot[j - 1]
+                ratio[j] = blocks.next_turn[j - 1] * pivot[j - 1]
                 pivot[j] -= ratio[j] * blocks.next_turn[j - 1]
             if pivot[j] == 0.0:
                 pivot[j] = LEAST_PIVOT
             negative += pivot[j] < 0.0
+            pivot[j] = 1.0 / pivot[j]
     return negative
 
 
-@njit(cache=True)
+@compiled
 def solve_chain(
     beams: Beams, beam: int, blocks: Blocks, pivot: Array, ratio: Array, x: Array
 ) -> None:  # pragma: no cover
-    """Solve A x = b in place; ``x`` holds the unknowns of one chain."""
+    """Solve A x = b in place; ``x`` holds the unknowns of a chain."""
     m, start = beams.links[beam], beams.first_link[beam]
     C, K = blocks.coupling, blocks.compliance
     nx, ny = x[5 * m], x[5 * m + 1]
@@ -113,9 +113,9 @@ def solve_chain(
         ny += x[i + 1]
     for j in range(1, m):
         x[5 * j + 4] -= ratio[start + j] * x[5 * j - 1]
-    x[5 * m - 1] /= pivot[start + m - 1]
+    x[5 * m - 1] *= pivot[start + m - 1]
     for j in range(m - 2, -1, -1):
-        x[5 * j + 4] = x[5 * j + 4] / pivot[start + j] - ratio[start + j + 1] * x[5 * j + 9]
+        x[5 * j + 4] = x[5 * j + 4] * pivot[start + j] - ratio[start + j + 1] * x[5 * j + 9]
     px, py = nx / beams.springs[beam, 0], ny / beams.springs[beam, 1]
     x[0], x[1] = px, py
     bx, by = 0.0, 0.0
@@ -136,7 +136,7 @@ def solve_chain(
         bx, by = nx, ny
 
 
-@njit(cache=True)
+@compiled
 def border_block(z: Array, rows: RowArrays, driven: Flags, border: Border, G: Array) -> None:  # pragma: no cover
     """Write D: rows beside bodies and carried nodes, second derivatives by rotations, springs."""
     first, at = border.first, border.rows
@@ -160,7 +160,7 @@ def border_block(z: Array, rows: RowArrays, driven: Flags, border: Border, G: Ar
             G[i, at + r] += B * a - A * b
 
 
-@njit(cache=True)
+@compiled
 def eliminate(
     beams: Beams, blocks: Blocks, pivot: Array, ratio: Array, driven: Flags, border: Border, X: Array, G: Array
 ) -> int:  # pragma: no cover
@@ -187,11 +187,25 @@ def eliminate(
     return negative
 
 
-@njit(cache=True)
+@compiled
+def negative_pivots(factored: Array, order: Ints) -> int:  # pragma: no cover
+    """Number of negative eigenvalues of LAPACK's factors after Bunch and Kaufman; −1 if a pivot is not finite."""
+    negative, doubles = 0, 0
+    for i in range(order.size):
+        if not isfinite(factored[i, i]):
+            return -1
+        if order[i] < 0:
+            doubles += 1
+        elif factored[i, i] < 0.0:
+            negative += 1
+    return negative + doubles // 2
+
+
+@compiled
 def reduce_load(
     beams: Beams, blocks: Blocks, pivot: Array, ratio: Array, driven: Flags, border: Border, load: Array, reduced: Array
 ) -> None:  # pragma: no cover
-    """Solve all chains for a load in place, and subtract B times that from the load of the border."""
+    """Solve all chains for a load in place, and subtract B times the solution from the border's load."""
     for beam in range(beams.first.size):
         first, size = beams.first[beam], 2 + PER_LINK * beams.links[beam]
         solve_chain(beams, beam, blocks, pivot, ratio, load[first : first + size])
@@ -201,7 +215,7 @@ def reduce_load(
             reduced[border.pair_column[border.entry_pair[t]]] -= border.entry_value[t] * load[border.entry_index[t]]
 
 
-@njit(cache=True)
+@compiled
 def restore(beams: Beams, border: Border, X: Array, solution: Array, load: Array) -> None:  # pragma: no cover
     """Subtract X times the border's solution from the chains' part."""
     for q in range(border.pair_column.size):

@@ -1,7 +1,7 @@
-"""Factors of the Hessian at a state, its inertia, and solutions with it.
+"""Factors of the Hessian at a state, inertia and solutions.
 
-The chains are eliminated by :mod:`cprbm.equilibrium.elimination`; LAPACK factors the border after Bunch and Kaufman,
-whose blocks of two have one negative eigenvalue.
+The chains are eliminated by :mod:`cprbm.equilibrium.elimination`; LAPACK factors the border after Bunch and Kaufman;
+a block of two has a single negative eigenvalue.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 from scipy.linalg.lapack import dsytrf, dsytrs
 
 from cprbm.chain import Blocks, add_row_gradient, empty_blocks, evaluate_chains, row_values
-from cprbm.equilibrium.elimination import border_block, eliminate, reduce_load, restore
+from cprbm.equilibrium.elimination import border_block, eliminate, negative_pivots, reduce_load, restore
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -23,7 +23,7 @@ class SingularError(ArithmeticError):
 
 @dataclass(frozen=True, slots=True)
 class Springs:
-    """Springs that hold all links to the angles ``anchor`` (links,): energy ``strength``/2 Σ L (θ − θ₀)²."""
+    """Springs from all links to the angles ``anchor`` (links,): energy ``strength``/2 Σ L (θ − θ₀)²."""
 
     strength: float
     anchor: Array
@@ -31,7 +31,7 @@ class Springs:
 
 @dataclass(frozen=True, eq=False)
 class Factors:
-    """Factors at one state; ``lost`` is the number of independent directions in which the energy falls."""
+    """Factors at a state; ``lost`` is the number of independent directions with falling energy."""
 
     system: System
     driven: Flags
@@ -86,11 +86,9 @@ def factorise(system: System, state: State, springs: Springs | None = None) -> t
     border_block(state.z, system.rows, state.driven, border, G)
     pivot, ratio, columns = np.zeros(count), np.zeros(count), np.empty(border.pair_offset[-1])
     negative = eliminate(system.beams, blocks, pivot, ratio, state.driven, border, columns, G)
-    if not np.isfinite(G).all():
-        raise SingularError("the Hessian is not finite")
     factored, order, info = dsytrf(G, lower=1, overwrite_a=1)
-    if info > 0:
+    of_border = negative_pivots(factored, order)
+    if info > 0 or of_border < 0:
         raise SingularError("the border has a pivot of zero")
-    negative += int(np.sum((factored.diagonal() < 0.0) & (order > 0))) + int(np.sum(order < 0)) // 2
-    lost = negative - int(state.driven.sum())
+    lost = negative + of_border - int(state.driven.sum())
     return Factors(system, state.driven, blocks, pivot, ratio, columns, factored, order, lost), gradient

@@ -1,7 +1,7 @@
 """Newton's method for an equilibrium with fixed rows.
 
 The first iteration starts from the last state under new targets and so makes the prediction along the path's tangent.
-Later iterations converge quadratically; where round-off stops them, the last correction is as small as it gets.
+Later iterations converge quadratically; at the level of round-off the last correction stays small.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ REPEATED = 1e-9
 
 
 class NotConvergedError(Exception):
-    """Newton's method found no equilibrium; ``locked`` names the row that the other rows contradict."""
+    """Newton's method found no equilibrium; ``locked`` names the contradicted row."""
 
     def __init__(self, reason: str, locked: str = "") -> None:
         super().__init__(reason)
@@ -43,7 +43,7 @@ class NotConvergedError(Exception):
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """An equilibrium, the Hessian's factors and the gradient there, and the Newton iterations it took."""
+    """An equilibrium, the Hessian's factors and the gradient there, and the number of Newton iterations."""
 
     system: System
     state: State
@@ -58,7 +58,7 @@ class Solved:
 
 
 def equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Solved:
-    """Equilibrium near a state under its targets.
+    """Equilibrium near a state under the state's targets.
 
     Args:
         system: the mechanism.
@@ -71,7 +71,7 @@ def equilibrium(system: System, start: State, iterations: int, springs: Springs 
     """
     solved = _iterated(system, start, iterations, springs)
     while (missed := _contradicted(solved)) is not None:
-        # a row that repeats others in a straight beam may tell more about a bent one
+        # a repeated row of a straight beam may be independent once the beam is bent
         state = solved.state
         repeated = repeated_rows(system, state)
         if repeated.sum() >= state.repeated.sum():
@@ -83,7 +83,7 @@ def equilibrium(system: System, start: State, iterations: int, springs: Springs 
 
 
 def _iterated(system: System, start: State, iterations: int, springs: Springs | None) -> Solved:
-    """Equilibrium with the rows that a state prescribes.
+    """Equilibrium with the prescribed rows of a state.
 
     Raises:
         NotConvergedError: no equilibrium was found.
@@ -96,8 +96,8 @@ def _iterated(system: System, start: State, iterations: int, springs: Springs | 
         for iteration in range(1, iterations + 1):
             factors, gradient = factorise(system, state, springs)
             change = -factors.solve(gradient)
-            turn = float(np.abs(change[system.angles]).max())
-            size = max(turn, float(np.abs(change[system.nodes]).max()))
+            turn = float(np.abs(change[system.turns]).max())
+            size = float(np.abs(change[system.motions]).max())
             if not np.isfinite(size):
                 raise NotConvergedError("the correction is not finite")
             share = min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0
@@ -112,7 +112,7 @@ def _iterated(system: System, start: State, iterations: int, springs: Springs | 
 
 
 def _contradicted(solved: Solved) -> int | None:
-    """Number of a repeated row that does not hold, or None."""
+    """Number of a violated repeated row, or None."""
     state = solved.state
     if not state.repeated.any():
         return None

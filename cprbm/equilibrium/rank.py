@@ -1,16 +1,16 @@
-"""Rows that repeat other rows.
+"""Repeated rows.
 
 =======  ====================================================================================
 symbol   meaning
 =======  ====================================================================================
-J        derivatives of the prescribed rows by coordinates in which the chains' link equations hold
+J        derivatives of the prescribed rows by coordinates that satisfy the link equations
 G        J Jᵀ with a unit diagonal
 =======  ====================================================================================
 
-Without an axial compliance the positions of a chain follow from its first node and the angles of its links.  A parallel
+Without an axial compliance the positions of a chain follow from the first node and the links' angles.  A parallel
 guide of three straight blades has more rows then than the coordinates can tell apart: the third blade keeps the plate
 level, as the other two do.  Such rows are left out and checked afterwards.  Once the blades are bent, all rows count.
-The rank is that of Cholesky's factorisation of G with pivots.
+Cholesky's factorisation of G with pivots gives the rank.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def row_derivatives(system: System, state: State) -> Array:
         nodes = start + PER_LINK * np.arange(links + 1)
         angles = nodes[:-1] + PER_LINK - 1
         along = np.diff(state.z[nodes]), np.diff(state.z[nodes + 1])
-        # a turn of a link moves all nodes behind it
+        # a turn of a link moves all nodes behind the link
         behind = [np.cumsum(gradient[:, nodes + axis][:, ::-1], axis=1)[:, ::-1] for axis in (0, 1)]
         gradient[:, angles] += along[0] * behind[1][:, 1:] - along[1] * behind[0][:, 1:]
         for axis in (0, 1):

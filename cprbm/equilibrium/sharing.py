@@ -1,4 +1,4 @@
-"""Forces of rows that repeat others, in rigid links the limit of a small axial compliance.
+"""Forces of repeated rows, in rigid links the limit of a small axial compliance.
 
 A repeated row's unit force is balanced by the other rows and the chains' forces, in any amount.  A small axial
 compliance chooses the amounts with the least energy of stretching, Σ L N²/EA, with the same EA of all links.
@@ -15,7 +15,7 @@ from cprbm_scene.answer import Array
 
 
 def balanced_forces(solved: Solved, row: int) -> Array:
-    """Changes (size,) of all unknowns that balance a unit force of a repeated row; only forces do not vanish."""
+    """Changes (size,) of all unknowns in balance with a unit force of a repeated row; displacements vanish."""
     system = solved.system
     load, weight = np.zeros(system.size), np.zeros(len(system.rows.constant))
     weight[row] = 1.0
@@ -26,7 +26,7 @@ def balanced_forces(solved: Solved, row: int) -> Array:
 
 
 def shared_multipliers(solved: Solved) -> Array:
-    """Unknowns (size,) of a solved state whose repeated rows take their share."""
+    """Unknowns (size,) of a solved state with shared forces of repeated rows."""
     system, z = solved.system, solved.state.z.copy()
     rows = np.flatnonzero(solved.state.repeated)
     if not len(rows):

@@ -1,4 +1,4 @@
-"""Smallest curvature of the potential energy on the feasible directions, and its mode.
+"""Smallest curvature of the potential energy on the feasible directions, and the mode.
 
 =======  ====================================================================================
 symbol   meaning
@@ -8,8 +8,8 @@ M        lengths of the links: the metric is ∫ dθ² ds
 κ, φ     √M S √M x = x/κ, φ = x/√M
 =======  ====================================================================================
 
-S vanishes on directions that are not feasible, so that its largest eigenvalue belongs to the smallest curvature of a
-minimum, and its most negative one to the curvature nearest to zero of a state that is none.  κ is in EI/ℓ².
+S vanishes on infeasible directions.  The largest eigenvalue belongs to the smallest curvature of a minimum.  At other
+states the most negative eigenvalue belongs to the negative curvature nearest to zero.  κ is in EI/ℓ².
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ DENSE = 12
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """Smallest ``curvature`` κ and the change of all unknowns (size,) along its mode, the largest turn 1 rad."""
+    """Smallest ``curvature`` κ and the change of all unknowns (size,) along the mode, the largest turn 1 rad."""
 
     curvature: float
     change: Array

@@ -1,7 +1,7 @@
-"""A mechanism as arrays, numbered once, and the states that the solver moves.
+"""A mechanism as arrays, numbered once, and the solver's states.
 
-A state names its unknowns z, which rows have a prescribed value, and the targets of the rows: the value f*, or the
-multiplier μ* of a row with prescribed force.  Rows that only repeat others are left out
+A state has unknowns z, rows with a prescribed value, and targets of the rows: the value f*, or the
+multiplier μ* of a row with prescribed force.  Repeated rows are left out
 (:mod:`cprbm.equilibrium.rank`).
 """
 
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm.chain import Joints, Links, Mechanism, RowArrays, link_arrays, row_arrays
+from cprbm.chain import Joints, Links, Mechanism, RowArrays, hidden_flexibility, link_arrays, row_arrays
 from cprbm.chain.mechanism import PER_LINK
 from cprbm.equilibrium.elimination import Beams, Border
 from cprbm_scene.answer import Array, Flags, Ints
@@ -19,16 +19,17 @@ from cprbm_scene.answer import Array, Flags, Ints
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """Everything that does not change while a scene is solved.
+    """Arrays of a mechanism, constant during a solve.
 
     Attributes:
         mechanism: the numbering and the rows.
         links, joints, rows, beams, border: arrays of the kernels.
         angles, nodes: indices of all links' angles, and of the x and y of all nodes.
+        turns, motions: indices of all angles, and of all angles and displacements, bodies included.
         metric: lengths of the links, the weights of their angles in a mode.
         limits: which rows are stops.
-        softness: of the rows, which the chain does not show; the angle and direction (rows, 2) of a force on a beam.
-        lean: shear compliance β of the links that stands for their odd moment.
+        hidden: flexibility (rows, rows) of loads at places of beams without the chain's share.
+        lean: shear compliance β of the links, for the odd moment of their elements.
         lengthening: whether links have an axial compliance.
     """
 
@@ -40,9 +41,11 @@ class System:
     border: Border
     angles: Ints
     nodes: Ints
+    turns: Ints
+    motions: Ints
     metric: Array
     limits: Flags
-    softness: tuple[Array, Ints, Array]
+    hidden: Array
     lean: Array
     lengthening: bool
 
@@ -54,7 +57,7 @@ class System:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Unknowns z, rows with a prescribed value, targets of all rows, and rows that repeat others."""
+    """Unknowns z, rows with a prescribed value, targets of all rows, and repeated rows."""
 
     z: Array
     driven: Flags
@@ -67,45 +70,49 @@ class State:
 
 
 def system_of(mechanism: Mechanism) -> System:
-    """Number a mechanism whose rows are complete."""
+    """Number a mechanism with all rows."""
     links, joints = link_arrays(mechanism)
     rows = row_arrays(mechanism)
     beams = _beams(mechanism)
     nodes = np.concatenate([mechanism.beam_nodes(name) for name in mechanism.chains])
+    angles = links.first + PER_LINK - 1
+    rotations = [index + 2 for index in mechanism.bodies.values()]
+    border = _border(mechanism, rows, beams)
     return System(
         mechanism=mechanism,
         links=links,
         joints=joints,
         rows=rows,
         beams=beams,
-        border=_border(mechanism, rows, beams),
-        angles=links.first + PER_LINK - 1,
+        border=border,
+        angles=angles,
         nodes=np.stack([nodes, nodes + 1], axis=1),
+        turns=np.concatenate([angles, rotations]).astype(np.int64),
+        motions=np.concatenate([nodes, nodes + 1, angles, np.arange(border.first, rows.first)]).astype(np.int64),
         metric=links.length,
         limits=np.array([row.limit for row in mechanism.rows], dtype=bool),
-        softness=_softness(mechanism),
+        hidden=hidden_flexibility(mechanism),
         lean=np.concatenate([chain.lean for chain in mechanism.chains.values()]),
         lengthening=bool(np.any(links.stretch)),
     )
 
 
-def softness_of(system: System, z: Array) -> Array:
-    """Softness of all rows at a state; that of a force on a beam by its part across the link."""
-    softness, angle, direction = system.softness
-    turn = z[np.maximum(angle, 0)]
-    across = direction[:, 1] * np.cos(turn) - direction[:, 0] * np.sin(turn)
-    return np.asarray(softness * np.where(angle < 0, 1.0, across**2))
-
-
-def _softness(m: Mechanism) -> tuple[Array, Ints, Array]:
-    across = [row.across or (-1, 0.0, 0.0) for row in m.rows]
-    softness = np.array([row.softness for row in m.rows], dtype=float)
-    direction = np.array([each[1:] for each in across], dtype=float).reshape(-1, 2)
-    return softness, np.array([each[0] for each in across], dtype=np.int64), direction
+def hidden_forces(system: System, z: Array, mu: Array) -> Array:
+    """Multipliers (rows,) of loads at places of beams at a state, of forces the parts across their links."""
+    loads = [row.unit_load for row in system.mechanism.rows]
+    across = [
+        0.0
+        if load is None
+        else 1.0
+        if load.angle < 0
+        else load.direction[1] * np.cos(z[load.angle]) - load.direction[0] * np.sin(z[load.angle])
+        for load in loads
+    ]
+    return np.asarray(across * mu)
 
 
 def rest_state(system: System) -> State:
-    """The state as drawn: ends that are drawn apart from their points violate their rows."""
+    """The state as drawn: ends drawn apart from their points violate rows."""
     rows = system.mechanism.rows
     z = np.concatenate([system.mechanism.rest, np.zeros(len(rows))])
     driven = np.array([row.driven for row in rows], dtype=bool)

@@ -39,7 +39,7 @@ PLAIN = (
 
 @dataclass(eq=False)
 class Run:
-    """A scene with its mechanism, before and while it is solved.
+    """A scene with its mechanism, before and during the solve.
 
     Attributes:
         scene, settings: the question.
@@ -75,7 +75,7 @@ class Run:
         with one_thread():
             ending, sentence = self._solve()
             if ending is Ending.TURNED_TOO_FAR and self.settings.formulation == "auto":
-                # elements longer than the bends between them have no corrections
+                # elements longer than the bends have no corrections
                 self.system = self._system(corrected=False)
                 self.stations, self.critical, self.gone_over, self.values = [], [], [], {}
                 self.notes = [PLAIN]
@@ -109,7 +109,7 @@ class Run:
         return Ending.COMPLETED, Ending.COMPLETED.value
 
     def _go(self, driver: Driver, stage: Stage, station: float) -> None:
-        """Follow the path to a station and add its answer.
+        """Follow the path to a station and add the answer.
 
         Raises:
             StepError: the station was not reached, or its certificate does not hold.

@@ -1,4 +1,4 @@
-"""A solved state as its results read it: unknowns with the forces of all rows, and the beams in it."""
+"""A solved state for the results: unknowns with the forces of all rows, and lines of beams."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from cprbm_scene.answer import Array
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A solved state; ``theory`` is that of the links, ``loads`` the values (SI) of all loads."""
+    """A solved state; ``loads`` are the values (SI) of all loads; ``shearing`` tells the theory ``shear``."""
 
     solved: Solved
     loads: dict[str, float]
@@ -35,7 +35,7 @@ class View:
 
     @cached_property
     def z(self) -> Array:
-        """Unknowns, with the forces of rows that repeat others."""
+        """Unknowns, with the forces of repeated rows."""
         return shared_multipliers(self.solved)
 
     @cached_property
@@ -58,11 +58,13 @@ class View:
 
     def angles(self, beam: str, s: Array) -> Array:
         """Angles of the sections (k,) at arc lengths ``s``."""
-        links, weights = self.chain(beam).angle_weights(s)
-        return np.asarray((weights * self.z[self.mechanism.beam_angles(beam)][links]).sum(axis=1))
+        chain = self.chain(beam)
+        links, weights = chain.angle_weights(s)
+        turned = self.z[self.mechanism.beam_angles(beam)] - chain.link_angle
+        return np.asarray(chain.rest_angle(s) + (weights * turned[links]).sum(axis=1))
 
     def multiplier(self, row: str) -> float:
-        """μ of a row; zero for a row that does not exist."""
+        """μ of a row; zero without such a row."""
         number = self.numbers.get(row)
         return 0.0 if number is None else float(self.z[self.solved.system.rows.first + number])
 

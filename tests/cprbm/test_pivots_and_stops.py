@@ -96,8 +96,8 @@ def test_an_assembled_beam_is_the_elastica(moment):
         assert station.values["stop.angle"] == pytest.approx([0.5 * np.pi + phi], abs=2e-3)
         assert station.values["O.reaction_moment"] == pytest.approx([-alpha * x * MOMENT], rel=4.4 / links**2)
         errors.append(np.hypot(*(station.values["T.reaction"] / FORCE - [0.0, alpha])))
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
-    assert errors[1] < 2e-2 * alpha
+    assert errors[0] / errors[1] == pytest.approx(16.0, rel=0.1)
+    assert errors[1] < 2e-4 * alpha
 
 
 def test_a_stop_that_the_assembled_end_is_beyond_forbids_it():

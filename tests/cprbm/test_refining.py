@@ -18,8 +18,7 @@ from cprbm.model import Fit, Kinks, build
 from cprbm.point import point_at
 from cprbm.refining import BEYOND, SHARE, all_zones, carried_over, coarser, ends_of, fits, fitted, long_ones
 from cprbm.zones import Zone
-from cprbm_scene import Ending, scene_from
-from tests.cprbm.scenes import cantilever_data, force, hinge
+from tests.cprbm.scenes import hinge
 from tests.cprbm.test_circle import BEAM, RADIUS, scene_of
 from tests.references.wrapped import Wrapped
 
@@ -36,23 +35,6 @@ def test_many_links_are_reached_through_quarters_and_few_at_once():
     assert family[-1] == 1281
     assert family[0] <= 80
     assert all(fine <= 4 * coarse for coarse, fine in pairwise(family))
-
-
-@pytest.mark.parametrize("links", [[9], [5, 9]])
-@pytest.mark.parametrize("arrives", [True, False])
-def test_only_what_did_not_arrive_by_a_coarse_mesh_is_gone_again_without_it(monkeypatch, links, arrives):
-    gone = []
-
-    class Noted(March):
-        def run(self):
-            gone.append([settings.links for settings in self.family])
-            return super().run() if arrives else (Ending.STEP_TOO_SMALL, "nothing was tried")
-
-    monkeypatch.setattr("cprbm.solver.March", Noted)
-    monkeypatch.setattr("cprbm.solver.coarser", lambda asked: tuple(Settings(links=n) for n in links))
-    answer = cprbm.answer(scene_from(cantilever_data(force(0.3, -1.0), [0.4])), Settings(links=9))
-    assert answer.completed == arrives
-    assert gone == ([links] if arrives or len(links) == 1 else [links, [9]])
 
 
 def test_beams_with_few_links_keep_some_and_the_papers_meshes_are_not_coarsened():

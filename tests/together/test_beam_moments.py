@@ -84,17 +84,16 @@ def test_two_moments_in_one_element_turn_each_other(solver: str, error: float) -
 
 
 def test_in_a_clamped_arch_both_go_to_the_same() -> None:
-    # reference: the other solver, by Richardson's extrapolation where the order is two
+    # reference: the other solver; the order is three where moments act within elements
     asked = ("R.reaction", "R.reaction_moment", "scene.potential_energy", "beam.bending_stress")
     data = loaded(ended(weld("G")), AT, 4.0 * MOMENT, *asked)
-    coarse, fine, finest = (station(data, "cprbm", n).values for n in (40, 80, 160))
+    coarse, finest = (station(data, "cprbm", n).values for n in (40, 160))
     reference = station(data, "fea", 80).values
     for name, value in reference.items():
         size = 4.0 * MOMENT if name == "R.reaction_moment" else np.max(np.abs(value))
-        errors = [np.max(np.abs(each[name] - value)) / size for each in (coarse, fine, finest)]
-        assert 3.5 < errors[0] / errors[1] < 4.5
-        assert 3.5 < errors[1] / errors[2] < 4.5
-        assert np.max(np.abs(finest[name] + (finest[name] - fine[name]) / 3.0 - value)) < 2e-5 * size
+        errors = [np.max(np.abs(each[name] - value)) / size for each in (coarse, finest)]
+        assert errors[0] / errors[1] > 20.0
+        assert errors[1] < 2e-5
 
 
 @pytest.mark.parametrize("at", [0.0, 1.0])

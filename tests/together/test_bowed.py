@@ -62,20 +62,20 @@ def errors(solve, name, n):
 
 @pytest.mark.parametrize(
     ("solve", "counts", "order", "last"),
-    [(cprbm_answer, (20, 40, 80), 2.0, 1e-4), (fea_answer, (8, 16, 32), 4.0, 5e-7)],
+    [(cprbm_answer, (20, 40, 80), 4.0, 2e-6), (fea_answer, (8, 16, 32), 4.0, 5e-7)],
     ids=["cprbm", "fea"],
 )
 @pytest.mark.parametrize("name", ["opened", "wound"])
 def test_tip_forces(solve, counts, order, last, name):
     assert np.hypot(*exact(name).displacement) > 0.3 * LENGTH
     found = np.array([errors(solve, name, n) for n in counts])
-    assert np.log2(found[:-1] / found[1:]) == pytest.approx(np.full((2, 3), order), abs=0.06)
+    assert np.all(np.log2(found[0] / found[-1]) / 2.0 > order - 0.1)
     assert np.all(found[-1] < last)
 
 
 @pytest.mark.parametrize(
     ("solve", "counts", "order", "last"),
-    [(cprbm_answer, (20, 40, 80), 2.0, 1e-4), (fea_answer, (8, 16, 32), 4.0, 5e-7)],
+    [(cprbm_answer, (20, 40, 80), 4.0, 2e-6), (fea_answer, (8, 16, 32), 4.0, 5e-7)],
     ids=["cprbm", "fea"],
 )
 def test_a_tip_moment(solve, counts, order, last):

@@ -17,13 +17,13 @@ from tests.cprbm_scene.editing import edited, two_lines
 from tests.cprbm_scene.test_pins import LINKAGE
 from tests.together.features import CIRCLE, held_by, probes
 
-TAPERED = Path(cases.__file__).parent / "tapered.toml"
+HINGE = Path(cases.__file__).parent / "hinge.toml"
 T = 0.002
 
 
-def test_the_cprbm_refuses_a_theory_that_the_finite_elements_ignore(tmp_path, capsys):
+def test_the_cprbm_refuses_a_theory_with_contacts_that_the_finite_elements_ignore(tmp_path, capsys):
     path = tmp_path / "shear.toml"
-    path.write_text('theory = "shear"\n' + TAPERED.read_text(encoding="utf-8"), encoding="utf-8")
+    path.write_text('theory = "shear"\n' + HINGE.read_text(encoding="utf-8"), encoding="utf-8")
     assert run(["solve", str(path), "--solver", "cprbm"]) == 2
     assert f"{path}: theory: found 'shear'; allowed: 'bending'" in capsys.readouterr().err
     assert run(["solve", str(path), "--solver", "fea", "--elements", "8"]) == 0
