@@ -16,7 +16,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.newton import NotConvergedError, Solved, equilibrium
@@ -51,13 +50,18 @@ def first_event(
         solve: state at a fraction of the step.
     """
     begin, end = event_values(before, acting), event_values(after, acting)
+    happened = np.flatnonzero(end < -TOUCHING)
+    if not len(happened):
+        return None
+    from scipy.optimize import brentq  # scenes without stops load no optimisers
+
     found = []
-    for row in np.flatnonzero(end < -TOUCHING):
+    for row in happened:
         if begin[row] <= TOUCHING:
             return 0.0, int(row)
         share = brentq(lambda share, row=row: float(event_values(solve(share), acting)[row]), 0.0, 1.0, xtol=LOCATED)
         found.append((float(share), int(row)))
-    return min(found, default=None)
+    return min(found)
 
 
 def changed(state: State, row: int, system: System) -> State:

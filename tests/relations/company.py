@@ -13,7 +13,11 @@ AWAY = 7.3
 
 
 def far_circle(data: Data) -> Image:
-    """A ground of its own with a rigid circle far away, which the first beam may touch."""
+    """A ground of its own with a rigid circle far away, which the first beam may touch.
+
+    A scene without contacts is answered by another chain of the CPRBM than a scene with contacts, until its second
+    edition answers both: the image of such a scene is another discretised problem.
+    """
     scene = scene_from(data)
     u = np.linspace(0.0, 1.0, 9)
     points = np.concatenate(
@@ -34,4 +38,4 @@ def far_circle(data: Data) -> Image:
         "center": centre,
         "radius": 0.37 * extent,
     }
-    return Image("a circle far away", new)
+    return Image("a circle far away", new, discretised_anew=not data.get("contacts"))
