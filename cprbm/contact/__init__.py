@@ -21,7 +21,18 @@ from cprbm.contact.candidates import (
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
 from cprbm.contact.gap import COUPLING, GRADIENT, LOCAL, SHIFT, TANGENT, TURN, Places, Row, gap_row, local_indices
 from cprbm.contact.pairs import Pair
-from cprbm.contact.settling import BOX_TESTS, GAPS, SEARCHES, find_feet, move_places, near_pairs, new_counters, settle
+from cprbm.contact.settling import (
+    BOX_TESTS,
+    GAPS,
+    SEARCHES,
+    choose_sides,
+    find_feet,
+    move_places,
+    near_pairs,
+    new_counters,
+    separations,
+    settle,
+)
 
 __all__ = [
     "BOX_TESTS",
@@ -42,6 +53,7 @@ __all__ = [
     "Places",
     "Row",
     "beam_curve",
+    "choose_sides",
     "contact_geometry",
     "curve_arrays",
     "find_feet",
@@ -53,6 +65,7 @@ __all__ = [
     "move_places",
     "near_pairs",
     "new_counters",
+    "separations",
     "settle",
     "sides_at_rest",
     "taken",

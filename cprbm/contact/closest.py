@@ -22,8 +22,8 @@ from __future__ import annotations
 from math import hypot
 
 import numpy as np
-from numba import njit
 
+from cprbm.chain.compiled import compiled
 from cprbm.contact.curve import CUBIC_POWERS, STENCIL, CurveArrays
 from cprbm_scene.answer import Array
 
@@ -40,7 +40,7 @@ TURNED_BACK = 2.6
 """Turn of a beam between two places, rad, from which the beam may touch itself: nearly half a turn."""
 
 
-@njit(cache=True)
+@compiled
 def write_weights(curves: CurveArrays, piece: int, xi: float, order: int, weights: Array) -> None:  # pragma: no cover
     """Write the real and imaginary parts (2, STENCIL) of the weights, or of a derivative by ξ."""
     for i in range(STENCIL):
@@ -52,7 +52,7 @@ def write_weights(curves: CurveArrays, piece: int, xi: float, order: int, weight
         weights[0, i], weights[1, i] = a, b
 
 
-@njit(cache=True)
+@compiled
 def curve_point(
     z: Array, curves: CurveArrays, piece: int, xi: float, order: int, weights: Array
 ) -> tuple[float, float]:  # pragma: no cover
@@ -66,7 +66,7 @@ def curve_point(
     return x, y
 
 
-@njit(cache=True)
+@compiled
 def lost_at(curves: CurveArrays, piece: int, xi: float, order: int) -> float:  # pragma: no cover
     """c, c' or c'' of a piece."""
     value = 0.0
@@ -76,7 +76,7 @@ def lost_at(curves: CurveArrays, piece: int, xi: float, order: int) -> float:  #
     return value
 
 
-@njit(cache=True)
+@compiled
 def moved_along(
     curves: CurveArrays, curve: int, piece: int, xi: float, step: float
 ) -> tuple[int, float, bool]:  # pragma: no cover
@@ -100,7 +100,7 @@ def moved_along(
             return piece, xi, False
 
 
-@njit(cache=True)
+@compiled
 def border_pieces(curves: CurveArrays, curve: int, piece: int, step: float) -> tuple[int, int]:  # pragma: no cover
     """Pieces behind and before the border that a step from a piece crosses; twice the piece at an end of the curve."""
     first, last = curves.first[curve], curves.last[curve]
@@ -113,7 +113,7 @@ def border_pieces(curves: CurveArrays, curve: int, piece: int, step: float) -> t
     return (piece, last) if curves.closed[curve] else (piece, piece)
 
 
-@njit(cache=True)
+@compiled
 def is_corner(
     z: Array, curves: CurveArrays, piece: int, before: int, x: float, y: float, weights: Array
 ) -> bool:  # pragma: no cover
@@ -124,7 +124,7 @@ def is_corner(
     return (px - x) * ax + (py - y) * ay < 0.0 < (px - x) * bx + (py - y) * by
 
 
-@njit(cache=True)
+@compiled
 def closest_point(
     z: Array, curves: CurveArrays, curve: int, x: float, y: float, piece: int, eta: float, force: float, weights: Array
 ) -> tuple[int, float, bool]:  # pragma: no cover
@@ -155,7 +155,7 @@ def closest_point(
     return piece, eta, rests
 
 
-@njit(cache=True)
+@compiled
 def closest_chord(
     z: Array, curves: CurveArrays, curve: int, x: float, y: float, angle: float, least_turn: float, weights: Array
 ) -> tuple[int, float, float]:  # pragma: no cover
@@ -178,7 +178,7 @@ def closest_chord(
     return found, share, best
 
 
-@njit(cache=True)
+@compiled
 def curve_boxes(z: Array, curves: CurveArrays) -> Array:  # pragma: no cover
     """Boxes (curves, 4) that hold the curves with their thickness: least x and y, largest x and y.
 

@@ -47,8 +47,7 @@ from __future__ import annotations
 from math import hypot, sqrt
 from typing import NamedTuple
 
-from numba import njit
-
+from cprbm.chain.compiled import compiled
 from cprbm.contact.closest import curve_point, lost_at
 from cprbm.contact.curve import STENCIL, CurveArrays
 from cprbm_scene.answer import Array, Flags, Ints
@@ -142,7 +141,7 @@ class Row(NamedTuple):
     slope_by_force: float
 
 
-@njit(cache=True)
+@compiled
 def gap_frame(z: Array, curves: CurveArrays, places: Places, k: int, weights: Array) -> Frame:  # pragma: no cover
     """Derivatives at a place with known foot; ``weights`` (4, 2, STENCIL) keeps the weights of C_A, C_B, C_A', C_B'."""
     piece, xi, foot, eta, side = places.piece[k], places.xi[k], places.foot[k], places.eta[k], places.side[k]
@@ -190,7 +189,7 @@ def gap_frame(z: Array, curves: CurveArrays, places: Places, k: int, weights: Ar
     )  # fmt: skip
 
 
-@njit(cache=True)
+@compiled
 def _lost(
     curves: CurveArrays, places: Places, k: int
 ) -> tuple[float, float, float, float, float, float]:  # pragma: no cover
@@ -208,7 +207,7 @@ def _lost(
     )
 
 
-@njit(cache=True)
+@compiled
 def _add(out: Array, begin: int, weights: Array, vx: float, vy: float, factor: float) -> None:  # pragma: no cover
     """Add factor v·dC to a vector over the nodes, dC with the given weights."""
     for i in range(STENCIL):
@@ -217,7 +216,7 @@ def _add(out: Array, begin: int, weights: Array, vx: float, vy: float, factor: f
         out[begin + 2 * i + 1] += factor * (vy * a - vx * b)
 
 
-@njit(cache=True)
+@compiled
 def gap_row(
     z: Array, curves: CurveArrays, places: Places, k: int, vectors: Array, weights: Array
 ) -> Row:  # pragma: no cover
@@ -247,7 +246,7 @@ def gap_row(
     return Row(value, f.gap, by_force, f.qq, f.qe, f.ee, -1.0 / f.curvature, f.slope, f.curvature, lean)
 
 
-@njit(cache=True)
+@compiled
 def local_indices(curves: CurveArrays, places: Places, k: int, index: Ints) -> None:  # pragma: no cover
     """Write the unknowns (LOCAL,) of a place's vectors; an unknown may come twice."""
     for i in range(STENCIL):

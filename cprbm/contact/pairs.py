@@ -8,7 +8,6 @@ the state as drawn decides, :mod:`cprbm.contact.candidates`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import assert_never
 
 import numpy as np
 
@@ -16,12 +15,11 @@ from cprbm.chain import Mechanism
 from cprbm.contact.curve import Curve, Frames, beam_curve
 from cprbm.contact.own_pin import pin_rows
 from cprbm_scene import BeamContact, CircleContact, FunctionContact, HalfPlaneContact, LineContact, SelfContact
-from cprbm_scene.answer import Array
 from cprbm_scene.geometry import arc_length, points_on, tangents_on
-from cprbm_scene.statement import EdgeContact
+from cprbm_scene.statement import EllipseContact, RigidContact, SplineContact
 
-PIECES_OF_A_GRAPH = 64
-"""Pieces of a graph's spline: the error is of fourth order, 1e-7 of the bend that a piece resolves."""
+PIECES = 256
+"""Pieces of a smooth edge.  The error is κ³ h⁴/384: 2e-7 of the longer axis at the tip of an ellipse of 3 to 1."""
 
 REACH = 10.0
 """Half length of a half-plane's edge, over the longest beam."""
@@ -56,40 +54,54 @@ def contact_pairs(m: Mechanism) -> tuple[list[Curve], list[Pair]]:
 
     for name, contact in m.scene.contacts.items():
         own = [number(beam_curve(m, beam, thick=contact.thick)) for beam in contact.beams]
-        match contact:
-            case BeamContact() | SelfContact():
-                pairs.append(Pair(name, own[0], own[-1], 0))
-            case CircleContact():
-                radius = contact.radius / m.units.length
-                circle = frames.circle(f"contact {name}", contact.body, m.units.place(contact.center), radius)
-                pairs.append(Pair(name, own[0], number(circle), 1))
-            case LineContact() | HalfPlaneContact() | FunctionContact():
-                edge, side, points = _edge(m, frames, f"contact {name}", contact)
-                m.rows.extend(pin_rows(m, name, contact, points, side))
-                pairs.append(Pair(name, own[0], number(edge), side))
-            case _:
-                assert_never(contact)
+        if isinstance(contact, BeamContact | SelfContact):
+            pairs.append(Pair(name, own[0], own[-1], 0))
+            continue
+        curve, side = _rigid_curve(m, frames, name, contact)
+        pairs.append(Pair(name, own[0], number(curve), side))
     return list(curves.values()), pairs
 
 
-def _edge(m: Mechanism, frames: Frames, name: str, contact: EdgeContact) -> tuple[Curve, int, Array]:
-    """Curve of a rigid edge, the side of the beam, and points on the edge (k, 2)."""
+def _rigid_curve(m: Mechanism, frames: Frames, contact_name: str, contact: RigidContact) -> tuple[Curve, int]:
+    """Curve of a rigid shape, and the side of the beam."""
+    name, place = f"contact {contact_name}", m.units.place
     match contact:
+        case CircleContact(side="outside"):
+            return frames.circle(name, contact.body, place(contact.center), contact.radius / m.units.length), 1
+        case CircleContact():
+            angle = np.linspace(0.0, 2.0 * np.pi, PIECES + 1)
+            around = np.column_stack([np.cos(angle), np.sin(angle)])
+            tangents = np.column_stack([-around[:, 1], around[:, 0]])
+            points, length = place(contact.center + contact.radius * around), 2.0 * np.pi * contact.radius
+            return frames.smooth_edge(name, contact.body, points, tangents, length / m.units.length), 1
         case HalfPlaneContact():
             normal = np.array(contact.normal) / np.hypot(*contact.normal)
             along = REACH * np.array([normal[1], -normal[0]])
-            points = m.units.place(contact.point) + np.array([-along, along])
-            return frames.polyline(name, contact.body, points), 1, points
+            points, side = place(contact.point) + np.array([-along, along]), 1
+            m.rows.extend(pin_rows(m, contact_name, contact, points, side))
+            return frames.polyline(name, contact.body, points), side
         case LineContact():
-            points = m.units.place(contact.points)
-            return frames.polyline(name, contact.body, points), 1 if contact.side == "left" else -1, points
+            points, side = place(contact.points), 1 if contact.side == "left" else -1
+            m.rows.extend(pin_rows(m, contact_name, contact, points, side))
+            return frames.polyline(name, contact.body, points), side
         case FunctionContact():
-            u = np.linspace(0.0, 1.0, PIECES_OF_A_GRAPH + 1)
-            points = m.units.place(points_on(contact.curve, u))
-            length = arc_length(contact.curve) / m.units.length
-            edge = frames.smooth_edge(name, contact.body, points, tangents_on(contact.curve, u), length)
             ascends = contact.range[1] > contact.range[0]
             left = (contact.side == "above") == (ascends == (contact.axis == "x"))
-            return edge, 1 if left else -1, points
-        case _:
-            assert_never(contact)
+            edge, side = _smooth(m, frames, name, contact), 1 if left else -1
+            points = place(points_on(contact.curve, np.linspace(0.0, 1.0, PIECES + 1)))
+            m.rows.extend(pin_rows(m, contact_name, contact, points, side))
+            return edge, side
+        case SplineContact():
+            return _smooth(m, frames, name, contact), 1 if contact.side == "left" else -1
+        case EllipseContact():
+            return _smooth(m, frames, name, contact), 1 if contact.side == "inside" else -1
+    raise TypeError(f"found a rigid contact of the class {type(contact).__name__}")
+
+
+def _smooth(
+    m: Mechanism, frames: Frames, name: str, contact: FunctionContact | SplineContact | EllipseContact
+) -> Curve:
+    """Smooth edge of a body, at even arc lengths."""
+    u = np.linspace(0.0, 1.0, PIECES + 1)
+    points, tangents = m.units.place(points_on(contact.curve, u)), tangents_on(contact.curve, u)
+    return frames.smooth_edge(name, contact.body, points, tangents, arc_length(contact.curve) / m.units.length)

@@ -7,8 +7,8 @@ unknowns follows from the linear equation of :mod:`cprbm.contact.gap`.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from cprbm.chain.compiled import compiled
 from cprbm.contact.closest import (
     ARRIVED,
     TURNED_BACK,
@@ -34,7 +34,7 @@ def new_counters() -> Ints:
     return np.zeros(3, dtype=np.int64)
 
 
-@njit(cache=True)
+@compiled
 def near_pairs(z: Array, curves: CurveArrays, pairs: Ints, reach: Array, counters: Ints) -> Flags:  # pragma: no cover
     """Whether the boxes of two curves (pairs, 2) are nearer than ``reach`` (pairs,); one test per pair."""
     boxes, near = curve_boxes(z, curves), np.empty(len(pairs), np.bool_)
@@ -46,7 +46,7 @@ def near_pairs(z: Array, curves: CurveArrays, pairs: Ints, reach: Array, counter
     return near
 
 
-@njit(cache=True)
+@compiled
 def find_feet(
     z: Array, curves: CurveArrays, places: Places, distance: Array, counters: Ints
 ) -> None:  # pragma: no cover
@@ -64,7 +64,7 @@ def find_feet(
         places.foot[k], places.eta[k] = foot, eta
 
 
-@njit(cache=True)
+@compiled
 def is_unturned(z: Array, curves: CurveArrays, places: Places, k: int) -> bool:  # pragma: no cover
     """True if a beam has not turned back between a place and a foot on the same beam: no contact there."""
     if places.curve[k] != places.other[k]:
@@ -73,7 +73,7 @@ def is_unturned(z: Array, curves: CurveArrays, places: Places, k: int) -> bool: 
     return turn < TURNED_BACK
 
 
-@njit(cache=True)
+@compiled
 def settle(
     z: Array, curves: CurveArrays, places: Places, gaps: Array, curvatures: Array, counters: Ints, steps: int
 ) -> None:  # pragma: no cover
@@ -107,7 +107,7 @@ def settle(
                 break
 
 
-@njit(cache=True)
+@compiled
 def move_places(
     z: Array, curves: CurveArrays, places: Places, change: Array, by_force: Array, share: float, limit: float
 ) -> float:  # pragma: no cover
@@ -135,3 +135,27 @@ def move_places(
         step = min(limit, max(-limit, step)) * share
         places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], step)
     return largest
+
+
+@compiled
+def separations(z: Array, curves: CurveArrays, places: Places) -> Array:  # pragma: no cover
+    """Vectors (k, 2) from the feet to the places; zero for a foot without contact on an unturned beam."""
+    vectors, weights = np.zeros((places.piece.size, 2)), np.empty((2, STENCIL))
+    for k in range(places.piece.size):
+        if not is_unturned(z, curves, places, k):
+            ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights)
+            bx, by = curve_point(z, curves, places.foot[k], places.eta[k], 0, weights)
+            vectors[k, 0], vectors[k, 1] = ax - bx, ay - by
+    return vectors
+
+
+@compiled
+def choose_sides(z: Array, curves: CurveArrays, places: Places) -> None:  # pragma: no cover
+    """Write the present sides of places whose side is 0; the feet must be found."""
+    weights = np.empty((2, STENCIL))
+    for k in range(places.piece.size):
+        if places.side[k] == 0.0 and not is_unturned(z, curves, places, k):
+            ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights)
+            bx, by = curve_point(z, curves, places.foot[k], places.eta[k], 0, weights)
+            tx, ty = curve_point(z, curves, places.foot[k], places.eta[k], 1, weights)
+            places.side[k] = 1.0 if (ay - by) * tx - (ax - bx) * ty >= 0.0 else -1.0

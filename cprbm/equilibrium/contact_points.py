@@ -1,13 +1,13 @@
-"""Where contact is held: at joints along a length of contact, at a moving place where the curves touch in a point.
+"""Places of contact: joints along a length of contact, a moving place for a point of contact.
 
 After every solve the rule looks at runs of neighbouring closed joints:
 
-* one or two closed joints with a minimum of the gap beside them become a moving place;
-* a moving place beside which a joint closes, or at which the gap has no positive curvature, becomes joints again;
+* one or two closed joints with a minimum of the gap nearby become a moving place;
+* a moving place with a closed joint nearby, or with a gap of negative curvature, becomes joints again;
 * joints beside a moving place with less than a small part of the force open.
 
 The equilibrium is solved again until the rule changes nothing.  Where moving places fail, joints alone are solved first
-and points are made from them anew; then the moving place with the flattest gap is given up.
+and made points anew; then the moving place with the flattest gap is given up.
 """
 
 from __future__ import annotations
@@ -18,7 +18,15 @@ from dataclasses import replace
 import numpy as np
 
 from cprbm.contact import Geometry, Places, joined, may_move, settle, taken
-from cprbm.equilibrium.contact_set import FINDING, Contacts, Touched, arc_of, solve_set, with_fixed_places
+from cprbm.equilibrium.contact_set import (
+    FINDING,
+    Contacts,
+    Touched,
+    arc_of,
+    passed_through,
+    solve_set,
+    with_fixed_places,
+)
 from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
@@ -33,7 +41,7 @@ NEIGHBOURS = 1.6
 """Pieces between neighbouring joints: half links at a beam's end are neighbours too."""
 
 LONGEST_RUN = 2
-"""Closed neighbours that may be one point."""
+"""Longest run of closed neighbours for a point."""
 
 LIGHT = 0.02
 """Part of a point's force below which the force of a joint beside the point is an overlap closed on the way."""
@@ -42,13 +50,13 @@ LIGHT = 0.02
 def touched_equilibrium(
     system: System, geometry: Geometry, start: State, contacts: Contacts, iterations: int
 ) -> Touched:
-    """Equilibrium near a state under its targets, with the places of contact that belong to the equilibrium.
+    """Equilibrium near a state under the state's targets, with settled places of contact.
 
     Raises:
-        NotConvergedError: no equilibrium was found, or the places do not settle.
+        NotConvergedError: no equilibrium was found, the places do not settle, or a beam passed through itself.
     """
     contacts = with_fixed_places(geometry, start.z, replace(contacts, given_up=frozenset()))
-    joints_tried = False
+    joints_tried, before, old = False, start.z, contacts.places
     for _ in range(ROUNDS):
         try:
             solved = solve_set(system, geometry, start, contacts, iterations)
@@ -65,6 +73,9 @@ def touched_equilibrium(
             continue
         revised = _revised(geometry, solved)
         if revised is None:
+            new = with_fixed_places(geometry, solved.state.z, solved.contacts).places
+            if passed_through(geometry, before, old, solved.state.z, new):
+                raise NotConvergedError("a beam passed through itself")
             return solved
         start, contacts = solved.state, with_fixed_places(geometry, solved.state.z, revised)
     raise NotConvergedError("the places of contact do not settle")
@@ -101,7 +112,7 @@ def _same(places: Places, k: int) -> Flags:
 
 
 def _flattest(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
-    """The moving place at which the gap has the least curvature."""
+    """The moving place with the least curvature of the gap."""
     places = taken(contacts.places, np.arange(len(contacts.closed)))
     gaps, curvatures = np.empty(len(contacts.closed)), np.empty(len(contacts.closed))
     settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, FINDING)
@@ -109,7 +120,7 @@ def _flattest(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
 
 
 def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
-    """Contacts in which moving places become joints again; the joints within a piece share the force."""
+    """Contacts after moving places become joints again; the joints within a piece share the force."""
     places, closed = taken(contacts.places, np.arange(len(gone))), contacts.closed.copy()
     arcs, span, given_up = arc_of(geometry, places), geometry.arrays.span[places.piece], set(contacts.given_up)
     for k in np.flatnonzero(gone).tolist():
@@ -122,7 +133,7 @@ def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
 
 
 def _points(geometry: Geometry, solved: Touched) -> tuple[Places, Flags]:
-    """Moving places for closed joints that stand alone, and the joints that they replace."""
+    """Moving places for lonely closed joints, and the replaced joints."""
     contacts, places = solved.contacts, solved.contacts.places
     replaced = np.zeros(len(contacts.closed), dtype=bool)
     created = taken(places, replaced)
@@ -151,7 +162,7 @@ def _points(geometry: Geometry, solved: Touched) -> tuple[Places, Flags]:
 
 
 def _runs(geometry: Geometry, solved: Touched) -> Iterator[Ints]:
-    """Runs of neighbouring closed joints of the first curves of all pairs, places with a shared force left out."""
+    """Runs of neighbouring closed joints on the first curves of all pairs, without places of a shared force."""
     places, closed = solved.contacts.places, solved.contacts.closed
     arcs, span = arc_of(geometry, places), geometry.arrays.span[places.piece]
     for number, pair in enumerate(geometry.pairs):

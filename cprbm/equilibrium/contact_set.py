@@ -1,8 +1,8 @@
 """Newton's method with an active set of contact places.
 
-Every iteration moves the feet, opens closed places that would pull, closes open places that overlap, and solves the
-linear system of the closed places.  The first iteration keeps the set: under new targets it is the prediction along the
-path's tangent.  A moving place is an unknown; a closed moving place stands for the fixed places within a piece of it.
+Every iteration moves the feet, opens pulling places, closes overlapping places, and solves the linear system of the
+closed places.  The first iteration keeps the set: under new targets it is the prediction along the
+path's tangent.  A moving place is an unknown; a closed moving place stands for the fixed places within a piece.
 """
 
 from __future__ import annotations
@@ -11,9 +11,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm.contact import Geometry, Places, fixed_places, joined, move_places, near_pairs, settle, taken
+from cprbm.contact import (
+    Geometry,
+    Places,
+    choose_sides,
+    fixed_places,
+    joined,
+    move_places,
+    near_pairs,
+    separations,
+    settle,
+    taken,
+)
 from cprbm.equilibrium.factors import Factors, SingularError, factorise
-from cprbm.equilibrium.newton import CLOSE, LARGEST_TURN, NotConvergedError
+from cprbm.equilibrium.newton import CLOSE, LARGEST_TURN, ROUNDED, SHRINKING, NotConvergedError
 from cprbm.equilibrium.system import State, System
 from cprbm.equilibrium.touching import Touching, contact_terms, touching
 from cprbm_scene.answer import Array, Flags, Ints
@@ -25,13 +36,13 @@ FREE_CHANGES = 12
 """Iterations with any change of the set; later iterations change one place at a time."""
 
 RETURNS = 2
-"""Times that a set may return before the iteration counts as a cycle."""
+"""Returns of a set after which the iteration counts as a cycle."""
 
 LONGEST_MOVE = 2.0
-"""Pieces that a moving place moves in one iteration."""
+"""Largest change of a moving place in an iteration, pieces."""
 
 ARRIVED = 1e-6
-"""Pieces that a moving place still moves at convergence."""
+"""Largest last change of a moving place, pieces."""
 
 FINDING = 40
 """Iterations of moving places on a frozen state."""
@@ -42,7 +53,7 @@ REACH = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """Places that may touch, which of them are closed, the sides of the pairs, and counters.
+    """Possible places of contact, marks of the closed places, sides of the pairs, counters.
 
     ``given_up`` holds pairs and pieces at which a moving place failed.
     """
@@ -67,7 +78,10 @@ class Touched:
 
 
 def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Contacts:
-    """Contacts with fixed places at the nearest feet; known places keep force and state, moving places stay."""
+    """Contacts with fixed places at the nearest feet; known places keep force and state, moving places stay.
+
+    A place of a beam in self-contact has the present side.
+    """
     old = contacts.places
     near = near_pairs(z, geometry.arrays, geometry.columns, np.full(len(geometry.pairs), REACH), contacts.counters)
     near[old.pair[contacts.closed]] = True
@@ -79,8 +93,23 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
         if before is not None and contacts.closed[before]:
             closed[k], fixed.force[k] = True, old.force[before]
             fixed.foot[k], fixed.eta[k] = old.foot[before], old.eta[before]
+    choose_sides(z, geometry.arrays, fixed)
     both = joined(fixed, taken(old, old.moves))
     return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[old.moves]]))
+
+
+def passed_through(geometry: Geometry, before: Array, old: Places, after: Array, new: Places) -> bool:
+    """True if a beam in self-contact went through itself: the vector from a foot to a place turned round.
+
+    The side of a beam over itself follows from the state, so that only the way between two states shows a passage.
+    """
+    first, second = separations(before, geometry.arrays, old), separations(after, geometry.arrays, new)
+    number = {_identity(new, k): k for k in range(len(new.pair)) if not new.moves[k]}
+    for k in np.flatnonzero((old.curve == old.other) & ~old.moves & (np.hypot(*first.T) < REACH)).tolist():
+        at = number.get(_identity(old, k))
+        if at is not None and first[k] @ second[at] < 0.0:
+            return True
+    return False
 
 
 def _identity(places: Places, k: int) -> tuple[int, int, int, float]:
@@ -88,7 +117,7 @@ def _identity(places: Places, k: int) -> tuple[int, int, int, float]:
 
 
 def solve_set(system: System, geometry: Geometry, start: State, contacts: Contacts, iterations: int) -> Touched:
-    """Equilibrium near a state under its targets, with the closed places that belong to the state.
+    """Equilibrium near a state under the state's targets, and the set of closed places.
 
     Args:
         system, geometry: the mechanism and its contacts.
@@ -106,6 +135,7 @@ def solve_set(system: System, geometry: Geometry, start: State, contacts: Contac
     gaps, curvatures = np.empty(len(closed)), np.empty(len(closed))
     settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, FINDING)
     seen: dict[bytes, int] = {}
+    last = np.inf
     for iteration in range(1, iterations + 1):
         settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, 0)
         changed = iteration > 1 and update_set(
@@ -116,7 +146,9 @@ def solve_set(system: System, geometry: Geometry, start: State, contacts: Contac
             if seen[closed.tobytes()] > RETURNS:
                 raise NotConvergedError("the set of closed places returns")
         factors, size = _iterate(system, geometry, state, places, closed)
-        if size < CLOSE and not changed:
+        arrived = size < CLOSE or (size < ROUNDED and size > SHRINKING * last)
+        last = size
+        if arrived and not changed:
             settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, FINDING)
             if not update_set(geometry, places, closed, gaps, len(closed)):
                 settled = replace(contacts, places=places, closed=closed)

@@ -17,8 +17,9 @@ With a variable y for every local motion the second derivatives of a place leave
     [    aᵀ       c ]  =>  [ Vᵀ  −R⁻¹    0  ],    R = −F S,
                            [ aᵀ   0      c  ]
 
-c being minus the derivative of the value by F.  By Sylvester's law the negative eigenvalues of the left matrix are
-those of the right matrix less those of −R⁻¹ = S⁻¹/F.  Two places that share a force have one column, the sum of both.
+c being minus the derivative of the value by F.  By Sylvester's law the left matrix has as many
+negative eigenvalues as the right matrix, less the negative eigenvalues of −R⁻¹ = S⁻¹/F.  Two places with a shared force
+have a common column, the sum of both.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ class ContactTerms:
 
 
 def contact_terms(geometry: Geometry, z: Array, places: Places, closed: Flags) -> ContactTerms:
-    """Terms of the places marked ``closed``, at least one; the force of a sharing place is that of the other place."""
+    """Terms of the places marked ``closed``, at least one; sharing places have equal forces."""
     leaders = np.arange(len(closed)) + places.shares
     own = np.flatnonzero(closed & (places.shares == 0))
     number = {int(k): at for at, k in enumerate(own)}
@@ -148,7 +149,7 @@ class Touching:
 
 
 def touching(free: Factors, terms: ContactTerms) -> Touching:
-    """Factors with contacts from those without."""
+    """Factors with contacts from factors without."""
     solved = np.column_stack([free.solve(column) for column in terms.columns.T])
     _, blocks, _ = ldl(terms.block - terms.columns.T @ solved)
     negative = int(np.sum(np.linalg.eigvalsh(blocks) < 0.0))

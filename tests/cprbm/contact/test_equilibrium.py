@@ -14,6 +14,7 @@ from cprbm.contact import new_counters, settle, sides_at_rest, taken
 from cprbm.equilibrium.contact_points import touched_equilibrium
 from cprbm.equilibrium.contact_set import Contacts
 from cprbm.equilibrium.factors import factorise
+from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.system import rest_state, system_of
 from cprbm.equilibrium.touching import contact_terms, touching
 from cprbm_scene import read
@@ -129,3 +130,13 @@ def test_solutions_and_lost_directions_are_those_of_the_dense_matrix(name, stati
     negative = int(np.sum(np.linalg.eigvalsh(0.5 * (matrix + matrix.T)) < 0.0))
     assert factors.lost == negative - 2 * links - int(state.driven.sum()) - len(own)
     assert (factors.lost > 0) == (strength != 1.0)
+
+
+def test_a_strip_does_not_pass_through_itself():
+    """Rolled: small steps meet the contact of the strip's layers; a step past the contact is refused."""
+    begin = [2.0, 4.0, 6.0]
+    _, _, _, small = stepped("rolled", 20, [*begin, *np.linspace(6.1, 6.8, 8)])
+    assert small[-1].contacts.closed.sum() == 1
+    assert small[-1].contacts.places.force[small[-1].contacts.closed] > 0.0
+    with pytest.raises(NotConvergedError, match="passed through itself"):
+        stepped("rolled", 20, [*begin, 6.8])

@@ -81,7 +81,7 @@ def sampled():
     return cases()
 
 
-@pytest.mark.parametrize("name", ["beams", "circle", "line", "plane", "graph"])
+@pytest.mark.parametrize("name", ["beams", "circle", "line", "plane", "graph", "ellipse", "ring"])
 def test_fixed_places_have_exact_derivatives(sampled, name):
     geometry, found = sampled
     mine = [(z, places) for pair, z, places in found if pair == name]
@@ -110,7 +110,7 @@ def test_fixed_places_have_exact_derivatives(sampled, name):
         np.testing.assert_allclose(differences(gradient, z, unknowns), hessian[unknowns], atol=1e-7 * max(scale, 1.0))
 
 
-@pytest.mark.parametrize("name", ["beams", "circle", "line", "graph"])
+@pytest.mark.parametrize("name", ["beams", "circle", "line", "graph", "ellipse"])
 def test_points_with_lost_compliance_are_variational(sampled, name):
     """F λ has the derivatives F·gradient by the nodes and the row's value by F, places and feet moving along."""
     geometry, found = sampled
@@ -186,7 +186,7 @@ def test_rigid_motions_leave_gaps_unchanged():
         places = all_places(geometry, z, rest)
         found, _ = settled(geometry, z, places)
         names = np.array([pair.name for pair in geometry.pairs])[places.pair]
-        gaps.append(found[names != "graph"])
+        gaps.append(found[np.isin(names, ["beams", "circle", "line", "plane"])])
     np.testing.assert_allclose(gaps[0], gaps[1], atol=1e-12)
 
 
@@ -223,15 +223,9 @@ def test_interpreted_kernels_give_the_same_numbers():
         "z = random_state(m, g, rest, 1)\n"
         "print(*settled(g, z, all_places(g, z, rest))[0])\n"
     )
-    outputs = [
-        subprocess.run(
-            [sys.executable, "-c", code],
-            env={**os.environ, "NUMBA_DISABLE_JIT": disabled},
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout
-        for disabled in ("0", "1")
-    ]
-    compiled, interpreted = (np.array(output.split(), dtype=float) for output in outputs)
-    np.testing.assert_allclose(compiled, interpreted, atol=1e-13)
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
+    run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+    m, geometry, rest = mechanism(4)
+    z = random_state(m, geometry, rest, 1)
+    compiled = settled(geometry, z, all_places(geometry, z, rest))[0]
+    np.testing.assert_allclose(compiled, np.array(run.stdout.split(), dtype=float), atol=1e-13)

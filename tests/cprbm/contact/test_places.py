@@ -60,7 +60,8 @@ def test_sides_follow_the_scene_and_the_drawing():
     # the upper beam is left of the lower beam, the lower right of the upper; both run along x
     assert by_name["beams"] == [1.0, -1.0]
     assert by_name["line"] == [-1.0, -1.0]
-    assert by_name["graph"] == by_name["plane"] == [1.0, 1.0]
+    assert by_name["graph"] == by_name["plane"] == by_name["ring"] == [1.0, 1.0]
+    assert by_name["ellipse"] == [-1.0, -1.0]
 
 
 def test_a_beam_touches_itself_after_half_a_turn_and_each_gap_counts_once():
@@ -112,6 +113,24 @@ def test_moving_places_follow_their_linear_change():
         settled(geometry, z + size * direction, found, FINDING)
         errors.append(abs(moved.piece[0] + moved.xi[0] - found.piece[0] - found.xi[0]))
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.2)
+
+
+def test_gaps_to_round_shapes_are_distances():
+    """Outside of an ellipse, and inside a ring: the ring's radius less the distance from the centre."""
+    m, geometry, rest = mechanism()
+    places = all_places(geometry, rest, rest)
+    gaps, _ = settled(geometry, rest, places)
+    names = np.array([pair.name for pair in geometry.pairs])[places.pair]
+    turn = np.linspace(0.0, 2.0 * np.pi, 100_001)
+    ellipse = 0.014 * np.cos(turn) + 0.007j * np.sin(turn)
+    around = complex(*m.units.place((0.02, 0.028))) + ellipse * np.exp(0.2j) / m.units.length
+    centre, radius = complex(*m.units.place((0.05, 0.01))), 0.08 / m.units.length
+    for k in np.flatnonzero(np.isin(names, ["ellipse", "ring"]) & (places.xi == 0.0)):
+        curve = geometry.curves[places.curve[k]]
+        node = places.piece[k] - geometry.arrays.first[places.curve[k]]
+        x = at(curve, rest, curve.arcs[[node]])[0]
+        apart = np.abs(around - x).min() if names[k] == "ellipse" else radius - abs(x - centre)
+        assert gaps[k] == pytest.approx(apart - curve.half_thickness[node], abs=1e-8)
 
 
 def test_far_pairs_have_no_places():

@@ -76,6 +76,10 @@ def data(angle: float, between: tuple[str, str]) -> dict[str, Any]:
             "range": [-0.01, 0.11],
             "side": "above",
         }
+        ellipse = {"center": [0.02, 0.028], "semi_axes": [0.014, 0.007], "angle": 0.2}
+        scene["contacts"]["ellipse"] = {"kind": "beam-ellipse", **block, **ellipse}
+        ring = {"center": [0.05, 0.01], "radius": 0.08, "side": "inside"}
+        scene["contacts"]["ring"] = {"kind": "beam-circle", **ground, **ring}
     return scene
 
 
