@@ -1,11 +1,11 @@
-"""The figures and tables of the pages on the built-in cases, made by the code as the pages are built.
+"""Figures and tables of the pages on the built-in cases, drawn as the pages are built.
 
     python docs/drawn.py                    every case, into docs/made
-    python docs/drawn.py hinge wrapped      some of them
+    python docs/drawn.py hinge wrapped      two cases
 
-Of each case both solvers' answers are drawn, coarser than at the standard settings (``LINKS`` and ``ELEMENTS``), so
-that all is made in a minute; the numbers of the tables come from the newest record of the baseline
-(``tests/baseline/records``), at the standard settings.  Figures that the same code made before are not made again.
+The figures show answers of both solvers, coarser than the standard settings (``LINKS`` and ``ELEMENTS``).  The numbers
+of the tables come from the newest record of the baseline (``tests/baseline/records``), at the standard settings.
+Existing figures of the same code are kept.
 """
 
 from __future__ import annotations
@@ -48,11 +48,11 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 MADE = HERE / "made"
 RECORDS = ROOT / "tests" / "baseline" / "records"
-LONGEST = ("prestressed", "five-bar", "rolled")  # begun first, so that no process waits at the end
+LONGEST = ("prestressed", "five-bar", "rolled")  # first, so that no process waits at the end
 LINKS, ELEMENTS = 20, 40
 N, n = 40, 80  # links and elements of the recorded numbers: the standard settings
-MOST_STATIONS = 41  # of a stage that is drawn; of more every so-many-th is solved, the shown ones and the last
-NOTHING = 1e-15  # m, rad, N, N·m or J: round-off of what is zero
+MOST_STATIONS = 41  # of a drawn stage; further stations are thinned evenly, except shown stations and the last
+NOTHING = 1e-15  # m, rad, N, N·m or J: round-off of zero
 CURVES = ("rotation", "force", "moment", "reaction", "reaction_moment", "potential_energy")
 TITLES = {
     "rotation": "rotation",
@@ -65,7 +65,7 @@ TITLES = {
 
 
 def thinned(scene: Scene) -> Scene:
-    """The scene with no more stations than a picture needs."""
+    """The scene with the stations of a picture."""
     stages = []
     for stage in scene.stages:
         every = -(-len(stage.stations) // MOST_STATIONS)
@@ -76,7 +76,7 @@ def thinned(scene: Scene) -> Scene:
 
 
 def shown(scene: Scene) -> list[tuple[Stage, float]]:
-    """Stages and stations that are drawn: those that the scene names, the last of every stage, four at most."""
+    """Stages and stations of the drawings: shown stations and the last of every stage, four at most."""
     found = [
         (stage, value)
         for stage in scene.stages
@@ -87,7 +87,7 @@ def shown(scene: Scene) -> list[tuple[Stage, float]]:
 
 
 def solved(scene: Scene) -> tuple[Answer, Answer]:
-    """Both solvers' answers, as coarse as the figures show them."""
+    """Answers of both solvers at ``LINKS`` and ``ELEMENTS``."""
     return (
         cprbm.answer(scene, cprbm.Settings(links=LINKS)),
         fea_reference.answer(scene, fea_reference.Settings(elements=ELEMENTS)),
@@ -95,7 +95,7 @@ def solved(scene: Scene) -> tuple[Answer, Answer]:
 
 
 def shapes(scene: Scene, answers: tuple[Answer, Answer]) -> Picture:
-    """The mechanism as drawn, dashed, and at the shown stations: finite elements as lines, joints of links as dots."""
+    """The undeformed mechanism, dashed, and the shown stations: finite elements as lines, joints of links as dots."""
     reached = [(stage, value) for stage, value in shown(scene) if all(_has(each, stage, value) for each in answers)]
     columns = min(2, len(reached))
     with canvas(4.4 * columns, 4.2 * -(-len(reached) // columns) + 0.4) as figure:
@@ -105,7 +105,7 @@ def shapes(scene: Scene, answers: tuple[Answer, Answer]) -> Picture:
             _as_drawn(axes, scene)
             _loaded(axes, scene, chain, elements)
             factor, unit = along_axis(load_unit(scene, stage), value)
-            axes.set_title(f"{stage.steps} = {_told(value / factor, unit)}", loc="left", fontsize=10)
+            axes.set_title(f"{stage.steps} = {_short(value / factor, unit)}", loc="left", fontsize=10)
             frame(axes, elements)
             if place == 0:
                 draw_names(axes, scene)
@@ -114,13 +114,13 @@ def shapes(scene: Scene, answers: tuple[Answer, Answer]) -> Picture:
         return picture(figure, "shapes", "Neutral lines in mm, as drawn and under load, with the places of contact.")
 
 
-def _told(value: float, unit: str) -> str:
-    """A load or drive in few digits."""
+def _short(value: float, unit: str) -> str:
+    """A load or drive with four digits."""
     return f"{value:.4g}{'' if unit == '°' else ' '}{unit}"
 
 
 def _has(answer: Answer, stage: Stage, value: float) -> bool:
-    return any(each.stage == stage.name and each.value == value for each in answer.stations)
+    return any(at.stage == stage.name and at.value == value for at in answer.stations)
 
 
 def _as_drawn(axes: Axes, scene: Scene) -> None:
@@ -152,7 +152,7 @@ def _loaded(axes: Axes, scene: Scene, chain: StationAnswer, elements: StationAns
 
 
 def curves(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
-    """Rotations, forces, moments and energy against what the last stage steps."""
+    """Rotations, forces, moments and energy against the load or drive of the last stage."""
     last = scene.stages[-1]
     stages = [stage for stage in scene.stages if stage.steps == last.steps]
     asked = {quantity: [each for each in scene.probes if each.quantity == quantity] for quantity in CURVES}
@@ -179,9 +179,9 @@ def curves(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
             axes.set_ylabel(f"{TITLES[quantity]}, {unit}")
             axes.legend(loc="best", fontsize=8)
         axes.set_xlabel(f"{last.steps}, {step_unit}")
-        what = ", ".join(TITLES[quantity] for quantity in panels)
+        titles = ", ".join(TITLES[quantity] for quantity in panels)
         return picture(
-            figure, "curves", f"Against {last.steps}: {what}. Lines: finite elements; dots: CPRBM. Gaps are jumps."
+            figure, "curves", f"Against {last.steps}: {titles}. Lines: finite elements; dots: CPRBM. Gaps are jumps."
         )
 
 
@@ -207,8 +207,8 @@ def _curve(
                 if (each.stage, each.branch) == (stage, branch) and len(each.values[probe]) > component
             ]
             if mine:
-                told = label if answer is elements and place == 0 else None
-                axes.plot(*zip(*mine, strict=True), label=told, **{"linestyle": "none", **style})
+                legend = label if answer is elements and place == 0 else None
+                axes.plot(*zip(*mine, strict=True), label=legend, **{"linestyle": "none", **style})
 
 
 def stress(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
@@ -247,20 +247,20 @@ def recorded() -> dict[str, Any]:
 
 
 def numbers(scene: Scene) -> str:
-    """The recorded numbers at the last station as a table, without the stresses along beams."""
+    """Table of the recorded numbers at the last station, without stresses along beams."""
     last = scene.stages[-1]
     factor, unit = along_axis(load_unit(scene, last), last.stations[-1])
     answers = [recorded()[f"{scene.name} {run}"]["stations"][-1] for run in (f"cprbm {N}", f"fea {n}")]
     lines = [
-        f"The recorded numbers at {last.steps} = {_told(last.stations[-1] / factor, unit)} ({N} links and {n} finite "
-        "elements per beam, which stretch and shear; `python -m tests.baseline` compares new ones with them):",
+        f"The recorded numbers at {last.steps} = {_short(last.stations[-1] / factor, unit)} ({N} links and {n} finite "
+        "elements per beam, which stretch and shear; `python -m tests.baseline` compares new numbers with the record):",
         "",
         "| probe | unit | CPRBM | FEA |",
         "|---|---|---:|---:|",
     ]
     for probe in scene.probes:
         found = [answer["values"].get(probe.name) for answer in answers]
-        if probe.quantity in STRESSES or not all(found):  # of a stress, and of what has no value there
+        if probe.quantity in STRESSES or not all(found):  # stresses, and probes without a value
             continue
         factor, unit = scaled_unit(unit_of(scene, probe, last), max(abs(each) for values in found for each in values))
         cells = [
@@ -271,7 +271,7 @@ def numbers(scene: Scene) -> str:
 
 
 def pictures_of(name: str) -> tuple[str, tuple[Picture, ...]]:
-    """What is said before the figures of a case, and these."""
+    """Text before the figures of a case, and the figures."""
     question = cases.asked(name)
     if isinstance(question, OffsetQuestion):
         write(MADE / name / "thumbnail.png", thumbnail(question, None))
@@ -289,7 +289,7 @@ def pictures_of(name: str) -> tuple[str, tuple[Picture, ...]]:
 
 
 def make(name: str) -> str:
-    """Make the figures and the page's part of a case, unless they are there from the same code; the case's name."""
+    """Draw the figures and write the page's part of a case, unless the same code did before; the case's name."""
     folder = MADE / name
     stamp, now = folder / "made-by", _digest()
     if stamp.is_file() and stamp.read_text(encoding="utf-8") == now:
@@ -301,14 +301,14 @@ def make(name: str) -> str:
         parts.append(f"```{{figure}} /made/{name}/{each.name}.svg\n:alt: {each.caption}\n\n{each.caption}\n```\n")
     coarse = f"{LINKS} links and {ELEMENTS} elements per beam"
     if not isinstance(cases.asked(name), OffsetQuestion):
-        parts.append(f"The figures are made as this page is built, with {coarse}; the numbers above are finer.\n")
+        parts.append(f"The build of this page draws the figures with {coarse}; the numbers above are finer.\n")
     write(folder / "part.md", "\n".join(parts))
     write(stamp, now)
     return name
 
 
 def _digest() -> str:
-    """Of the sources that make the figures."""
+    """Digest of the sources of the figures."""
     found = hashlib.sha256(Path(__file__).read_bytes() + (HERE / "pictures.py").read_bytes())
     for room in ("cprbm_scene", "cprbm", "fea_reference", "comparisons"):
         for path in sorted((ROOT / room).rglob("*")):
@@ -321,14 +321,14 @@ def _digest() -> str:
 
 
 def make_all(names: Sequence[str] = (), workers: int = 2) -> Iterator[str]:
-    """Make what is missing of the cases of these names, or of all; each name when it is done."""
+    """Draw the missing figures of the named cases, or of all; a name for every finished case."""
     todo = sorted(names or cases.names(), key=lambda name: name not in LONGEST)
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         yield from pool.map(make, todo)
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Have Sphinx the figures made before the pages are read."""
+    """Register the drawing before Sphinx reads the pages."""
     app.connect("builder-inited", _inited)
     return {"parallel_read_safe": True}
 
