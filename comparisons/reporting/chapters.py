@@ -163,7 +163,7 @@ def _chapter(
     sections: tuple[Section, ...],
 ) -> Chapter:
     verdict = found.compared.verdict
-    answers = () if isinstance(found.compared, OffsetComparison) else ("answers.json",)
+    answers = () if isinstance(found.compared, OffsetComparison) else ("answers.json.gz",)
     return Chapter(
         name=question.name,
         title=question.title or question.name,

@@ -56,7 +56,6 @@ from dataclasses import dataclass
 from typing import Literal, TypeVar
 
 import numpy as np
-from scipy.optimize import brentq
 
 from cprbm_scene.answer import Array, Flags
 
@@ -214,6 +213,8 @@ def _fall(n: Array, v: Array) -> float:
 
     if residual(_LEAST) <= 0.0:
         return 0.0
+    from scipy.optimize import brentq  # takes 0.3 s, and only limits need it
+
     return float(brentq(residual, _LEAST, _HIGHEST, xtol=1e-9)) if residual(_HIGHEST) < 0.0 else math.inf
 
 

@@ -131,7 +131,7 @@ def test_compare_shows_tables_and_writes_a_report(small, tmp_path, capsys):
     names = {path.name for path in (tmp_path / "report" / "offset").iterdir()}
     assert names == {"comparison.json", "errors.svg", "errors.png", "points.svg", "points.png"}
     page = (tmp_path / "report" / "index.html").read_text("utf-8")
-    assert "answers.json" not in page
+    assert "answers.json.gz" not in page
 
 
 def test_compare_prints_json_alone_and_ends_with_1_if_it_differs(small, right, capsys):

@@ -1,5 +1,6 @@
 """The report: whole, repeatable, and readable without a network."""
 
+import gzip
 import json
 import re
 from dataclasses import replace
@@ -31,10 +32,10 @@ def test_the_folder_holds_everything(written):
     found = {str(path.relative_to(written)) for path in written.rglob("*") if path.is_file()}
     names = ("shapes", "stress", "rotation", "force")
     pictures = {f"hinge/{name}.{kind}" for name in names for kind in ("svg", "png")}
-    assert found == {"index.html", "hinge/comparison.json", "hinge/answers.json"} | pictures
+    assert found == {"index.html", "hinge/comparison.json", "hinge/answers.json.gz"} | pictures
     data = json.loads((written / "hinge" / "comparison.json").read_text("utf-8"))
     assert data["cases"][0]["case"] == "hinge"
-    answers = json.loads((written / "hinge" / "answers.json").read_text("utf-8"))
+    answers = json.loads(gzip.decompress((written / "hinge" / "answers.json.gz").read_bytes()))
     assert len(answers) == 10
     assert "cprbm paper" in answers
 

@@ -108,7 +108,7 @@ def written(tmp_path_factory):
 
 def test_all_parts_stand_in_the_folder_and_on_the_page(written):
     out, page, data = written
-    for name in ("comparison.json", "answers.json", "convergence.json", "bench.json", "scene.toml", "shapes.svg"):
+    for name in ("comparison.json", "answers.json.gz", "convergence.json", "bench.json", "scene.toml", "shapes.svg"):
         assert (out / "hinge" / name).is_file(), name
         assert name.endswith(".svg") or f'href="hinge/{name}"' in page
     assert (out / "hinge" / "scene.toml").read_text("utf-8").startswith("# The rotational hinge")
