@@ -10,7 +10,6 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 import click
@@ -27,10 +26,7 @@ GROUPS = {
     "Built-in cases and evidence": ("list", "bench", "study"),
     "Development": ("schema", "doctor", "robustness"),
 }
-"""Commands under their headings in the help; the module ``comparisons.cli.NAME_`` holds a command."""
-
-TOOLS = ("robustness", "stress")
-"""Developers' tools, with the old name of one tool."""
+"""Commands under their headings in the help."""
 
 WRONG_QUESTION = 2
 
@@ -40,15 +36,40 @@ class _SubCommands(Commands):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all sub-commands; the developers' tools belong to a checkout."""
-        return [name for group in GROUPS.values() for name in group if name not in TOOLS or workshop.is_checkout()]
+        names = [name for group in GROUPS.values() for name in group]
+        return names if workshop.is_checkout() else [name for name in names if name not in workshop.TOOLS]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The sub-command with a name, or None."""
-        if cmd_name not in (*self.list_commands(ctx), *TOOLS):
-            return None
-        if cmd_name in TOOLS:
-            return ToolCommand(cmd_name)
-        command: click.Command = import_module(f"comparisons.cli.{cmd_name}_").command
+        match cmd_name:
+            case "new":
+                from comparisons.cli.new_ import command
+            case "import":
+                from comparisons.cli.import_ import command
+            case "solve":
+                from comparisons.cli.solve_ import command
+            case "compare":
+                from comparisons.cli.compare_ import command
+            case "converge":
+                from comparisons.cli.converge_ import command
+            case "view":
+                from comparisons.cli.view_ import command
+            case "report":
+                from comparisons.cli.report_ import command
+            case "list":
+                from comparisons.cli.list_ import command
+            case "bench":
+                from comparisons.cli.bench_ import command
+            case "study":
+                from comparisons.cli.study_ import command
+            case "schema":
+                from comparisons.cli.schema_ import command
+            case "doctor":
+                from comparisons.cli.doctor_ import command
+            case "robustness" | "stress":
+                command = ToolCommand(cmd_name)
+            case _:
+                return None
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

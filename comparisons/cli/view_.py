@@ -57,10 +57,7 @@ def command(
     tol: float | None,
     quiet: bool,  # noqa: FBT001 - click passes a keyword
 ) -> int:
-    """Draw a solver's answer: picture, animation or VTU files.
-
-    Beams have their true thickness and the colour of a stress or moment.
-    """
+    """Draw a solver's answer: picture, animation or VTU files."""
     from comparisons import cases
     from comparisons.audit import audit
     from comparisons.choices import Choices, check
