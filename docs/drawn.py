@@ -29,10 +29,11 @@ import cprbm
 import fea_reference
 from comparisons import cases, offset_drawn
 from comparisons.bodies_drawn import draw_bodies, draw_edges, draw_names, draw_stops, joined_ends, places_at
-from comparisons.figures import BLUE, GREY, RED, Picture, along_axis, canvas, picture
-from comparisons.formats import number, scaled_unit
+from comparisons.display_units import axis_unit, display_unit
+from comparisons.figures import BLUE, GREY, RED, Picture, canvas, picture, show_lengths
+from comparisons.formats import number
 from comparisons.framing import frame
-from comparisons.geometry import length, points
+from comparisons.geometry import length, longest, points
 from comparisons.offset_verdict import compared_offset
 from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
 from comparisons.stations import station_of
@@ -104,14 +105,19 @@ def shapes(scene: Scene, answers: tuple[Answer, Answer]) -> Picture:
             chain, elements = (station_of(answer, stage.name, value) for answer in answers)
             _as_drawn(axes, scene)
             _loaded(axes, scene, chain, elements)
-            factor, unit = along_axis(load_unit(scene, stage), value)
+            factor, unit = axis_unit(scene, load_unit(scene, stage), value)
             axes.set_title(f"{stage.steps} = {_short(value / factor, unit)}", loc="left", fontsize=10)
             frame(axes, elements)
+            show_lengths(scene, axes.xaxis)
+            show_lengths(scene, axes.yaxis)
             if place == 0:
                 draw_names(axes, scene)
         handles, labels = figure.axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=2 * columns)
-        return picture(figure, "shapes", "Neutral lines in mm, as drawn and under load, with the places of contact.")
+        _, unit = display_unit(scene, "m", longest(scene))
+        return picture(
+            figure, "shapes", f"Neutral lines in {unit}, as drawn and under load, with the places of contact."
+        )
 
 
 def _short(value: float, unit: str) -> str:
@@ -125,14 +131,14 @@ def _has(answer: Answer, stage: Stage, value: float) -> bool:
 
 def _as_drawn(axes: Axes, scene: Scene) -> None:
     for place, beam in enumerate(scene.beams.values()):
-        x, y = 1e3 * points(beam.curve, np.linspace(0.0, length(beam.curve), 120)).T
+        x, y = points(beam.curve, np.linspace(0.0, length(beam.curve), 120)).T
         axes.plot(x, y, "--", color=GREY, linewidth=1.0, label="as drawn" if place == 0 else None)
     draw_bodies(axes, scene, {end.point: scene.place_of(end.point) for _, end, _ in joined_ends(scene)}, "--", GREY)
     for contact in scene.contacts.values():
         if isinstance(contact, CircleContact):
             x, y = contact.center
             # an artist, no patch: a large circle must not make the beams small
-            axes.add_artist(Circle((1e3 * x, 1e3 * y), 1e3 * contact.radius, fill=False, edgecolor=GREY))
+            axes.add_artist(Circle((x, y), contact.radius, fill=False, edgecolor=GREY))
 
 
 def _loaded(axes: Axes, scene: Scene, chain: StationAnswer, elements: StationAnswer) -> None:
@@ -143,11 +149,11 @@ def _loaded(axes: Axes, scene: Scene, chain: StationAnswer, elements: StationAns
     for place, beam in enumerate(scene.beams):
         one, other = elements.shapes[beam], chain.shapes[beam]
         label = ("finite elements", "CPRBM") if place == 0 else (None, None)
-        axes.plot(1e3 * one.x, 1e3 * one.y, "-", color=RED, linewidth=2.0, label=label[0])
-        axes.plot(1e3 * other.x, 1e3 * other.y, ".", color=BLUE, markersize=4.0, label=label[1])
+        axes.plot(one.x, one.y, "-", color=RED, linewidth=2.0, label=label[0])
+        axes.plot(other.x, other.y, ".", color=BLUE, markersize=4.0, label=label[1])
     touching = [spots for spots in chain.touching.values() if len(spots)]
     if touching:
-        x, y = 1e3 * np.concatenate(touching).T
+        x, y = np.concatenate(touching).T
         axes.plot(x, y, "o", color=BLUE, markersize=7.0, markerfacecolor="none", linestyle="", label="contact")
 
 
@@ -159,8 +165,8 @@ def curves(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
     panels = {quantity: probes for quantity, probes in asked.items() if probes}
     if not panels or sum(len(stage.stations) for stage in stages) < 2:
         return None
-    step, step_unit = along_axis(
-        load_unit(scene, last), max(abs(value) for stage in stages for value in stage.stations)
+    step, step_unit = axis_unit(
+        scene, load_unit(scene, last), max(abs(value) for stage in stages for value in stage.stations)
     )
     with canvas(7.0, 0.4 + 2.5 * len(panels)) as figure:
         for axes, (quantity, probes) in zip(
@@ -170,7 +176,7 @@ def curves(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
                 abs(float(each)) for answer in answers for at in answer.stations for probe in probes
                 for each in at.values[probe.name]
             ]  # fmt: skip
-            factor, unit = scaled_unit(unit_of(scene, probes[0], last), max(sizes, default=1.0))
+            factor, unit = display_unit(scene, unit_of(scene, probes[0], last), max(sizes, default=1.0))
             for place, probe in enumerate(probes):
                 for component, name in enumerate(COMPONENTS.get(quantity, ("",))):
                     look = ("-", "--", ":", "-.")[(2 * place + component) % 4]
@@ -219,16 +225,17 @@ def stress(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
         return None
     with canvas(7.0, 0.4 + 2.2 * len(probes)) as figure:
         largest = max(float(np.max(np.abs(at.values[probe.name]))) for at in reached for probe in probes)
-        factor, unit = scaled_unit("Pa", largest)
+        factor, unit = display_unit(scene, "Pa", largest)
         for axes, probe in zip(np.atleast_1d(figure.subplots(len(probes), 1)), probes, strict=True):
-            s = 1e3 * arc_lengths(scene, probe)
+            s = arc_lengths(scene, probe)
             chain, elements = (at.values[probe.name] / factor for at in reached)
             axes.axhline(0.0, color=GREY, linewidth=0.6)
             axes.plot(s, elements, "-", color=RED, linewidth=1.6, label="finite elements")
             axes.plot(s, chain, ".", color=BLUE, markersize=4.0, label="CPRBM")
             axes.set_title(probe.of, loc="left", fontsize=10)
             axes.set_ylabel(f"stress, {unit}")
-        axes.set_xlabel("arc length as drawn, mm")
+            show_lengths(scene, axes.xaxis)
+        show_lengths(scene, axes.xaxis, "arc length as drawn")
         figure.axes[0].legend(loc="best", fontsize=8)
         return picture(
             figure,
@@ -249,7 +256,7 @@ def recorded() -> dict[str, Any]:
 def numbers(scene: Scene) -> str:
     """Table of the recorded numbers at the last station, without stresses along beams."""
     last = scene.stages[-1]
-    factor, unit = along_axis(load_unit(scene, last), last.stations[-1])
+    factor, unit = axis_unit(scene, load_unit(scene, last), last.stations[-1])
     answers = [recorded()[f"{scene.name} {run}"]["stations"][-1] for run in (f"cprbm {N}", f"fea {n}")]
     lines = [
         f"The recorded numbers at {last.steps} = {_short(last.stations[-1] / factor, unit)} ({N} links and {n} finite "
@@ -262,7 +269,9 @@ def numbers(scene: Scene) -> str:
         found = [answer["values"].get(probe.name) for answer in answers]
         if probe.quantity in STRESSES or not all(found):  # stresses, and probes without a value
             continue
-        factor, unit = scaled_unit(unit_of(scene, probe, last), max(abs(each) for values in found for each in values))
+        factor, unit = display_unit(
+            scene, unit_of(scene, probe, last), max(abs(each) for values in found for each in values)
+        )
         cells = [
             ", ".join(number(each / factor if abs(each) > NOTHING else 0.0, 5) for each in values) for values in found
         ]
