@@ -58,7 +58,7 @@ def of_criticals(compared: Comparison) -> Sheet:
 
 def of_branches(compared: Comparison) -> Sheet:
     """The verdict branch by branch; nothing where no branch ends."""
-    told = compared.verdict.branches if compared.criticals or len(compared.verdict.branches) > 1 else ()
+    branches = compared.verdict.branches if compared.criticals or len(compared.verdict.branches) > 1 else ()
     body = [
         (
             f"{each.stage}, branch {each.number}",
@@ -67,7 +67,7 @@ def of_branches(compared: Comparison) -> Sheet:
             str(each.near),
             "takes no part" if each.word is None else each.word.value,
         )
-        for each in told
+        for each in branches
     ]
     between = dict.fromkeys(row.where for row in compared.rows if row.branch is None)
     for stage in dict.fromkeys(stage for stage, _ in between):

@@ -259,7 +259,7 @@ def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Pi
         last = scene.stages[-1]
         step, step_unit = axis_unit(scene, load_unit(scene, last), max(map(abs, last.stations)))
         names = list(dict.fromkeys(row.probe.name for row in rows))
-        told: set[str] = set()
+        labelled: set[str] = set()
         for name, (line, marker) in zip(names, islice(cycle(LOOKS), len(names)), strict=True):
             for stage in scene.stages:
                 if stage.steps != last.steps:  # another load or drive has another axis
@@ -270,8 +270,8 @@ def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Pi
                     load = [row.station / step for row in mine]
                     # where the answers are not on one branch there is none to draw a line of
                     style = line if branch is not None else "none"
-                    first = name not in told
-                    told.add(name)
+                    first = name not in labelled
+                    labelled.add(name)
                     axes.plot(
                         load,
                         [row.fea[0] / factor for row in mine],

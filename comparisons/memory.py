@@ -22,7 +22,7 @@ class Remembering(Crew):
 
     Attributes:
         solvers: so that of a run's choices those count that its solver looks at.
-        say: told what is about to be solved.
+        say: called with a description of the next solve.
         known: every answer so far.
     """
 
@@ -39,7 +39,7 @@ class Remembering(Crew):
         keys = [self._key(job) for job in jobs]
         new = {key: job for key, job in zip(keys, jobs, strict=True) if key not in self.known}
         if new:
-            self.say("; ".join(dict.fromkeys(self._told(job) for job in new.values())))
+            self.say("; ".join(dict.fromkeys(self._description(job) for job in new.values())))
             # not super(), which a class with slots does not know
             self.known.update(zip(new, Crew.begin(self, list(new.values()))(), strict=True))
         return [self.known[key] for key in keys]
@@ -68,7 +68,7 @@ class Remembering(Crew):
         beams = replace(nothing, elements=elements, kinematics=choices.kinematics, penetration=choices.penetration)
         return solver, scene, beams
 
-    def _told(self, job: Job) -> str:
+    def _description(self, job: Job) -> str:
         solver, scene, choices = job
         if solver == self.solvers.exact:
             return f"{scene.name}: exact"

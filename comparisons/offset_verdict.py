@@ -165,5 +165,5 @@ def _judged(question: OffsetQuestion, rows: tuple[OffsetRow, ...]) -> Verdict:
         case Word.DIFFER:
             sentence = f"{len(those)} of {len(rows)} rows differ, most of all {place}."
         case Word.UNDECIDED:
-            sentence = f"{len(those)} of {len(rows)} rows cannot be told, least of all {place}."
+            sentence = f"{len(those)} of {len(rows)} rows are undecided, first of all {place}."
     return Verdict(word, (sentence,), tuple(words), completed=all(np.isfinite(each.difference) for each in rows))

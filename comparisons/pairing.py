@@ -354,8 +354,8 @@ def _one_by_one(jobs: Sequence[Job], decided: Decided) -> list[Answer]:
 
 def _done(answer: Answer, done: int, whole: int) -> None:
     """Log that a run is done, with the number of runs done, of ``whole``."""
-    told = answer.scene, done, whole, answer.solver, answer.ending.name, answer.seconds
-    _SAYS.info("%s: run %d of %d is done: %s, %s after %.2f s", *told, extra={"done": done, "whole": whole})
+    report = answer.scene, done, whole, answer.solver, answer.ending.name, answer.seconds
+    _SAYS.info("%s: run %d of %d is done: %s, %s after %.2f s", *report, extra={"done": done, "whole": whole})
 
 
 def _awaited(futures: Mapping[_Pending, int], decided: Decided) -> list[Answer]:
@@ -519,9 +519,9 @@ def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
     """The CPRBM at N in ``paper``; None where the run is impossible, takes long or shows nothing."""
     finest = choices.links if isinstance(choices.links, int) else max(choices.links.values())
     contacts = scene.contacts.values()
-    told = all(isinstance(contact, RigidContact) or contact.paper is not None for contact in contacts)
+    has_hints = all(isinstance(contact, RigidContact) or contact.paper is not None for contact in contacts)
     ends = any(stage.beyond is not None for stage in scene.stages)
-    if not contacts or not told or ends or finest > PAPER_BESIDE_AUTO:
+    if not contacts or not has_hints or ends or finest > PAPER_BESIDE_AUTO:
         return None
     try:
         return solvers.cprbm(scene, replace(choices, formulation="paper"))

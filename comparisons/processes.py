@@ -24,7 +24,7 @@ class AloneError(RuntimeError):
 
 
 class ByForceError(RuntimeError):
-    """A process ended before it had told what its call returns or raises."""
+    """A process ended without the result or the exception of its call."""
 
 
 def pool(workers: int, prepares: Callable[..., object] | None = None, *given: Any) -> ProcessPoolExecutor:  # noqa: ANN401
@@ -84,10 +84,10 @@ def _tell(
 ) -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
-        told: tuple[object, Exception | None] = (call(*arguments, **named), None)
+        result: tuple[object, Exception | None] = (call(*arguments, **named), None)
     except Exception as error:
-        told = (None, error)
-    writing.send(told)
+        result = (None, error)
+    writing.send(result)
 
 
 @contextmanager

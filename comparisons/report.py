@@ -117,14 +117,14 @@ def page(chapters: tuple[Chapter, ...]) -> str:
 
 def chapter(compared: Comparison, pictures: tuple[figures.Picture, ...]) -> Chapter:
     """What the page shows of a case and its figures."""
-    told = sheets.of_comparison(compared), sheets.explanation(compared)
-    return _chapter(compared.scene, compared.verdict, *told, pictures, ("comparison.json", "answers.json.gz"))
+    content = sheets.of_comparison(compared), sheets.explanation(compared)
+    return _chapter(compared.scene, compared.verdict, *content, pictures, ("comparison.json", "answers.json.gz"))
 
 
 def offset_chapter(compared: OffsetComparison, pictures: tuple[figures.Picture, ...]) -> Chapter:
     """What the page shows of an offset question and its figures."""
-    told = offset_pages.sheets_of(compared)
-    return _chapter(compared.question, compared.verdict, told, (), pictures, ("comparison.json",))
+    tables = offset_pages.sheets_of(compared)
+    return _chapter(compared.question, compared.verdict, tables, (), pictures, ("comparison.json",))
 
 
 def _chapter(

@@ -83,13 +83,13 @@ class Run:
             OSError: it cannot be noted.
         """
         if self.folder is not None:
-            write(self.folder / f"{name}.told", name)
+            write(self.folder / f"{name}.shown", name)
 
     def caught_up(self, names: Collection[str]) -> bool:
-        """Whether with these questions all are told that were told before; if not, what is written says more."""
+        """True if these questions cover all questions of the present page; otherwise the page stays."""
         if self.folder is None:
             return True
-        return not any((self.folder / f"{name}.told").exists() for name in self.asked if name not in names)
+        return not any((self.folder / f"{name}.shown").exists() for name in self.asked if name not in names)
 
 
 @contextmanager

@@ -23,7 +23,7 @@ from comparisons.steps import Steps, contact_model, largest_difference, steps_of
 from comparisons.third import of_thirds
 from comparisons.third import sentence as beside_the_solid
 from comparisons.tolerances.search import Tolerance
-from comparisons.tolerances.settled import told
+from comparisons.tolerances.settled import extrapolation_note
 from comparisons.verdict.calibration import EXACT_FACTOR, SOLVERS, ErrorRatio, error_ratios, tally, true_errors
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.scales import probe_scales
@@ -101,7 +101,7 @@ def of_tolerances(scene: Scene, tolerances: tuple[Tolerance, ...]) -> Sheet:
         ("solver", "N", "extrapolated from", "largest u", "of", "met", "solved"),
         body,
         "N: links or elements per beam; of an extrapolated answer the finest. "
-        + " ".join(told(found.extrapolated, found.probes) for found in tolerances if found.extrapolated),
+        + " ".join(extrapolation_note(found.extrapolated, found.probes) for found in tolerances if found.extrapolated),
     )
 
 

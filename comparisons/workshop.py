@@ -36,12 +36,12 @@ class Tool:
 TOOLS = {
     "robustness": Tool(
         "tests.robustness.command",
-        "See on random scenes how stable both solvers are, and whether a certified answer is ever wrong.",
+        "Judge both solvers on random scenes.",
     ),
     "stress": Tool("tests.robustness.command", new_name="robustness"),
     "study relations": Tool(
         "tests.relations.command",
-        "What must not change an answer: place, mirror, order, direction, units, steps, company; action and reaction.",
+        "Compare a scene with its moved, mirrored, reordered and scaled images.",
     ),
     "bench --method slsqp": Tool("benchmarks.peers.slsqp"),
     "bench --method ipopt": Tool("benchmarks.peers.ipopt"),
@@ -51,8 +51,8 @@ TOOLS = {
 REMOVED = {
     "regress": "'python -m tests.baseline' of a checkout records and compares the numbers (CONTRIBUTING.md).",
     "study readings": "no reading of section 3.4 jumps where the paper says (the page 'Where a branch ends').",
-    "study materials": "within bending no error depends on the modulus (the page 'What the paper claims').",
-    "bench --method trust-constr": "it took 10 times as long as the CPRBM (the page 'Run time against error').",
+    "study materials": "within bending no error depends on the modulus (the page 'The paper’s claims').",
+    "bench --method trust-constr": "13 times the time of the CPRBM (the page 'Decisions').",
 }
 """Commands without a successor, with the reason and the page that keeps their results."""
 

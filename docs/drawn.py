@@ -1,11 +1,11 @@
-"""The figures and tables of the pages on the built-in cases, made by the code as the pages are built.
+"""Figures and tables of the pages on the built-in cases, drawn as the pages are built.
 
     python docs/drawn.py                    every case, into docs/made
-    python docs/drawn.py hinge wrapped      some of them
+    python docs/drawn.py hinge wrapped      two cases
 
-Of each case both solvers' answers are drawn, coarser than at the standard settings (``LINKS`` and ``ELEMENTS``), so
-that all is made in a minute; the numbers of the tables come from the newest record of the baseline
-(``tests/baseline/records``), at the standard settings.  Figures that the same code made before are not made again.
+The figures show answers of both solvers, coarser than the standard settings (``LINKS`` and ``ELEMENTS``).  The numbers
+of the tables come from the newest record of the baseline (``tests/baseline/records``), at the standard settings.
+Existing figures of the same code are kept.
 """
 
 from __future__ import annotations
@@ -29,10 +29,11 @@ import cprbm
 import fea_reference
 from comparisons import cases, offset_drawn
 from comparisons.bodies_drawn import draw_bodies, draw_edges, draw_names, draw_stops, joined_ends, places_at
-from comparisons.figures import BLUE, GREY, RED, Picture, along_axis, canvas, picture
-from comparisons.formats import number, scaled_unit
+from comparisons.display_units import axis_unit, display_unit
+from comparisons.figures import BLUE, GREY, RED, Picture, canvas, picture, show_lengths
+from comparisons.formats import number
 from comparisons.framing import frame
-from comparisons.geometry import length, points
+from comparisons.geometry import length, longest, points
 from comparisons.offset_verdict import compared_offset
 from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
 from comparisons.stations import station_of
@@ -48,11 +49,11 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 MADE = HERE / "made"
 RECORDS = ROOT / "tests" / "baseline" / "records"
-LONGEST = ("prestressed", "five-bar", "rolled")  # begun first, so that no process waits at the end
+LONGEST = ("prestressed", "five-bar", "rolled")  # first, so that no process waits at the end
 LINKS, ELEMENTS = 20, 40
 N, n = 40, 80  # links and elements of the recorded numbers: the standard settings
-MOST_STATIONS = 41  # of a stage that is drawn; of more every so-many-th is solved, the shown ones and the last
-NOTHING = 1e-15  # m, rad, N, N·m or J: round-off of what is zero
+MOST_STATIONS = 41  # of a drawn stage; further stations are thinned evenly, except shown stations and the last
+NOTHING = 1e-15  # m, rad, N, N·m or J: round-off of zero
 CURVES = ("rotation", "force", "moment", "reaction", "reaction_moment", "potential_energy")
 TITLES = {
     "rotation": "rotation",
@@ -65,7 +66,7 @@ TITLES = {
 
 
 def thinned(scene: Scene) -> Scene:
-    """The scene with no more stations than a picture needs."""
+    """The scene with the stations of a picture."""
     stages = []
     for stage in scene.stages:
         every = -(-len(stage.stations) // MOST_STATIONS)
@@ -76,7 +77,7 @@ def thinned(scene: Scene) -> Scene:
 
 
 def shown(scene: Scene) -> list[tuple[Stage, float]]:
-    """Stages and stations that are drawn: those that the scene names, the last of every stage, four at most."""
+    """Stages and stations of the drawings: shown stations and the last of every stage, four at most."""
     found = [
         (stage, value)
         for stage in scene.stages
@@ -87,7 +88,7 @@ def shown(scene: Scene) -> list[tuple[Stage, float]]:
 
 
 def solved(scene: Scene) -> tuple[Answer, Answer]:
-    """Both solvers' answers, as coarse as the figures show them."""
+    """Answers of both solvers at ``LINKS`` and ``ELEMENTS``."""
     return (
         cprbm.answer(scene, cprbm.Settings(links=LINKS)),
         fea_reference.answer(scene, fea_reference.Settings(elements=ELEMENTS)),
@@ -95,7 +96,7 @@ def solved(scene: Scene) -> tuple[Answer, Answer]:
 
 
 def shapes(scene: Scene, answers: tuple[Answer, Answer]) -> Picture:
-    """The mechanism as drawn, dashed, and at the shown stations: finite elements as lines, joints of links as dots."""
+    """The undeformed mechanism, dashed, and the shown stations: finite elements as lines, joints of links as dots."""
     reached = [(stage, value) for stage, value in shown(scene) if all(_has(each, stage, value) for each in answers)]
     columns = min(2, len(reached))
     with canvas(4.4 * columns, 4.2 * -(-len(reached) // columns) + 0.4) as figure:
@@ -104,35 +105,40 @@ def shapes(scene: Scene, answers: tuple[Answer, Answer]) -> Picture:
             chain, elements = (station_of(answer, stage.name, value) for answer in answers)
             _as_drawn(axes, scene)
             _loaded(axes, scene, chain, elements)
-            factor, unit = along_axis(load_unit(scene, stage), value)
-            axes.set_title(f"{stage.steps} = {_told(value / factor, unit)}", loc="left", fontsize=10)
+            factor, unit = axis_unit(scene, load_unit(scene, stage), value)
+            axes.set_title(f"{stage.steps} = {_short(value / factor, unit)}", loc="left", fontsize=10)
             frame(axes, elements)
+            show_lengths(scene, axes.xaxis)
+            show_lengths(scene, axes.yaxis)
             if place == 0:
                 draw_names(axes, scene)
         handles, labels = figure.axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=2 * columns)
-        return picture(figure, "shapes", "Neutral lines in mm, as drawn and under load, with the places of contact.")
+        _, unit = display_unit(scene, "m", longest(scene))
+        return picture(
+            figure, "shapes", f"Neutral lines in {unit}, as drawn and under load, with the places of contact."
+        )
 
 
-def _told(value: float, unit: str) -> str:
-    """A load or drive in few digits."""
+def _short(value: float, unit: str) -> str:
+    """A load or drive with four digits."""
     return f"{value:.4g}{'' if unit == '°' else ' '}{unit}"
 
 
 def _has(answer: Answer, stage: Stage, value: float) -> bool:
-    return any(each.stage == stage.name and each.value == value for each in answer.stations)
+    return any(at.stage == stage.name and at.value == value for at in answer.stations)
 
 
 def _as_drawn(axes: Axes, scene: Scene) -> None:
     for place, beam in enumerate(scene.beams.values()):
-        x, y = 1e3 * points(beam.curve, np.linspace(0.0, length(beam.curve), 120)).T
+        x, y = points(beam.curve, np.linspace(0.0, length(beam.curve), 120)).T
         axes.plot(x, y, "--", color=GREY, linewidth=1.0, label="as drawn" if place == 0 else None)
     draw_bodies(axes, scene, {end.point: scene.place_of(end.point) for _, end, _ in joined_ends(scene)}, "--", GREY)
     for contact in scene.contacts.values():
         if isinstance(contact, CircleContact):
             x, y = contact.center
             # an artist, no patch: a large circle must not make the beams small
-            axes.add_artist(Circle((1e3 * x, 1e3 * y), 1e3 * contact.radius, fill=False, edgecolor=GREY))
+            axes.add_artist(Circle((x, y), contact.radius, fill=False, edgecolor=GREY))
 
 
 def _loaded(axes: Axes, scene: Scene, chain: StationAnswer, elements: StationAnswer) -> None:
@@ -143,24 +149,24 @@ def _loaded(axes: Axes, scene: Scene, chain: StationAnswer, elements: StationAns
     for place, beam in enumerate(scene.beams):
         one, other = elements.shapes[beam], chain.shapes[beam]
         label = ("finite elements", "CPRBM") if place == 0 else (None, None)
-        axes.plot(1e3 * one.x, 1e3 * one.y, "-", color=RED, linewidth=2.0, label=label[0])
-        axes.plot(1e3 * other.x, 1e3 * other.y, ".", color=BLUE, markersize=4.0, label=label[1])
+        axes.plot(one.x, one.y, "-", color=RED, linewidth=2.0, label=label[0])
+        axes.plot(other.x, other.y, ".", color=BLUE, markersize=4.0, label=label[1])
     touching = [spots for spots in chain.touching.values() if len(spots)]
     if touching:
-        x, y = 1e3 * np.concatenate(touching).T
+        x, y = np.concatenate(touching).T
         axes.plot(x, y, "o", color=BLUE, markersize=7.0, markerfacecolor="none", linestyle="", label="contact")
 
 
 def curves(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
-    """Rotations, forces, moments and energy against what the last stage steps."""
+    """Rotations, forces, moments and energy against the load or drive of the last stage."""
     last = scene.stages[-1]
     stages = [stage for stage in scene.stages if stage.steps == last.steps]
     asked = {quantity: [each for each in scene.probes if each.quantity == quantity] for quantity in CURVES}
     panels = {quantity: probes for quantity, probes in asked.items() if probes}
     if not panels or sum(len(stage.stations) for stage in stages) < 2:
         return None
-    step, step_unit = along_axis(
-        load_unit(scene, last), max(abs(value) for stage in stages for value in stage.stations)
+    step, step_unit = axis_unit(
+        scene, load_unit(scene, last), max(abs(value) for stage in stages for value in stage.stations)
     )
     with canvas(7.0, 0.4 + 2.5 * len(panels)) as figure:
         for axes, (quantity, probes) in zip(
@@ -170,7 +176,7 @@ def curves(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
                 abs(float(each)) for answer in answers for at in answer.stations for probe in probes
                 for each in at.values[probe.name]
             ]  # fmt: skip
-            factor, unit = scaled_unit(unit_of(scene, probes[0], last), max(sizes, default=1.0))
+            factor, unit = display_unit(scene, unit_of(scene, probes[0], last), max(sizes, default=1.0))
             for place, probe in enumerate(probes):
                 for component, name in enumerate(COMPONENTS.get(quantity, ("",))):
                     look = ("-", "--", ":", "-.")[(2 * place + component) % 4]
@@ -179,9 +185,9 @@ def curves(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
             axes.set_ylabel(f"{TITLES[quantity]}, {unit}")
             axes.legend(loc="best", fontsize=8)
         axes.set_xlabel(f"{last.steps}, {step_unit}")
-        what = ", ".join(TITLES[quantity] for quantity in panels)
+        titles = ", ".join(TITLES[quantity] for quantity in panels)
         return picture(
-            figure, "curves", f"Against {last.steps}: {what}. Lines: finite elements; dots: CPRBM. Gaps are jumps."
+            figure, "curves", f"Against {last.steps}: {titles}. Lines: finite elements; dots: CPRBM. Gaps are jumps."
         )
 
 
@@ -207,8 +213,8 @@ def _curve(
                 if (each.stage, each.branch) == (stage, branch) and len(each.values[probe]) > component
             ]
             if mine:
-                told = label if answer is elements and place == 0 else None
-                axes.plot(*zip(*mine, strict=True), label=told, **{"linestyle": "none", **style})
+                legend = label if answer is elements and place == 0 else None
+                axes.plot(*zip(*mine, strict=True), label=legend, **{"linestyle": "none", **style})
 
 
 def stress(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
@@ -219,16 +225,17 @@ def stress(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
         return None
     with canvas(7.0, 0.4 + 2.2 * len(probes)) as figure:
         largest = max(float(np.max(np.abs(at.values[probe.name]))) for at in reached for probe in probes)
-        factor, unit = scaled_unit("Pa", largest)
+        factor, unit = display_unit(scene, "Pa", largest)
         for axes, probe in zip(np.atleast_1d(figure.subplots(len(probes), 1)), probes, strict=True):
-            s = 1e3 * arc_lengths(scene, probe)
+            s = arc_lengths(scene, probe)
             chain, elements = (at.values[probe.name] / factor for at in reached)
             axes.axhline(0.0, color=GREY, linewidth=0.6)
             axes.plot(s, elements, "-", color=RED, linewidth=1.6, label="finite elements")
             axes.plot(s, chain, ".", color=BLUE, markersize=4.0, label="CPRBM")
             axes.set_title(probe.of, loc="left", fontsize=10)
             axes.set_ylabel(f"stress, {unit}")
-        axes.set_xlabel("arc length as drawn, mm")
+            show_lengths(scene, axes.xaxis)
+        show_lengths(scene, axes.xaxis, "arc length as drawn")
         figure.axes[0].legend(loc="best", fontsize=8)
         return picture(
             figure,
@@ -247,22 +254,24 @@ def recorded() -> dict[str, Any]:
 
 
 def numbers(scene: Scene) -> str:
-    """The recorded numbers at the last station as a table, without the stresses along beams."""
+    """Table of the recorded numbers at the last station, without stresses along beams."""
     last = scene.stages[-1]
-    factor, unit = along_axis(load_unit(scene, last), last.stations[-1])
+    factor, unit = axis_unit(scene, load_unit(scene, last), last.stations[-1])
     answers = [recorded()[f"{scene.name} {run}"]["stations"][-1] for run in (f"cprbm {N}", f"fea {n}")]
     lines = [
-        f"The recorded numbers at {last.steps} = {_told(last.stations[-1] / factor, unit)} ({N} links and {n} finite "
-        "elements per beam, which stretch and shear; `python -m tests.baseline` compares new ones with them):",
+        f"The recorded numbers at {last.steps} = {_short(last.stations[-1] / factor, unit)} ({N} links and {n} finite "
+        "elements per beam, which stretch and shear; `python -m tests.baseline` compares new numbers with the record):",
         "",
         "| probe | unit | CPRBM | FEA |",
         "|---|---|---:|---:|",
     ]
     for probe in scene.probes:
         found = [answer["values"].get(probe.name) for answer in answers]
-        if probe.quantity in STRESSES or not all(found):  # of a stress, and of what has no value there
+        if probe.quantity in STRESSES or not all(found):  # stresses, and probes without a value
             continue
-        factor, unit = scaled_unit(unit_of(scene, probe, last), max(abs(each) for values in found for each in values))
+        factor, unit = display_unit(
+            scene, unit_of(scene, probe, last), max(abs(each) for values in found for each in values)
+        )
         cells = [
             ", ".join(number(each / factor if abs(each) > NOTHING else 0.0, 5) for each in values) for values in found
         ]
@@ -271,7 +280,7 @@ def numbers(scene: Scene) -> str:
 
 
 def pictures_of(name: str) -> tuple[str, tuple[Picture, ...]]:
-    """What is said before the figures of a case, and these."""
+    """Text before the figures of a case, and the figures."""
     question = cases.asked(name)
     if isinstance(question, OffsetQuestion):
         write(MADE / name / "thumbnail.png", thumbnail(question, None))
@@ -289,7 +298,7 @@ def pictures_of(name: str) -> tuple[str, tuple[Picture, ...]]:
 
 
 def make(name: str) -> str:
-    """Make the figures and the page's part of a case, unless they are there from the same code; the case's name."""
+    """Draw the figures and write the page's part of a case, unless the same code did before; the case's name."""
     folder = MADE / name
     stamp, now = folder / "made-by", _digest()
     if stamp.is_file() and stamp.read_text(encoding="utf-8") == now:
@@ -301,14 +310,14 @@ def make(name: str) -> str:
         parts.append(f"```{{figure}} /made/{name}/{each.name}.svg\n:alt: {each.caption}\n\n{each.caption}\n```\n")
     coarse = f"{LINKS} links and {ELEMENTS} elements per beam"
     if not isinstance(cases.asked(name), OffsetQuestion):
-        parts.append(f"The figures are made as this page is built, with {coarse}; the numbers above are finer.\n")
+        parts.append(f"The build of this page draws the figures with {coarse}; the numbers above are finer.\n")
     write(folder / "part.md", "\n".join(parts))
     write(stamp, now)
     return name
 
 
 def _digest() -> str:
-    """Of the sources that make the figures."""
+    """Digest of the sources of the figures."""
     found = hashlib.sha256(Path(__file__).read_bytes() + (HERE / "pictures.py").read_bytes())
     for room in ("cprbm_scene", "cprbm", "fea_reference", "comparisons"):
         for path in sorted((ROOT / room).rglob("*")):
@@ -321,14 +330,14 @@ def _digest() -> str:
 
 
 def make_all(names: Sequence[str] = (), workers: int = 2) -> Iterator[str]:
-    """Make what is missing of the cases of these names, or of all; each name when it is done."""
+    """Draw the missing figures of the named cases, or of all; a name for every finished case."""
     todo = sorted(names or cases.names(), key=lambda name: name not in LONGEST)
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         yield from pool.map(make, todo)
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Have Sphinx the figures made before the pages are read."""
+    """Register the drawing before Sphinx reads the pages."""
     app.connect("builder-inited", _inited)
     return {"parallel_read_safe": True}
 

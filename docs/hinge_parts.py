@@ -172,7 +172,7 @@ def answered(part: Part) -> Answer:
     return Answer(small, float(z[2]), moved[0], moved[1], abs(float(z[-1])))
 
 
-def told(name: str, one: Answer, other: Answer, to: Answer) -> None:
+def print_part(name: str, one: Answer, other: Answer, to: Answer) -> None:
     """What a part makes of each number, in per cent, along the displacements."""
 
     def share(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
@@ -202,8 +202,8 @@ def main() -> None:
         print(f"ν = {nu:g}: rotation {straight.rotation:.7f} rad, contact force {straight.force:.6f} N; in per cent:")
         print(" " * 50 + "".join(f"{head:>9}" for head in ("small", "rotation", "B", "D", "force")))
         for before, after in pairwise(answers):
-            told(after, answers[after], answers[before], straight)
-        told("all", answers[[*answers][-1]], straight, straight)
+            print_part(after, answers[after], answers[before], straight)
+        print_part("all", answers[[*answers][-1]], straight, straight)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Formulas as MathML, which browsers draw by themselves: no script, and nothing that a page would have to fetch."""
+"""Formulas as MathML: browsers draw MathML without scripts and without a network."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _TAG = re.compile(r"\\tag\{([^}]*)\}")
 
 
 def setup(app: Sphinx) -> None:
-    """Make known to Sphinx how formulas are drawn, under the name ``mathml``."""
+    """Register the renderer of formulas with the name ``mathml``."""
     app.add_html_math_renderer("mathml", inline_renderers=(_inline, None), block_renderers=(_block, None))
 
 
@@ -28,6 +28,6 @@ def _inline(page: HTML5Translator, formula: nodes.math) -> None:
 def _block(page: HTML5Translator, formula: nodes.math_block) -> None:
     text = formula.astext()
     number = _TAG.search(text)
-    told = f'<span class="eqno">({number[1]})</span>' if number else ""
-    page.body.append(f'<div class="math">{convert(_TAG.sub("", text), display="block")}{told}</div>')
+    tag = f'<span class="eqno">({number[1]})</span>' if number else ""
+    page.body.append(f'<div class="math">{convert(_TAG.sub("", text), display="block")}{tag}</div>')
     raise nodes.SkipNode

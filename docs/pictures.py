@@ -68,11 +68,11 @@ def _draw_mechanism(axes: Axes, scene: Scene, answer: Answer) -> None:
     reach = max(length(beam.curve) for beam in scene.beams.values())
     for obstacle in obstacles(scene, last, 0.6 * reach, 0.02 * reach):
         around = obstacle.outline if obstacle.round else np.concatenate([obstacle.outline, obstacle.solid[::-1]])
-        axes.fill(*(1e3 * around.T), facecolor="#b9bfc6", linewidth=0.0)
+        axes.fill(*around.T, facecolor="#b9bfc6", linewidth=0.0)
     for name, beam in scene.beams.items():
         drawn = points(beam.curve, np.linspace(0.0, length(beam.curve), 120))
-        axes.plot(*(1e3 * drawn.T), "-", color="#c4c9cf", linewidth=2.2)
-        axes.plot(1e3 * last.shapes[name].x, 1e3 * last.shapes[name].y, "-", color=RED, linewidth=2.2)
+        axes.plot(*drawn.T, "-", color="#c4c9cf", linewidth=2.2)
+        axes.plot(last.shapes[name].x, last.shapes[name].y, "-", color=RED, linewidth=2.2)
     draw_bodies(axes, scene, places_at(scene, last), "-", "black")
 
 

@@ -44,7 +44,7 @@ def method(
         optimiser: the set-up of its solve.
         largest: number of links up to which it goes if no sizes are named.
         look: colour and marker of its points in figures.
-        ratios: clocks by which its time is told over that of the CPRBM.
+        ratios: clocks of the ratios of its time to the time of the CPRBM.
         absence: why it cannot take part on this machine; empty if it can.
     """
     return Contender(
@@ -66,10 +66,10 @@ def _begin(optimiser: Optimiser) -> Callable[[Scene, Count, float], Run]:
         # cutting beams into links is no part of an optimiser's time
         problem = discretised(scene, count)
 
-        def told(solved: Solved) -> Outcome:
+        def outcome(solved: Solved) -> Outcome:
             found = judged(scene, problem, solved)
             return Outcome(found.ended, found.why, (solved.iterations,), found.values, found.residual)
 
-        return Run(lambda: optimiser(problem, at_most), told)
+        return Run(lambda: optimiser(problem, at_most), outcome)
 
     return begin

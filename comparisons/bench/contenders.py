@@ -50,10 +50,10 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """One run: ``set_up`` and then ``solve`` what it hands back, both on the clock; ``told`` of the result is not."""
+    """A run: ``set_up`` returns the solve, both on the clock; ``outcome`` of the result is off the clock."""
 
     set_up: Callable[[], Callable[[], Any]]
-    told: Callable[[Any], Outcome]
+    outcome: Callable[[Any], Outcome]
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,7 @@ class Contender:
         largest: size up to which the method goes if no sizes are named.
         tolerance: largest residual with which a peer's solve counts as completed; None for the project's own methods,
             which certify themselves.
-        ratios: clocks by which the method's time is told over that of CPRBM ``paper``.
+        ratios: clocks of the ratios of the method's time to the time of CPRBM ``paper``.
         look: colour and marker of a peer's points in figures.
         absence: why the method cannot take part on this machine; empty if it can.
     """

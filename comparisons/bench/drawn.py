@@ -10,7 +10,7 @@ import numpy as np
 from comparisons.bench.contenders import Contender, Name
 from comparisons.bench.question import MEASURES, Measure
 from comparisons.bench.running import Benchmark, trend
-from comparisons.bench.told import sized
+from comparisons.bench.tables import sized
 from comparisons.figures import BLUE, RED, Picture, canvas, picture
 from cprbm_scene.frozendict import frozendict
 

@@ -1,4 +1,4 @@
-"""What a benchmark asks: the last load at once, and the numbers that an error is told by.
+"""What a benchmark asks: the last load at once, and the numbers of the error.
 
 With every station and every probe a time would be that of stresses, places of contact and closing loads as well, none
 of which a peer can give.  So a scene keeps the last station of each of its stages, and of its probes:

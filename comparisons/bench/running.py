@@ -270,7 +270,7 @@ class Session:
         ready = self.clock()
         result = solve()
         end = self.clock()
-        return ready - begin, end - ready, run.told(result)
+        return ready - begin, end - ready, run.outcome(result)
 
 
 @dataclass(frozen=True, slots=True)

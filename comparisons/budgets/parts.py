@@ -17,7 +17,7 @@ L_t         limit for p → 0 and n → ∞ in the theory t: b (``bending``), s 
 
 Each part is its component along v_c − v_f, with its sign: the parts sum to the difference's norm, and a part below
 zero makes the difference smaller.  Of a stress they are taken where the difference is largest.  Where there is no
-difference at all, parts that cancel are told along v_f.
+difference at all, parts with cancellation count along v_f.
 
 The limits in N and n are those of :mod:`comparisons.verdict.uncertainty`.
 What the penalty does is proportional to p once p is small: v_0 is extrapolated from p/4 and p/16, and v(p) beside
@@ -27,7 +27,7 @@ extrapolated in n from values less what the penalty does to them, δ at n elemen
 On a circle the elements' length decides how deep a beam presses, whatever p: there the penalty is a part of
 ``elements``.
 
-Where ``auto`` was chosen, the distance of ``paper`` at N is told beside the parts and belongs to no sum.  Nor does what
+Where ``auto`` was chosen, the distance of ``paper`` at N stands beside the parts and belongs to no sum.  Nor does what
 both solvers leave out of a stress alike, :mod:`comparisons.budgets.curved_beam`, nor L_f less the value of the solid
 (:mod:`comparisons.solid_limits`): what the beam theories miss together, by which the sum would go on.
 """

@@ -1,4 +1,4 @@
-"""``cprbm bench``: run time against error, both solvers beside the optimisers that a user would take instead."""
+"""``cprbm bench``: run time against error, both solvers beside general optimisers."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import click
 
 from comparisons import workshop
 from comparisons.choices import KINEMATICS, Kinematics
-from comparisons.cli.completing import offered
-from comparisons.cli.options import count, counts, folder, output, parameters, settings, timed
+from comparisons.cli.completion import candidates
+from comparisons.cli.options import COUNT, count, counts, folder, output_options, parameters, settings, timed
 
 if TYPE_CHECKING:
     from comparisons.bench.contenders import Contender
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 NOT_COMPLETED = 1
 OURS = ("auto", "paper", "fea")
 PEERS = ("slsqp", "ipopt") if workshop.is_checkout() else ()
-"""Optimisers on the same problem, which are developers' tools."""
+"""Optimisers on the same problem: developers' tools."""
 
 
 class _Method(click.Choice[str]):
-    """A method by its name; a sentence refuses a method of the checkout in a wheel, and a removed method."""
+    """Name of a method; removed methods, and methods of the checkout in a wheel, are refused with a sentence."""
 
     def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """The method.
@@ -43,51 +43,52 @@ def _tool(name: str) -> str:
     return f"bench --method {name}"
 
 
-def _named(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -> tuple[int | dict[str, int], ...]:
-    """Every ``-n`` as one size.
+def _sizes(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -> tuple[int | dict[str, int], ...]:
+    """A size for every ``-n``.
 
     Raises:
-        click.BadParameter: one is no number of links.
+        click.BadParameter: a value is no number of links.
     """
-    return tuple(count(ctx, param, one) for one in value)
+    return tuple(count(ctx, param, text) for text in value)
 
 
 @click.command("bench")
-@click.argument("case", metavar="CASE|FILE.toml", shell_complete=offered)
+@click.argument("case", metavar="CASE|FILE.toml", shell_complete=candidates)
 @parameters
 @click.option(
     "--sizes",
     callback=counts,
     metavar="N,N,...",
-    help="Links and elements per beam; unless given 10, 20, 40 and so on doubled, up to 5120 links in auto, 640 in "
-    "paper and 1280 elements; in a checkout 160 links for ipopt and 80 for slsqp.",
+    help="Links and elements per beam.  [default: 10, 20, 40 and further doublings, up to 5120 links in auto, 640 in "
+    "paper and 1280 elements; in a checkout 160 links for ipopt and 80 for slsqp]",
 )
 @click.option(
     "-n",
+    "--links",
     "links",
     multiple=True,
-    callback=_named,
-    metavar="COUNT",
-    help="One size, as 40 or as beam1=30,beam2=40; may be repeated, in the place of --sizes.",
+    callback=_sizes,
+    metavar=COUNT,
+    help="Links per beam, as 40 or as beam1=30,beam2=40; may be repeated, in place of --sizes.",
 )
 @click.option(
     "--method",
     "methods",
     multiple=True,
     type=_Method([*OURS, *PEERS]),
-    help="Who takes part; may be repeated. Unless given all that the scene offers. auto and paper are the CPRBM's.",
+    help="Method to time; may be repeated. auto and paper belong to the CPRBM.  [default: all for the scene]",
 )
 @click.option(
     "--stations",
     type=click.Choice(["last", "all"]),
     default="last",
     show_default=True,
-    help="'last': each stage's last station alone, gone to at once, and no probes but those that errors are told by. "
-    "'all': the scene as it stands, without the peers, which know one station.",
+    help="'last': only the last station of every stage, in a single step, with the probes of the errors. "
+    "'all': the whole scene, without the optimisers.",
 )
 @timed(
-    "How often each size is solved.",
-    "is the last of its method, and a peer's is ended then; sizes that together take longer are not repeated.",
+    "Repetitions of every size.",
+    "is the last of its method; an optimiser is stopped then. Sizes with a longer sum are not repeated.",
     "30",
 )
 @click.option(
@@ -95,17 +96,17 @@ def _named(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -
     type=click.Choice(["wall", "cpu"]),
     default="wall",
     show_default=True,
-    help="Seconds that pass, or those of the processor, for a machine that has other work.",
+    help="Elapsed seconds, or processor seconds for a machine with other work.",
 )
 @click.option(
     "--kinematics",
     type=click.Choice(KINEMATICS),
     default="bending",
     show_default=True,
-    help="Beam theory of the finite elements; 'bending' is the CPRBM's own, and that of the errors.",
+    help="Beam theory of the finite elements; 'bending' is the theory of the CPRBM and of the errors.",
 )
-@output
-@folder("Folder for the numbers and the figures.")
+@output_options
+@folder("Folder for numbers and figures.")
 @click.pass_obj
 def command(
     planted: object,
@@ -119,17 +120,18 @@ def command(
     clock: Clock,
     kinematics: Kinematics,
     json_file: Path | None,
-    quiet: bool,  # noqa: FBT001 - click hands it over by name
+    quiet: bool,  # noqa: FBT001 - click passes a keyword
     out: Path | None,
 ) -> int:
-    """Time the solvers, and optimisers on the same problem, on one scene at growing numbers of links and elements.
+    """Time solvers and optimisers against their errors.
 
-    Exit code 1 says that a run of the project's own solvers did not complete; what a peer does is told in the tables.
+    The numbers of links and elements grow.
+    Exit code 1 means an incomplete run of a solver of this project.
     """
     from comparisons import cases, machine
-    from comparisons.bench import contenders, errors, question, running, told
+    from comparisons.bench import contenders, errors, question, running, tables
     from comparisons.choices import Choices, check
-    from comparisons.cli import showing
+    from comparisons.cli import output
     from comparisons.pairing import solvers_of
     from cprbm_scene.frozendict import frozendict
 
@@ -150,7 +152,9 @@ def command(
     absent = frozendict({one.name: why for one in asked if (why := _why_not(one, whole=whole))})
     taking = tuple(one for one in asked if one.name not in absent)
     if not taking:
-        raise click.UsageError("Nobody is left: " + "; ".join(f"{name}: {why}" for name, why in absent.items()) + ".")
+        raise click.UsageError(
+            "No method is left: " + "; ".join(f"{name}: {why}" for name, why in absent.items()) + "."
+        )
     plan = running.Plan(
         frozendict({one.name: running.sizes_of(one, named) for one in taking}),
         kinematics,
@@ -160,63 +164,63 @@ def command(
         clock,
     )
     session = running.Session(scene, plan, taking, machine.described(), running.CLOCKS[clock], absent=absent)
-    showing.room_for(json_file, out)
-    with showing.current(shown=not quiet) as say:
-        say("the reference of the errors")
+    output.room_for(json_file, out)
+    with output.current(shown=not quiet) as say:
+        say("reference of the errors")
         known = errors.reference(question.asked(opened), solvers)
     try:
-        for job in showing.progress(session.jobs(), shown=not quiet):
+        for job in output.progress(session.jobs(), shown=not quiet):
             session.do(job)
             if session.seconds:
-                _written(told.document(session.done(known)), json_file, out, scene.name)
+                _write(tables.document(session.done(known)), json_file, out, scene.name)
     except KeyboardInterrupt:
         if session.seconds:
-            _shown(session, known, json_file, out, quiet=quiet)
+            _report(session, known, json_file, out, quiet=quiet)
         raise
-    return _shown(session, known, json_file, out, quiet=quiet)
+    return _report(session, known, json_file, out, quiet=quiet)
 
 
-def _shown(session: Session, known: Reference, json_file: Path | None, out: Path | None, *, quiet: bool) -> int:
-    """Write and print what is done; the exit code.
+def _report(session: Session, known: Reference, json_file: Path | None, out: Path | None, *, quiet: bool) -> int:
+    """Write and print the finished runs; the exit code.
 
     Raises:
-        SceneError: every method has refused the question.
-        OSError: something cannot be written.
+        SceneError: every method refused the question.
+        OSError: a file cannot be written.
     """
-    from comparisons.bench import drawn, told
-    from comparisons.cli import showing
+    from comparisons.bench import drawn, tables
+    from comparisons.cli import output
     from comparisons.writing import write
 
     done = session.done(known)
-    data = told.document(done)
-    _written(data, json_file, out, done.scene.name)
+    data = tables.document(done)
+    _write(data, json_file, out, done.scene.name)
     if json_file is not None and str(json_file) == "-":
-        showing.json(json_file, data)
+        output.json(json_file, data)
     if out is not None:
         for picture in drawn.pictures(done):
             write(out / done.scene.name / f"{picture.name}.svg", picture.svg)
             write(out / done.scene.name / f"{picture.name}.png", picture.png)
     if str(json_file) != "-" and not quiet:
-        showing.tables(told.sheets(done))
+        output.tables(tables.sheets(done))
     failed = [one for one in done.timings if one.contender.name in OURS and not one.outcome.completed]
     for one in failed:
-        who = f"{one.contender.label} at N = {told.sized(one.count)}"
+        who = f"{one.contender.label} at N = {tables.sized(one.count)}"
         click.echo(f"cprbm: {done.scene.name}: {who}: {one.outcome.why}", err=True)
     return NOT_COMPLETED if failed else 0
 
 
-def _written(data: Plain, json_file: Path | None, out: Path | None, name: str) -> None:
-    """Put the numbers into their files, as many as there are.
+def _write(data: Plain, json_file: Path | None, out: Path | None, name: str) -> None:
+    """Write the numbers of the finished runs.
 
     Raises:
-        OSError: one cannot be written.
+        OSError: a file cannot be written.
     """
     from comparisons import documents
-    from comparisons.cli import showing
+    from comparisons.cli import output
     from comparisons.writing import write
 
     if json_file is not None and str(json_file) != "-":
-        showing.json(json_file, data)
+        output.json(json_file, data)
     if out is not None:
         write(out / name / "bench.json", documents.text(data))
 
@@ -227,7 +231,7 @@ def _peer(name: str) -> Contender:
 
 
 def _why_not(contender: Contender, *, whole: bool) -> str:
-    """Why a method cannot take part; empty if it can."""
+    """Reason against a method; empty for a possible method."""
     if whole and contender.is_peer:
-        return "an optimiser of one minimum knows the last station alone"
+        return "an optimiser solves the last station only"
     return contender.absence

@@ -1,4 +1,4 @@
-"""Groups of commands, some of which are developers' tools outside the wheel; unknown names get a list of the known."""
+"""Groups of commands with developers' tools outside the wheel; an unknown name gets a list of the known names."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from comparisons import workshop
 
 
 class ToolCommand(click.Command):
-    """Stands for a developers' tool in a list of commands, so that listing imports nothing of the tool.
+    """Placeholder of a developers' tool in a list of commands: a list imports no tool.
 
     Attributes:
         tool: the tool's command, without the name of the program.
@@ -21,7 +21,7 @@ class ToolCommand(click.Command):
         self.tool = tool
 
     def loaded(self) -> click.Command:
-        """The tool's own command; standard error names the new command of a tool that goes by its old one."""
+        """The command of the tool; for an old name standard error states the new name."""
         new_name = workshop.TOOLS[self.tool].new_name
         if new_name:
             click.echo(
@@ -32,12 +32,12 @@ class ToolCommand(click.Command):
 
 
 class Commands(click.Group):
-    """Commands by their names; the refusal of an unknown name lists the known ones."""
+    """Commands by name; the message for an unknown name lists the known names."""
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The command that the arguments begin with.
+        """The command at the start of the arguments.
 
         Raises:
             click.ClickException: the command is a developers' tool and this is no checkout, or the command is removed.
@@ -51,7 +51,7 @@ class Commands(click.Group):
             known = self.list_commands(ctx)
             near = get_close_matches(name.casefold(), known, n=1)
             meant = f" (is {near[0]!r} meant?)" if near else ""
-            said = f"found {name!r}, which is no command of '{ctx.command_path}'{meant}; allowed: {', '.join(known)}"
+            said = f"found {name!r}, no command of '{ctx.command_path}'{meant}; allowed: {', '.join(known)}"
             ctx.fail(said)
         _, command, rest = super().resolve_command(ctx, args)
         return name, command.loaded() if isinstance(command, ToolCommand) else command, rest

@@ -1,4 +1,4 @@
-"""``cprbm compare``: both solvers on one scene or several, and the verdicts."""
+"""``cprbm compare``: both solvers on scenes, and the verdicts."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from comparisons.choices import Kinematics
-from comparisons.cli.completing import offered
+from comparisons.cli.completion import candidates
 from comparisons.cli.options import (
     exactness,
     exports,
     folder,
     numerical,
-    one_of_both,
     opinions,
-    output,
+    output_options,
     parameters,
+    refuse_sizes_with,
     settings,
 )
 from comparisons.listening import heard_from
@@ -29,7 +29,7 @@ from comparisons.listening import heard_from
 if TYPE_CHECKING:
     from comparisons.case import Comparison
     from comparisons.choices import Choices
-    from comparisons.cli.showing import Steps
+    from comparisons.cli.output import Steps
     from comparisons.documents import Plain
     from comparisons.offset_verdict import OffsetComparison
     from comparisons.pairing import Crew, Runs, Solvers
@@ -38,20 +38,20 @@ if TYPE_CHECKING:
 
 
 @click.command("compare")
-@click.argument("asked", nargs=-1, required=True, metavar="CASE|FILE.toml...|all", shell_complete=offered)
+@click.argument("arguments", nargs=-1, required=True, metavar="CASE|FILE.toml...|all", shell_complete=candidates)
 @parameters
 @click.option("--solver", "asking_solid", callback=opinions, default="cprbm,fea", show_default=True, metavar="SOLVERS",
-              help="Who answers: 'cprbm,fea', or 'cprbm,fea,solid' for a third opinion.")  # fmt: skip
+              help="Solvers: 'cprbm,fea', or 'cprbm,fea,solid' for a third opinion.")  # fmt: skip
 @numerical
 @exactness
 @exports
-@output
-@folder("Folder of the report; 'report' for 'compare all', else none unless given.")
+@output_options
+@folder("Folder of the report.  [default: 'report' for 'compare all', otherwise none]")
 @click.pass_obj
 def command(
     planted: object,
-    asked: tuple[str, ...],
-    asking_solid: bool,  # noqa: FBT001 - click hands it over by name
+    arguments: tuple[str, ...],
+    asking_solid: bool,  # noqa: FBT001 - click passes a keyword
     links: int | Mapping[str, int],
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
@@ -59,41 +59,44 @@ def command(
     penetration: float,
     across: int,
     tol: float | None,
-    exact: bool | None,  # noqa: FBT001 - click hands it over by name
+    exact: bool | None,  # noqa: FBT001 - click passes a keyword
     csv_file: Path | None,
     plot_file: Path | None,
     json_file: Path | None,
-    quiet: bool,  # noqa: FBT001 - click hands it over by name
+    quiet: bool,  # noqa: FBT001 - click passes a keyword
     out: Path | None,
 ) -> int:
-    """Answer scenes with both solvers and say whether they agree."""
+    """Solve scenes with both solvers and state a verdict.
+
+    The verdict of a scene is AGREE, DIFFER or UNDECIDED, with a reason.
+    """
     from comparisons import report
     from comparisons.brief import WIDTH, summary
     from comparisons.choices import Choices, check
-    from comparisons.cli import showing
-    from comparisons.cli.asking import questions
+    from comparisons.cli import output
+    from comparisons.cli.questions import read_questions
     from comparisons.pairing import crew_of, solvers_of, with_solid, workers_for
     from comparisons.resuming import resumed
     from cprbm_scene import OffsetQuestion
 
-    one_of_both(tol)
+    refuse_sizes_with(tol)
     taking_part = with_solid(solvers_of(planted, exact=exact)) if asking_solid else solvers_of(planted, exact=exact)
-    scenes = questions(asked)
+    scenes = read_questions(arguments)
     choices = Choices(links, formulation, elements, kinematics, penetration, across)
     for scene in scenes:
         if not isinstance(scene, OffsetQuestion):
             check(choices, scene)
-    if out is None and "all" in asked:
+    if out is None and "all" in arguments:
         out = Path("report")
     for file in (json_file, csv_file, plot_file):
-        showing.room_for(file, out)
+        output.room_for(file, out)
     printing = str(json_file) != "-"
     finished: list[Comparison | OffsetComparison] = []
     chapters: tuple[report.Chapter, ...] = ()
     names = tuple(scene.name for scene in scenes)
     with resumed(out, taking_part, names) as whole, crew_of(workers_for(planted)) as crew:
-        # a line that says which N is being solved stands in the bar's place
-        steps = showing.progress(scenes, shown=not quiet and tol is None, noun="case")
+        # with a tolerance a status line with N replaces the bar
+        steps = output.progress(scenes, shown=not quiet and tol is None, noun="case")
         for comparison in _compared(steps, choices, tol, whole.solvers, crew, shown=not quiet):
             finished.append(comparison)
             if out is not None:
@@ -103,16 +106,16 @@ def command(
                 if out is not None:
                     report.put_page(out, chapters)
                 if json_file is not None and printing:
-                    showing.json(json_file, {"cases": [_document(one) for one in finished]})
+                    output.json(json_file, {"cases": [_document(comparison) for comparison in finished]})
             steps.clear()
             if printing:
                 _show(comparison, scenes[len(finished) - 1], quiet=quiet, full=heard_from() != NOTSET)
     if json_file is not None and not printing:
-        showing.json(json_file, {"cases": [_document(one) for one in finished]})
+        output.json(json_file, {"cases": [_document(comparison) for comparison in finished]})
     _export(finished, csv_file, plot_file)
     if printing and not quiet:
         if len(finished) > 1:
-            showing.tables([summary(finished)], WIDTH)
+            output.tables([summary(finished)], WIDTH)
         if out is not None:
             click.echo(f"report: {out / 'index.html'}")
     return exit_code(finished)
@@ -121,9 +124,9 @@ def command(
 def _compared(
     steps: Steps[Question], choices: Choices, tol: float | None, solvers: Solvers, crew: Crew, *, shown: bool
 ) -> Iterator[Comparison | OffsetComparison]:
-    """The comparisons of all questions; the next one is solved while the caller draws and prints one."""
+    """Comparisons of all questions; the next question is solved while the caller draws and prints the last."""
     from comparisons.case import compare
-    from comparisons.cli import showing
+    from comparisons.cli import output
     from comparisons.offset_verdict import compared_offset
     from comparisons.pairing import begin
     from comparisons.tolerances.tolerated import paired_within
@@ -142,32 +145,32 @@ def _compared(
             yield compare(scene, pending())
         else:
             assert tol is not None
-            with showing.current(shown=shown) as say:
+            with output.current(shown=shown) as say:
                 runs, found = paired_within(scene, choices, tol, solvers, crew, say)
             yield replace(compare(scene, runs), tolerances=found)
 
 
 def _export(finished: Sequence[Comparison | OffsetComparison], csv_file: Path | None, plot_file: Path | None) -> None:
-    """Write the table and the drawing of all comparisons; standard error says that there is nothing to draw."""
+    """Write the table and the drawing of all comparisons; without common stations standard error reports the reason."""
     from comparisons.figures import of_designs
     from comparisons.offset_verdict import OffsetComparison
     from comparisons.tidy import csv_of_comparisons
     from comparisons.writing import write
 
-    compared = [each for each in finished if not isinstance(each, OffsetComparison)]
+    compared = [comparison for comparison in finished if not isinstance(comparison, OffsetComparison)]
     if csv_file is not None:
         write(csv_file, csv_of_comparisons(compared))
-    if plot_file is not None and compared and all(each.rows for each in compared):
+    if plot_file is not None and compared and all(comparison.rows for comparison in compared):
         of_designs(compared).save(plot_file)
     elif plot_file is not None:
-        click.echo(f"cprbm: {plot_file} is not drawn: a case has no station that both solvers reach.", err=True)
+        click.echo(f"cprbm: {plot_file} is not drawn: a case has no station of both solvers.", err=True)
 
 
 def _show(comparison: Comparison | OffsetComparison, question: Question, *, quiet: bool, full: bool) -> None:
-    """Print a case: briefly, in full by all tables, or quietly by the verdict alone."""
+    """Print a case: in brief, in full with all tables, or quietly with the verdict alone."""
     from comparisons import cases, offset_pages, sheets
     from comparisons.brief import brief, headline
-    from comparisons.cli import showing
+    from comparisons.cli import output
     from comparisons.offset_verdict import OffsetComparison
 
     if not quiet and not full:
@@ -175,9 +178,9 @@ def _show(comparison: Comparison | OffsetComparison, question: Question, *, quie
         click.echo(brief(comparison, shlex.join([cases.argument(question), *values])) + "\n")
         return
     if not quiet and isinstance(comparison, OffsetComparison):
-        showing.tables(offset_pages.sheets_of(comparison))
+        output.tables(offset_pages.sheets_of(comparison))
     elif not quiet and not isinstance(comparison, OffsetComparison):
-        showing.tables(sheets.of_comparison(comparison))
+        output.tables(sheets.of_comparison(comparison))
         for sentence in sheets.explanation(comparison):
             click.echo(sentence + "\n")
     verdict = comparison.verdict
@@ -188,9 +191,9 @@ def _show(comparison: Comparison | OffsetComparison, question: Question, *, quie
 
 
 def exit_code(finished: Sequence[Comparison | OffsetComparison]) -> int:
-    """0 if all agree; 1 if any differs or a solve did not complete; 3 if nothing is worse than undecided.
+    """0 if all agree; 1 if any case differs or a solve did not complete; 3 if no case is worse than undecided.
 
-    An uncertainty that is not within the tolerance asked is as undecided as a verdict can be.
+    An uncertainty above the requested tolerance counts as undecided.
     """
     from comparisons.verdict.words import Word
 
@@ -201,15 +204,20 @@ def exit_code(finished: Sequence[Comparison | OffsetComparison]) -> int:
     return 3 if any(undecided) or any(map(_beyond, finished)) else 0
 
 
-def _beyond(one: Comparison | OffsetComparison) -> tuple[Tolerance, ...]:
-    """The searches for N that have not met their tolerance."""
+def _beyond(comparison: Comparison | OffsetComparison) -> tuple[Tolerance, ...]:
+    """Searches for N without success."""
     from comparisons.offset_verdict import OffsetComparison
 
-    return () if isinstance(one, OffsetComparison) else tuple(found for found in one.tolerances if not found.met)
+    searches = () if isinstance(comparison, OffsetComparison) else comparison.tolerances
+    return tuple(tolerance for tolerance in searches if not tolerance.met)
 
 
-def _document(one: Comparison | OffsetComparison) -> Plain:
+def _document(comparison: Comparison | OffsetComparison) -> Plain:
     from comparisons import documents, offset_pages
     from comparisons.offset_verdict import OffsetComparison
 
-    return offset_pages.document(one) if isinstance(one, OffsetComparison) else documents.comparison(one)
+    return (
+        offset_pages.document(comparison)
+        if isinstance(comparison, OffsetComparison)
+        else documents.comparison(comparison)
+    )

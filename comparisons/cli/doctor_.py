@@ -1,4 +1,4 @@
-"""``cprbm doctor``: what is there, what is missing, and what installs it."""
+"""``cprbm doctor``: installed and missing libraries, with commands for installation."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ INCOMPLETE = 1
 
 
 @click.command("doctor")
-@click.option("-q", "--quiet", is_flag=True, help="Only what is needed and cannot be used.")
-def command(quiet: bool) -> int:  # noqa: FBT001 - click hands it over by name
-    """Say which libraries are there and which are missing, with the line that installs each.
+@click.option("-q", "--quiet", is_flag=True, help="Print only required libraries that cannot be used.")
+def command(quiet: bool) -> int:  # noqa: FBT001 - click passes a keyword
+    """List installed and missing libraries.
 
-    Then stands whether processes can share the work and, with PyVista, whether pictures in space can be drawn, which
-    both ask something of the system; the last line sums up.
-    Exit code 1 says that something is missing without which nothing works.
+    A missing library stands with the command that installs it.
+
+    Two further lines state whether worker processes can run, and whether PyVista can draw. The last line sums up.
+    Exit code 1 means a missing required library.
     """
     import platform
 
@@ -32,10 +33,10 @@ def command(quiet: bool) -> int:  # noqa: FBT001 - click hands it over by name
         elif state.version:
             said = f"{state.version:<12} cannot be imported ({state.trouble}); for {library.needed_for}"
             line = line_for(library.name, state.trouble)
-            anew = f"install it anew: {library.line} --force-reinstall"
-            said += f"; on Debian and Ubuntu install what it wants, as root: {line}" if line else f"; {anew}"
+            anew = f"install the library again: {library.line} --force-reinstall"
+            said += f"; on Debian and Ubuntu install its system libraries, as root: {line}" if line else f"; {anew}"
         else:
-            said = f"{'missing':<12} for {library.needed_for}; install it: {library.line}"
+            said = f"{'missing':<12} for {library.needed_for}; install: {library.line}"
         if not state.there and library.extra:
             left.append(library.name)
         whole &= state.there or bool(library.extra)
@@ -45,7 +46,7 @@ def command(quiet: bool) -> int:  # noqa: FBT001 - click hands it over by name
     if quiet:
         return 0 if whole else INCOMPLETE
     alone = trouble_beside()
-    said = f"{'one':<12} does all of the work: {alone}" if alone else f"{'several':<12} can share the work"
+    said = f"{'single':<12} process for all work: {alone}" if alone else f"{'several':<12} can share the work"
     click.echo(f"{'processes':<14} {said}")
     if drawing and not alone:
         from comparisons.viewing.space import tried
@@ -53,17 +54,15 @@ def command(quiet: bool) -> int:  # noqa: FBT001 - click hands it over by name
         trouble = tried()
         said = "works        for pictures in space by 'view'"
         if trouble:
-            said = f"{'impossible':<12} ({trouble}); on Debian and Ubuntu install what draws, as root: {WHAT_DRAWS}"
+            said = f"{'impossible':<12} ({trouble}); on Debian and Ubuntu install, as root: {WHAT_DRAWS}"
         click.echo(f"{'drawing':<14} {said}")
-    click.echo(
-        _in_sum(left) if whole else "Without what is missing above nothing works; the lines beside it install it."
-    )
+    click.echo(_in_sum(left) if whole else "A required library is missing; install the library with the command above.")
     return 0 if whole else INCOMPLETE
 
 
 def _in_sum(left: list[str]) -> str:
-    """What the whole says to somebody who wants to begin."""
+    """Summary for a new user."""
     if not left:
-        return "Everything is there."
+        return "All libraries are installed."
     names = ", ".join(left)
-    return f"All is there that answers, verdicts and reports need; {names}: only for what stands beside the name."
+    return f"Answers, verdicts and reports work; {names}: only for the purpose beside the name."

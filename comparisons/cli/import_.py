@@ -1,4 +1,4 @@
-"""``cprbm import``: a scene whose beams are the tagged curves of a drawing."""
+"""``cprbm import``: a scene from the tagged curves of a drawing."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]{0,63}")
 @click.argument("drawing", metavar="FILE", type=click.Path(path_type=Path))
 @click.option("--thickness", callback=positive, required=True, metavar="T",
               help="Thickness of the beams, in the file's unit.")  # fmt: skip
-@click.option("--width", callback=positive, required=True, metavar="W", help="Their width, likewise.")
+@click.option("--width", callback=positive, required=True, metavar="W", help="Width of the beams, in the file's unit.")
 @click.option("--unit", type=click.Choice(["m", "cm", "mm", "um", "in"]), default="mm", show_default=True,
               help="Unit of lengths in the file, and in the scene.")  # fmt: skip
 @click.option("--within", callback=fraction, default="1e-5", show_default=True, metavar="SHARE",
-              help="How far a spline may be from a curve that is no line or arc, of its length.")  # fmt: skip
-@click.option("--name", metavar="NAME", help="Name of the scene.  [default: that of the file]")
+              help="Allowed distance of a spline from its curve, over the length of the curve.")  # fmt: skip
+@click.option("--name", metavar="NAME", help="Name of the scene.  [default: the name of the file]")
 @click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", default=".", show_default=True,
               help="Folder for NAME.toml.")  # fmt: skip
 def command(
     drawing: Path, thickness: float, width: float, unit: Unit, within: float, name: str | None, out: Path
 ) -> int:
-    """Write a scene whose beams are the tagged curves of a .geo, .step or .msh FILE, by gmsh.
+    """Write a scene from the tagged curves of a drawing.
 
-    Lines and circular arcs stay what they are; other curves become splines, and the scene says how far they are off.
-    A .geo file is a program, which gmsh runs: import none that you do not trust.
+    gmsh reads the .geo, .step or .msh FILE. Lines and circular arcs stay exact; other curves become splines with a
+    stated distance. gmsh runs a .geo file as a program: import trusted files only.
     """
     from comparisons.importing.gmshed import read
     from comparisons.importing.written import Wish, text
@@ -46,7 +46,7 @@ def command(
         raise click.BadParameter(f"found {named!r}; allowed: {allowed}", param_hint="--name")
     path = out / f"{named}.toml"
     if path.exists():
-        raise click.UsageError(f"found {path}, which is kept as it is; allowed: another --name.")
+        raise click.UsageError(f"found {path}, an existing file; allowed: another --name.")
     try:
         drawn = read(drawing)
     except ImportError as error:
@@ -56,8 +56,8 @@ def command(
         if not line:
             raise
         raise click.ClickException(
-            f"gmsh cannot be loaded ({error}); on Debian and Ubuntu this installs what it wants: {line}"
+            f"gmsh cannot be loaded ({error}). On Debian and Ubuntu install its libraries with: {line}"
         ) from None
     write(path, text(drawn, drawing, Wish(named, unit, thickness, width, within)))
-    click.echo(f"{path}: change its load and what is asked, and ask 'cprbm compare {path}'.")
+    click.echo(f"{path}: change load and probes, then run 'cprbm compare {path}'.")
     return 0

@@ -7,7 +7,7 @@ import click
 
 @click.command("list")
 def command() -> None:
-    """Show the built-in cases, one line each."""
+    """List the built-in cases."""
     from comparisons import cases
 
     for name, title, source in cases.described():

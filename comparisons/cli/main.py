@@ -1,8 +1,7 @@
-"""``cprbm``: the group of the sub-commands, and what becomes of every kind of trouble.
+"""The group of all commands of ``cprbm``, and the door for every exception.
 
-Exit codes: 0 all agree, or all finished; 1 a verdict is DIFFER or a solve did not complete; 2 the question
-was wrong, or what comes out cannot be written; 3 nothing worse than UNDECIDED; 128 and the number of the signal
-(130: of Ctrl-C) if a signal ended it.
+Exit codes: 0 all agree or finished; 1 a verdict is DIFFER or a solve did not complete; 2 the question is wrong, or
+the output cannot be written; 3 nothing worse than UNDECIDED; 128 plus the number of a signal (130: Ctrl-C).
 """
 
 from __future__ import annotations
@@ -17,72 +16,73 @@ import click
 
 from comparisons import workshop
 from comparisons.cli.commands import Commands, ToolCommand
-from comparisons.cli.signals import Ended
+from comparisons.cli.signals import SignalInterrupt
 
 if TYPE_CHECKING:
     from comparisons.pairing import Solvers
 
-_COMMANDS = (
-    "list",
-    "solve",
-    "compare",
-    "converge",
-    "bench",
-    "study",
-    "report",
-    "view",
-    "new",
-    "import",
-    "schema",
-    "doctor",
-)
+GROUPS = {
+    "Your mechanism": ("new", "import", "solve", "compare", "converge", "view", "report"),
+    "Built-in cases and evidence": ("list", "bench", "study"),
+    "Development": ("schema", "doctor", "robustness"),
+}
+"""Commands under their headings in the help."""
 
 WRONG_QUESTION = 2
 
 
 class _SubCommands(Commands):
-    """Finds a sub-command in the module of its name, so that only the one that runs is imported."""
+    """Sub-commands by name; only the module of the running command is imported."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Names of all sub-commands; the developers' tools are among them in a checkout."""
-        return [*_COMMANDS, *(["robustness"] if workshop.is_checkout() else [])]
+        """Names of all sub-commands; the developers' tools belong to a checkout."""
+        names = [name for group in GROUPS.values() for name in group]
+        return names if workshop.is_checkout() else [name for name in names if name not in workshop.TOOLS]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """The sub-command of a name."""
+        """The sub-command with a name, or None."""
         match cmd_name:
-            case "list":
-                from comparisons.cli.list_ import command
-            case "solve":
-                from comparisons.cli.solve_ import command
-            case "view":
-                from comparisons.cli.view_ import command
-            case "compare":
-                from comparisons.cli.compare_ import command
-            case "converge":
-                from comparisons.cli.converge_ import command
-            case "bench":
-                from comparisons.cli.bench_ import command
-            case "study":
-                from comparisons.cli.study_ import command
-            case "robustness" | "stress":
-                command = ToolCommand(cmd_name)
-            case "report":
-                from comparisons.cli.report_ import command
             case "new":
                 from comparisons.cli.new_ import command
             case "import":
                 from comparisons.cli.import_ import command
+            case "solve":
+                from comparisons.cli.solve_ import command
+            case "compare":
+                from comparisons.cli.compare_ import command
+            case "converge":
+                from comparisons.cli.converge_ import command
+            case "view":
+                from comparisons.cli.view_ import command
+            case "report":
+                from comparisons.cli.report_ import command
+            case "list":
+                from comparisons.cli.list_ import command
+            case "bench":
+                from comparisons.cli.bench_ import command
+            case "study":
+                from comparisons.cli.study_ import command
             case "schema":
                 from comparisons.cli.schema_ import command
             case "doctor":
                 from comparisons.cli.doctor_ import command
+            case "robustness" | "stress":
+                command = ToolCommand(cmd_name)
             case _:
                 return None
         return command
 
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the sub-commands of every group under its heading."""
+        room = formatter.width - 6 - max(map(len, self.list_commands(ctx)))
+        for heading, names in GROUPS.items():
+            found = [self.get_command(ctx, name) for name in names if name in self.list_commands(ctx)]
+            with formatter.section(heading):
+                formatter.write_dl([(str(each.name), each.get_short_help_str(room)) for each in found if each])
+
 
 def _version(ctx: click.Context, param: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's form
-    """Say which version is installed; a folder of sources that is not installed has none."""
+    """Print the installed version; a folder of sources without installation has no version."""
     if value:
         from importlib.metadata import PackageNotFoundError, version
 
@@ -106,15 +106,15 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
 
     Args:
         arguments: without the program's name.
-        solvers: who answers in place of the real solvers.
+        solvers: solvers in place of the real solvers.
 
     Returns:
-        The exit code; a sentence about any trouble is on standard error.
+        The exit code; a sentence about any problem is on standard error.
     """
     if sys.stdout is None:
-        return _said("Standard output is closed.")
+        return _report("Standard output is closed.")
     try:
-        # Not ``commands.main``, which would end the process by itself when standard output is closed.
+        # Not ``commands.main``: a closed standard output would end the process there.
         with commands.make_context("cprbm", list(arguments), obj=solvers) as context:
             code = commands.invoke(context)
         sys.stdout.flush()
@@ -122,34 +122,34 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
         click.echo(error.format_message(), err=True)
         return WRONG_QUESTION
     except click.UsageError as error:
-        return _said(_sentence(error.format_message()) + _next_step(error))
+        return _report(_sentence(error.format_message()) + _next_step(error))
     except click.ClickException as error:
-        return _said(error.format_message())
+        return _report(error.format_message())
     except click.exceptions.Exit as stop:
         return stop.exit_code
     except KeyboardInterrupt as stop:
         return interrupted(stop)
     except BrokenPipeError:
-        _give_up_output()
-        return _said("Standard output was closed before everything was written.")
+        _drop_output()
+        return _report("Standard output was closed before everything was written.")
     except ImportError as error:
-        # what tells of other troubles loads libraries, of which the one that is wanting may be one
-        from comparisons.cli import wanting
+        # ``errors`` loads libraries, and the missing library may be among them
+        from comparisons.cli import missing_library
 
-        return _in_trouble(error, wanting.told(error))
+        return _handle(error, missing_library.message(error))
     except Exception as error:
-        from comparisons.cli import troubles
+        from comparisons.cli import errors
 
-        return _in_trouble(error, troubles.told(error))
+        return _handle(error, errors.message(error))
     return code if isinstance(code, int) else 0
 
 
-def _in_trouble(error: Exception, told: tuple[str, int] | None) -> int:
-    """Say what is told of an error; one of which nothing is told is ours, and raised again."""
-    _give_up_output()
-    if told is None:
+def _handle(error: Exception, message: tuple[str, int] | None) -> int:
+    """Report the message of an error; an error without a message is a fault of the program and is raised again."""
+    _drop_output()
+    if message is None:
         raise error
-    return _said(*told)
+    return _report(*message)
 
 
 def _sentence(text: str) -> str:
@@ -157,7 +157,7 @@ def _sentence(text: str) -> str:
 
 
 def _next_step(error: click.UsageError) -> str:
-    """What to ask next, as sentences after that of the error."""
+    """The next step after a wrong command line, as further sentences."""
     context = error.ctx
     if context is None:
         return ""
@@ -167,20 +167,20 @@ def _next_step(error: click.UsageError) -> str:
 
 
 def interrupted(stop: KeyboardInterrupt) -> int:
-    """Say that a signal has ended the run; the exit code."""
-    ended = stop if isinstance(stop, Ended) else Ended()
-    return _said(f"{ended.sentence}; what was finished before stands.", ended.code)
+    """Report the signal behind the end of the run; the exit code."""
+    interrupt = stop if isinstance(stop, SignalInterrupt) else SignalInterrupt()
+    return _report(f"{interrupt.sentence}; finished results stand.", interrupt.code)
 
 
-def _give_up_output() -> None:
-    """Let go of what standard output does not take: the interpreter would try once more as it ends, and complain."""
+def _drop_output() -> None:
+    """Discard the rest of standard output after a failure: the interpreter would write it at exit and complain."""
     try:
         sys.stdout.flush()
     except OSError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _said(sentence: str, code: int = WRONG_QUESTION) -> int:
-    with suppress(OSError):  # where nobody can be told, the code still tells
+def _report(sentence: str, code: int = WRONG_QUESTION) -> int:
+    with suppress(OSError):  # with standard error closed the exit code remains
         click.echo(f"cprbm: {sentence}", err=True)
     return code

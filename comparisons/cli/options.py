@@ -1,4 +1,4 @@
-"""Options that several sub-commands share, and the values they take."""
+"""Options of several sub-commands, and the readers of their values."""
 
 from __future__ import annotations
 
@@ -15,6 +15,9 @@ from click.core import ParameterSource
 from comparisons.choices import KINEMATICS, Choices
 
 Decorated = Callable[..., Any]
+
+COUNT = "N|BEAM=N,..."
+"""Metavar of a number of links or elements."""
 
 
 def count(ctx: click.Context, param: click.Parameter, value: str) -> int | dict[str, int]:
@@ -44,13 +47,13 @@ def whole(ctx: click.Context, param: click.Parameter, value: str) -> int:
     """A whole number from 1 to 9999.
 
     Raises:
-        click.BadParameter: the text is none.
+        click.BadParameter: the text is no such number.
     """
     return _whole(value)
 
 
 def counts(ctx: click.Context, param: click.Parameter, value: str | None) -> tuple[int, ...] | None:
-    """Whole numbers with commas between them; None where nothing is given.
+    """Whole numbers between commas; None without the option.
 
     Raises:
         click.BadParameter: the text is something else.
@@ -59,7 +62,7 @@ def counts(ctx: click.Context, param: click.Parameter, value: str | None) -> tup
 
 
 def family_sizes(ctx: click.Context, param: click.Parameter, value: str) -> tuple[int, ...]:
-    """Two whole numbers or more that ascend.
+    """Two or more ascending whole numbers.
 
     Raises:
         click.BadParameter: the text is something else.
@@ -74,7 +77,7 @@ def positive(ctx: click.Context, param: click.Parameter, value: str) -> float:
     """A positive, finite number.
 
     Raises:
-        click.BadParameter: the text is none.
+        click.BadParameter: the text is no such number.
     """
     number = _number(value)
     if not 0.0 < number < math.inf:
@@ -83,10 +86,10 @@ def positive(ctx: click.Context, param: click.Parameter, value: str) -> float:
 
 
 def fraction(ctx: click.Context, param: click.Parameter, value: str) -> float:
-    """A positive number that is less than 1.
+    """A positive number below 1.
 
     Raises:
-        click.BadParameter: the text is none.
+        click.BadParameter: the text is no such number.
     """
     number = _number(value)
     if not 0.0 < number < 1.0:
@@ -95,7 +98,7 @@ def fraction(ctx: click.Context, param: click.Parameter, value: str) -> float:
 
 
 def tolerance(ctx: click.Context, param: click.Parameter, value: str | None) -> float | None:
-    """``0.1%`` or ``0.001`` as a fraction; None where nothing is given.
+    """``0.1%`` or ``0.001`` as a fraction; None without the option.
 
     Raises:
         click.BadParameter: the text is neither, or does not lie between 0 and 100 %.
@@ -110,7 +113,7 @@ def tolerance(ctx: click.Context, param: click.Parameter, value: str | None) -> 
 
 
 def opinions(ctx: click.Context, param: click.Parameter, value: str) -> bool:
-    """Whether the solid is asked beside ``cprbm,fea``, which are always.
+    """True for ``cprbm,fea,solid``, False for ``cprbm,fea``.
 
     Raises:
         click.BadParameter: the text names other solvers.
@@ -121,32 +124,32 @@ def opinions(ctx: click.Context, param: click.Parameter, value: str) -> bool:
     return "solid" in named
 
 
-def one_of_both(found: float | None) -> None:
-    """See that N was not given beside a tolerance, by which it is found.
+def refuse_sizes_with(tol: float | None) -> None:
+    """Refuse a number of links or elements beside a tolerance.
 
     Raises:
-        click.UsageError: it was.
+        click.UsageError: the command line has both.
     """
     source = click.get_current_context().get_parameter_source
     for name, option in (("links", "-n"), ("elements", "--elements"), ("across", "--across")):
-        if found is not None and source(name) is not ParameterSource.DEFAULT:
-            raise click.UsageError(f"found --tol and {option}; allowed: one of them, for --tol finds N by itself.")
+        if tol is not None and source(name) is not ParameterSource.DEFAULT:
+            raise click.UsageError(f"found --tol and {option}; allowed: only one of the two, since --tol searches N.")
 
 
-def _kept(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -> None:
-    """Keep the values of parameters by name in the context."""
+def _store(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -> None:
+    """Store the values of parameters by name in the context."""
     named = [part.partition("=") for part in value]
     if not all(name.strip() and text.strip() for name, _, text in named):
         raise click.BadParameter(f"found {', '.join(value)}; allowed: NAME=VALUE, such as t=1.9mm")
     ctx.meta[__name__] = {name.strip(): text.strip() for name, _, text in named}
 
 
-parameters = click.option("--set", callback=_kept, multiple=True, expose_value=False, metavar="NAME=VALUE",
+parameters = click.option("--set", callback=_store, multiple=True, expose_value=False, metavar="NAME=VALUE",
                           help="Value of a parameter of the scene, such as t=1.9mm; may be repeated.")  # fmt: skip
 
 
 def settings() -> dict[str, str]:
-    """Values of parameters from the option --set of the running command, by name."""
+    """Values of the option ``--set`` of the running command, by parameter name."""
     return dict(click.get_current_context().meta.get(__name__, {}))
 
 
@@ -158,7 +161,7 @@ def _number(text: str) -> float:
 
 
 def variants(command: Decorated) -> Decorated:
-    """``--formulation`` and ``--kinematics``."""
+    """The command with ``--formulation`` and ``--kinematics``."""
     standard = Choices()
     command = click.option("--kinematics", type=click.Choice(KINEMATICS), default=standard.kinematics,
                            show_default=True, help="Beam theory of the finite elements.")(command)  # fmt: skip
@@ -167,40 +170,41 @@ def variants(command: Decorated) -> Decorated:
 
 
 def numerical(command: Decorated) -> Decorated:
-    """The options that make up :class:`comparisons.choices.Choices`, and the tolerance in the place of N."""
+    """The command with the options of :class:`comparisons.choices.Choices` and with ``--tol``."""
     standard = Choices()
     command = click.option("--tol", callback=tolerance, metavar="TOL",
-                           help="Find the cheapest N whose own error estimate is within this, as 0.1% or 0.001, "
+                           help="Search the cheapest N with a stated error below TOL, as 0.1% or 0.001, "
                            "at every probe and station; in place of -n, --elements, --across.")(command)  # fmt: skip
-    command = click.option("--penetration", callback=fraction, default=str(standard.penetration), show_default=True,
-                           help="Overlap that the finite elements may leave, over the thickness.")(command)  # fmt: skip
-    command = click.option("--across", callback=whole, default=str(standard.across), show_default=True,
+    command = click.option("--penetration", callback=fraction, metavar="SHARE", default=str(standard.penetration),
+                           show_default=True, help="Allowed overlap of the finite elements, over the thickness.",
+                           )(command)  # fmt: skip
+    command = click.option("--across", callback=whole, metavar="N", default=str(standard.across), show_default=True,
                            help="Elements of the solid across a beam's thickness.")(command)  # fmt: skip
     return sized(variants(command))
 
 
 def exactness(command: Decorated) -> Decorated:
-    """``--exact`` and ``--no-exact``; None where neither is given."""
+    """The command with ``--exact`` and ``--no-exact``; the value is None without either."""
     return click.option("--exact/--no-exact", "exact", default=None,
-                        help="Ask the exact reference in bending, or leave it out; without either a rule on the "
-                        "number of pieces and stations of the scene says so.")(command)  # fmt: skip
+                        help="Ask the exact reference in bending, or leave the reference out; otherwise a rule on "
+                        "the number of pieces and stations decides.")(command)  # fmt: skip
 
 
 def sized(command: Decorated) -> Decorated:
-    """``-n`` and ``--elements``."""
+    """The command with ``-n``, ``--links`` and ``--elements``."""
     standard = Choices()
     for option in (
-        click.option("--elements", callback=count, metavar="COUNT", default=str(standard.elements),
-                     show_default=True, help="Finite elements per beam: one number or beam1=60,beam2=80."),
-        click.option("-n", "links", callback=count, metavar="COUNT", default=str(standard.links),
-                     show_default=True, help="CPRBM links per beam: one number or beam1=30,beam2=40."),
+        click.option("--elements", callback=count, metavar=COUNT, default=str(standard.elements),
+                     show_default=True, help="Finite elements per beam: 80 for all beams, or beam1=60,beam2=80."),
+        click.option("-n", "--links", "links", callback=count, metavar=COUNT, default=str(standard.links),
+                     show_default=True, help="CPRBM links per beam: 40 for all beams, or beam1=30,beam2=40."),
     ):  # fmt: skip
         command = option(command)
     return command
 
 
-def _listened(ctx: click.Context, param: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's form
-    """Have what solvers say while they work put on standard error."""
+def _listen(ctx: click.Context, param: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's form
+    """Print the log of the solvers on standard error."""
     if value:
         from comparisons.listening import listen, silence
 
@@ -209,18 +213,18 @@ def _listened(ctx: click.Context, param: click.Parameter, value: bool) -> None: 
 
 
 def verbose(command: Decorated) -> Decorated:
-    """``--verbose``."""
-    text = "Say on standard error what is being solved: runs, stations, iterations."
-    return click.option("-v", "--verbose", is_flag=True, expose_value=False, callback=_listened, help=text)(command)
+    """The command with ``--verbose``."""
+    text = "Print runs, stations and iterations on standard error."
+    return click.option("-v", "--verbose", is_flag=True, expose_value=False, callback=_listen, help=text)(command)
 
 
-def output(command: Decorated) -> Decorated:
-    """``--json``, ``--quiet`` and ``--verbose``."""
+def output_options(command: Decorated) -> Decorated:
+    """The command with ``--json``, ``--quiet`` and ``--verbose``."""
     command = verbose(command)
-    command = click.option("-q", "--quiet", is_flag=True, help="No tables and no progress.")(command)
+    command = click.option("-q", "--quiet", is_flag=True, help="Print neither tables nor progress.")(command)
     return click.option(
         "--json", "json_file", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE",
-        help="Write the numbers as JSON; '-' is standard output, and then nothing else is printed there.",
+        help="Write the numbers as JSON in SI; '-' is standard output without further text.",
     )(command)  # fmt: skip
 
 
@@ -231,7 +235,7 @@ def _drawing(ctx: click.Context, param: click.Parameter, value: Path | None) -> 
 
 
 def exports(command: Decorated) -> Decorated:
-    """``--csv`` and ``--plot``."""
+    """The command with ``--csv`` and ``--plot``."""
     file = click.Path(dir_okay=False, path_type=Path)
     command = click.option("--plot", "plot_file", type=file, metavar="FILE", callback=_drawing,
                            help="Draw the mechanism at the last station, as .svg or .png.")(command)  # fmt: skip
@@ -240,19 +244,21 @@ def exports(command: Decorated) -> Decorated:
 
 
 def folder(text: str) -> Callable[[Decorated], Decorated]:
-    """``--out``, with the help ``text`` of what is put there."""
+    """Decorator for ``--out DIR`` with the help ``text``."""
     return click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help=text)
 
 
 def timed(repeated: str, longer: str, most: str = "60") -> Callable[[Decorated], Decorated]:
-    """``--repeat`` and ``--at-most``: how often a solve is ``repeated``, and what happens if it takes ``longer``.
+    """Decorator for ``--repeat`` with the help ``repeated``, and ``--at-most`` with the help ``longer``.
 
-    ``most`` are the seconds unless others are given.
+    ``most`` is the default of ``--at-most``, s.
     """
 
     def both(command: Decorated) -> Decorated:
         command = click.option("--at-most", callback=positive, metavar="SECONDS", default=most, show_default=True,
                                help=f"A solve that takes longer {longer}")(command)  # fmt: skip
-        return click.option("--repeat", callback=whole, default="5", show_default=True, help=repeated)(command)
+        return click.option("--repeat", callback=whole, metavar="TIMES", default="5", show_default=True, help=repeated)(
+            command
+        )
 
     return both

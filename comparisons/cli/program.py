@@ -1,4 +1,4 @@
-"""The program ``cprbm``: whatever ends it, even as its modules are loaded, it ends with a sentence and a code."""
+"""Entry point of ``cprbm``: every end, also during the import of modules, has a sentence and an exit code."""
 
 from __future__ import annotations
 
@@ -7,37 +7,37 @@ import sys
 
 
 def main() -> None:
-    """Run the command line of this process, and end it."""
+    """Run the command line of this process and exit."""
     try:
         from comparisons.cli import signals
         from comparisons.threads import ONE_THREAD
 
-        signals.heed()
+        signals.install_handlers()
         _fill_gaps()
-        os.environ.update(ONE_THREAD)  # before anything loads a BLAS; for the processes that share the work as well
-        from comparisons.cli.completing import VARIABLE
+        os.environ.update(ONE_THREAD)  # before any BLAS is loaded; worker processes inherit the variables
+        from comparisons.cli.completion import VARIABLE
         from comparisons.cli.main import commands, run
 
         if VARIABLE in os.environ:
             commands.main(prog_name="cprbm", complete_var=VARIABLE)
         code = run(sys.argv[1:])
-        signals.ignore()
-    except ImportError as error:  # of click, without which there is no command line at all
-        from comparisons.cli.wanting import told
+        signals.ignore_signals()
+    except ImportError as error:  # click itself may be missing
+        from comparisons.cli.missing_library import message
 
-        trouble = told(error)
-        if trouble is None:
+        problem = message(error)
+        if problem is None:
             raise
-        sentence, code = trouble
+        sentence, code = problem
         _say(sentence)
-    except KeyboardInterrupt as stop:  # as modules were loaded, or as another signal was being told of
+    except KeyboardInterrupt as stop:  # during the import of modules, or during the report of another signal
         code = getattr(stop, "code", 130)
         _say(getattr(stop, "sentence", "Interrupted") + ".")
     sys.exit(code)
 
 
 def _fill_gaps() -> None:
-    """See that no file is opened in the place of standard input, output or error where one of them is closed."""
+    """Open the null device for a closed standard stream, so that no file takes the number of the stream."""
     for number in range(3):
         try:
             os.fstat(number)
@@ -49,5 +49,5 @@ def _say(sentence: str) -> None:
     try:
         sys.stderr.write(f"cprbm: {sentence}\n")
         sys.stderr.flush()
-    except (OSError, AttributeError):  # there is nobody to tell
+    except (OSError, AttributeError):  # standard error is closed
         pass

@@ -1,4 +1,4 @@
-"""``cprbm report``: all that is known of some questions, as one folder with one page to send to a colleague."""
+"""``cprbm report``: a folder with a page on verdicts, convergence and run times, to send to a colleague."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from comparisons.choices import Kinematics
-from comparisons.cli.completing import offered
-from comparisons.cli.options import exactness, family_sizes, folder, output, parameters, sized, variants
+from comparisons.cli.completion import candidates
+from comparisons.cli.options import exactness, family_sizes, folder, output_options, parameters, sized, variants
 
 if TYPE_CHECKING:
     from comparisons.pairing import Runs
@@ -20,58 +20,58 @@ PARTS = ("convergence", "times")
 
 
 @click.command("report")
-@click.argument("asked", nargs=-1, metavar="[CASE|FILE.toml...|all]", shell_complete=offered)
+@click.argument("arguments", nargs=-1, metavar="[CASE|FILE.toml...|all]", shell_complete=candidates)
 @parameters
 @sized
 @variants
 @click.option("--sizes", callback=family_sizes, metavar="N,N,...", default="10,20,40,80", show_default=True,
-              help="Links and elements per beam of the error against N, two or more.")  # fmt: skip
+              help="Two or more numbers of links and elements per beam for the error against N.")  # fmt: skip
 @click.option("--without", multiple=True, type=click.Choice(PARTS),
-              help="Leave out a longer part; may be repeated. 'convergence': error against N and the error budget. "
+              help="Leave out a long part; may be repeated. 'convergence': error against N and the error budget. "
               "'times': run time against error, and the paper's Table 1.")  # fmt: skip
 @exactness
-@output
-@folder("Folder of the report; 'full-report' unless given.")
+@output_options
+@folder("Folder of the report.  [default: 'full-report']")
 @click.pass_obj
 def command(
     planted: object,
-    asked: tuple[str, ...],
+    arguments: tuple[str, ...],
     links: int | Mapping[str, int],
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
     kinematics: Kinematics,
     sizes: tuple[int, ...],
     without: tuple[str, ...],
-    exact: bool | None,  # noqa: FBT001 - click hands it over by name
+    exact: bool | None,  # noqa: FBT001 - click passes a keyword
     json_file: Path | None,
-    quiet: bool,  # noqa: FBT001 - click hands it over by name
+    quiet: bool,  # noqa: FBT001 - click passes a keyword
     out: Path | None,
 ) -> int:
-    """Put all that is known of scenes into one folder with one page, which opens without a network.
+    """Write a page with verdicts, figures, errors and run times.
 
-    Without a scene it is of all built-in cases. What the folder has already is taken from there; a run that was ended
-    goes on where it was. Exit code 0 says that the report is written, whatever its verdicts.
+    The page opens without a network. Without a scene the report covers all built-in cases. Finished parts are taken
+    from the folder, and an interrupted run goes on. Exit code 0 means a written report, with any verdict.
     """
     from comparisons import machine
     from comparisons.choices import Choices, check
-    from comparisons.cli import showing
-    from comparisons.cli.asking import questions
+    from comparisons.cli import output
+    from comparisons.cli.questions import read_questions
     from comparisons.pairing import begin, crew_of, solvers_of, workers_for
     from comparisons.reporting import folder as put
     from comparisons.reporting.gathering import Wanted, gathered, has_table, table
     from comparisons.resuming import resumed
     from cprbm_scene import OffsetQuestion
 
-    wanted = questions(asked or ("all",))
+    wanted = read_questions(arguments or ("all",))
     choices = Choices(links, formulation, elements, kinematics)
     for question in wanted:
         if not isinstance(question, OffsetQuestion):
             check(choices, question)
     out = out or Path("full-report")
-    showing.room_for(json_file, out)
+    output.room_for(json_file, out)
     parts = Wanted(choices, () if "convergence" in without else sizes, times="times" not in without)
     made_on = machine.made_on()
-    made_of = f"{parts!r}, exact={exact}"  # chapters of other parts are made anew
+    made_of = f"{parts!r}, exact={exact}"  # chapters with other parts are written anew
     chapters: dict[str, Chapter] = {}
     for question in wanted:
         there = put.kept(out, question, made_of)
@@ -96,9 +96,9 @@ def command(
             return begin(question, choices, whole.solvers, crew)
 
         pending = begun(0)
-        for place, question in enumerate(showing.progress(missing, shown=not quiet)):
+        for place, question in enumerate(output.progress(missing, shown=not quiet)):
             found = gathered(question, pending, parts, whole.solvers, solvers, crew)
-            # the next case is solved while this one is drawn, and not while run times are measured
+            # solve the next case during the drawings, but not during the measurement of run times
             pending = begun(place + 1)
             chapters[question.name] = put.added(out, question, made_of, found)
             put.put_page(out, so_far(), further, made_on)
@@ -106,7 +106,7 @@ def command(
             further = (put.added_table(out, table(solvers, made_on), made_on),)
     put.put_page(out, so_far(), further, made_on)
     if json_file is not None:
-        showing.json(json_file, put.document(out, so_far(), made_on))
+        output.json(json_file, put.document(out, so_far(), made_on))
     if str(json_file) != "-":
         for chapter in so_far():
             click.echo(f"{chapter.name}: {chapter.word}. {chapter.sentence}")

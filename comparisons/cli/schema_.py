@@ -1,4 +1,4 @@
-"""``cprbm schema``: what editors need to help with scene files."""
+"""``cprbm schema``: the JSON schema for editors of scene files."""
 
 from __future__ import annotations
 

@@ -1,16 +1,16 @@
-"""What ends a run from outside: the signals, and what they become."""
+"""Signals that end a run: handlers, sentences and exit codes."""
 
 from __future__ import annotations
 
 import signal
 from types import FrameType
 
-_SAID = {"SIGINT": "Interrupted", "SIGTERM": "Asked to end", "SIGHUP": "The terminal was closed"}
-"""By names, since not every system has them all."""
+_SENTENCES = {"SIGINT": "Interrupted", "SIGTERM": "Asked to end", "SIGHUP": "The terminal was closed"}
+"""Sentences by signal name; some systems lack some of the signals."""
 
 
-class Ended(KeyboardInterrupt):
-    """A signal has ended the run: an interrupt, or what is treated as one."""
+class SignalInterrupt(KeyboardInterrupt):
+    """A signal ended the run."""
 
     def __init__(self, number: int = signal.SIGINT) -> None:
         super().__init__()
@@ -18,31 +18,31 @@ class Ended(KeyboardInterrupt):
 
     @property
     def sentence(self) -> str:
-        """What happened, without its full stop."""
-        return _SAID[signal.Signals(self.number).name]
+        """Description of the signal without a full stop."""
+        return _SENTENCES[signal.Signals(self.number).name]
 
     @property
     def code(self) -> int:
-        """The exit code that a shell gives to what a signal ends."""
+        """Exit code of a shell for the signal."""
         return 128 + self.number
 
 
-def heed() -> None:
-    """From now on each of the signals ends the run where it is, unless this process was told to ignore it."""
+def install_handlers() -> None:
+    """Let every signal raise :class:`SignalInterrupt`, except signals that this process ignores already."""
     for number in _numbers():
         if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, _end)
+            signal.signal(number, _interrupt)
 
 
-def ignore() -> None:
-    """From now on none of the signals does anything."""
+def ignore_signals() -> None:
+    """Ignore all signals of this module from now on."""
     for number in _numbers():
         signal.signal(number, signal.SIG_IGN)
 
 
 def _numbers() -> list[int]:
-    return [getattr(signal, name) for name in _SAID if hasattr(signal, name)]
+    return [getattr(signal, name) for name in _SENTENCES if hasattr(signal, name)]
 
 
-def _end(number: int, frame: FrameType | None) -> None:
-    raise Ended(number)
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    raise SignalInterrupt(number)

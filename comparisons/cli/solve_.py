@@ -1,4 +1,4 @@
-"""``cprbm solve``: one solver's answer to one scene."""
+"""``cprbm solve``: the answer of a single solver to a scene."""
 
 from __future__ import annotations
 
@@ -9,18 +9,19 @@ from typing import Literal
 import click
 
 from comparisons.choices import Kinematics
-from comparisons.cli.answering import SOLVERS, SolverName, answered, told
-from comparisons.cli.completing import offered
-from comparisons.cli.options import exports, numerical, one_of_both, output, parameters, settings
+from comparisons.cli.answers import SOLVERS, SolverName, report_problems, solve_scene
+from comparisons.cli.completion import candidates
+from comparisons.cli.options import exports, numerical, output_options, parameters, refuse_sizes_with, settings
 
 
 @click.command("solve")
-@click.argument("case", metavar="CASE|FILE.toml", shell_complete=offered)
+@click.argument("case", metavar="CASE|FILE.toml", shell_complete=candidates)
 @parameters
-@click.option("--solver", type=click.Choice(SOLVERS), default="cprbm", show_default=True)
+@click.option("--solver", type=click.Choice(SOLVERS), default="cprbm", show_default=True,
+              help="Solver of the scene.")  # fmt: skip
 @numerical
 @exports
-@output
+@output_options
 @click.pass_obj
 def command(
     planted: object,
@@ -36,20 +37,20 @@ def command(
     csv_file: Path | None,
     plot_file: Path | None,
     json_file: Path | None,
-    quiet: bool,  # noqa: FBT001 - click hands it over by name
+    quiet: bool,  # noqa: FBT001 - click passes a keyword
 ) -> int:
-    """Answer one scene with one solver."""
+    """Solve a scene with a single solver and print all stations."""
     from comparisons import cases
     from comparisons.choices import Choices, check
-    from comparisons.cli import showing
+    from comparisons.cli import output
 
-    one_of_both(tol)
+    refuse_sizes_with(tol)
     scene = cases.opened(case, settings())
     choices = Choices(links, formulation, elements, kinematics, penetration, across)
     check(choices, scene)
     for file in (json_file, csv_file, plot_file):
-        showing.room_for(file)
-    answer, found = answered(planted, scene, solver, choices, tol, shown=not quiet)
+        output.room_for(file)
+    answer, found = solve_scene(planted, scene, solver, choices, tol, shown=not quiet)
     from comparisons.audit import audit
     from comparisons.writing import write
 
@@ -57,7 +58,7 @@ def command(
     if json_file is not None:
         from comparisons import documents
 
-        showing.json(json_file, {"cases": [documents.solution(scene, answer, found, checked)]})
+        output.json(json_file, {"cases": [documents.solution(scene, answer, found, checked)]})
     if csv_file is not None:
         from comparisons.tidy import csv_of
 
@@ -69,5 +70,5 @@ def command(
     if not quiet and str(json_file) != "-":
         from comparisons import sheets
 
-        showing.tables(sheets.of_answer(scene, answer, found))
-    return told(scene, answer, found, checked.complaints)
+        output.tables(sheets.of_answer(scene, answer, found))
+    return report_problems(scene, answer, found, checked.complaints)

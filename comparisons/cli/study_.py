@@ -1,4 +1,4 @@
-"""``cprbm study``: the longer questions, one sub-command each."""
+"""``cprbm study``: long studies as sub-commands."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ import click
 
 from comparisons import workshop
 from comparisons.cli.commands import Commands, ToolCommand
-from comparisons.cli.options import folder, output, timed
+from comparisons.cli.options import folder, output_options, timed
 
 if TYPE_CHECKING:
-    from comparisons.studies.told import Told
+    from comparisons.studies.result import StudyResult
 
 Found = TypeVar("Found")
 Step = TypeVar("Step")
 
 
 class _Studies(Commands):
-    """The studies, and in a checkout those that are developers' tools."""
+    """The studies; the developers' tools belong to a checkout."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all studies."""
         return sorted([*self.commands, *(["relations"] if workshop.is_checkout() else [])])
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """The study of a name."""
+        """The study with a name, or None."""
         return ToolCommand("study relations") if cmd_name == "relations" else super().get_command(ctx, cmd_name)
 
 
 @click.group("study", cls=_Studies, invoke_without_command=True)
 @click.pass_context
 def command(ctx: click.Context) -> None:
-    """Answer one of the longer questions; without a name, say which there are."""
+    """Run a long study; without a name, list the studies."""
     if ctx.invoked_subcommand is None:
         for name in command.list_commands(ctx):
             study = command.get_command(ctx, name)
@@ -44,69 +44,69 @@ def command(ctx: click.Context) -> None:
 
 
 @command.command("calibration")
-@output
-@folder("Folder for the page, the numbers and the figure.")
+@output_options
+@folder("Folder for page, numbers and figure.")
 @click.pass_obj
 def calibration(
     planted: object,
     json_file: Path | None,
-    quiet: bool,  # noqa: FBT001 - click hands it over by name
+    quiet: bool,  # noqa: FBT001 - click passes a keyword
     out: Path | None,
 ) -> int:
-    """Stated uncertainties beside true errors, on every case of which an exact answer is known."""
-    from comparisons.cli import showing
+    """Compare stated and true errors on every case with an exact answer."""
+    from comparisons.cli import output
     from comparisons.pairing import crew_of, solvers_of, workers_for
     from comparisons.resuming import resumed
     from comparisons.studies import calibration as study
-    from comparisons.studies.calibration_told import told
+    from comparisons.studies.calibration_result import result_of
     from comparisons.verdict.words import Word
 
-    showing.room_for(json_file, out)
-    show = Shown(json_file, out, quiet)
-    pieces = showing.progress(study.pieces(), shown=not quiet)
+    output.room_for(json_file, out)
+    show = StudyOutput(json_file, out, quiet)
+    pieces = output.progress(study.pieces(), shown=not quiet)
     with resumed(out, solvers_of(planted), ()) as whole, crew_of(workers_for(planted)) as crew:
-        found = answered(
+        found = run_steps(
             study.Calibration(),
             pieces,
             lambda found, piece: study.with_piece(found, piece, whole.solvers, crew),
-            told,
+            result_of,
             show,
         )
     return 1 if any(trial.verdict.word is Word.DIFFER or not trial.verdict.completed for trial in found.trials) else 0
 
 
 @command.command("table1")
-@timed("How often each cell is solved.", "is not repeated.")
-@output
-@folder("Folder for the page, the numbers and the figure.")
+@timed("Repetitions of every cell of the table.", "is not repeated.")
+@output_options
+@folder("Folder for page, numbers and figure.")
 @click.pass_obj
 def table1(
     planted: object,
     repeat: int,
     at_most: float,
     json_file: Path | None,
-    quiet: bool,  # noqa: FBT001 - click hands it over by name
+    quiet: bool,  # noqa: FBT001 - click passes a keyword
     out: Path | None,
 ) -> int:
-    """Run times of both solvers at the paper's discretisations, beside its Table 1."""
+    """Time both solvers at the paper's discretisations, beside the paper's Table 1."""
     from comparisons import machine
-    from comparisons.cli import showing
+    from comparisons.cli import output
     from comparisons.pairing import solvers_of
     from comparisons.studies import table1 as study
-    from comparisons.studies.table1_told import told
+    from comparisons.studies.table1_result import result_of
 
-    showing.room_for(json_file, out)
+    output.room_for(json_file, out)
     solvers = solvers_of(planted)
-    show = Shown(json_file, out, quiet)
-    runs = showing.progress(study.runs(repeat), shown=not quiet)
+    show = StudyOutput(json_file, out, quiet)
+    runs = output.progress(study.runs(repeat), shown=not quiet)
     begun = study.begun(solvers, machine.described())
-    found = answered(begun, runs, lambda found, run: study.solved(found, run, solvers, at_most), told, show)
+    found = run_steps(begun, runs, lambda found, run: study.solved(found, run, solvers, at_most), result_of, show)
     return 1 if found.unfinished else 0
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
-    """Where a study goes, or as much of it as there is."""
+class StudyOutput:
+    """Files and screen for the result of a study, also for a partial result."""
 
     json_file: Path | None
     out: Path | None
@@ -114,57 +114,57 @@ class Shown:
 
     @property
     def writes(self) -> bool:
-        """Whether it goes into files."""
+        """True with an output file or folder."""
         return self.out is not None or (self.json_file is not None and str(self.json_file) != "-")
 
-    def write(self, told: Told) -> None:
+    def write(self, result: StudyResult) -> None:
         """Write the files.
 
         Raises:
-            OSError: one cannot be written.
+            OSError: a file cannot be written.
         """
-        from comparisons.cli import showing
-        from comparisons.studies.told import written
+        from comparisons.cli import output
+        from comparisons.studies.result import write_result
 
         if self.json_file is not None and str(self.json_file) != "-":
-            showing.json(self.json_file, told.data)
+            output.json(self.json_file, result.data)
         if self.out is not None:
-            written(self.out, told)
+            write_result(self.out, result)
 
-    def show(self, told: Told) -> None:
-        """Print what goes to standard output."""
-        from comparisons.cli import showing
+    def show(self, result: StudyResult) -> None:
+        """Print the result on standard output."""
+        from comparisons.cli import output
 
         if str(self.json_file) == "-":
-            showing.json(Path("-"), told.data)
+            output.json(Path("-"), result.data)
             return
         if self.quiet:
             return
-        showing.tables(told.sheets)
-        for sentence in told.words:
+        output.tables(result.sheets)
+        for sentence in result.words:
             click.echo(sentence + "\n")
         if self.out is not None:
-            click.echo(f"report: {self.out / told.name}.html")
+            click.echo(f"report: {self.out / result.name}.html")
 
 
-def answered(
+def run_steps(
     found: Found,
     steps: Iterable[Step],
     taken: Callable[[Found, Step], Found],
-    told: Callable[[Found], Told],
-    shown: Shown,
+    result_of: Callable[[Found], StudyResult],
+    shown: StudyOutput,
 ) -> Found:
-    """A study step by step: what there is of it is written after each, and shown even where it is stopped."""
-    last: Told | None = None
+    """The finished study; every step writes the partial result, and an interrupted study shows its result."""
+    last: StudyResult | None = None
     try:
         for step in steps:
             found, last = taken(found, step), None
             if shown.writes:
-                last = told(found)
+                last = result_of(found)
                 shown.write(last)
     finally:
         if last is None:
-            last = told(found)
+            last = result_of(found)
             shown.write(last)
         shown.show(last)
     return found

@@ -1,4 +1,4 @@
-"""``cprbm view``: a picture, an animation or VTU files of the deformed mechanism."""
+"""``cprbm view``: picture, animation or VTU files of the deformed mechanism."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from comparisons.choices import Kinematics
-from comparisons.cli.answering import SOLVERS, SolverName, answered, told
-from comparisons.cli.completing import offered
-from comparisons.cli.options import numerical, one_of_both, parameters, settings, verbose
+from comparisons.cli.answers import SOLVERS, SolverName, report_problems, solve_scene
+from comparisons.cli.completion import candidates
+from comparisons.cli.options import numerical, parameters, refuse_sizes_with, settings, verbose
 
 if TYPE_CHECKING:
     from comparisons.viewing.frames import Coloured
@@ -25,19 +25,20 @@ _QUANTITIES = ("bending_stress", "combined_stress", "moment")
 
 
 @click.command("view")
-@click.argument("case", metavar="CASE|FILE.toml", shell_complete=offered)
+@click.argument("case", metavar="CASE|FILE.toml", shell_complete=candidates)
 @parameters
-@click.option("--solver", type=click.Choice(SOLVERS), default="cprbm", show_default=True)
+@click.option("--solver", type=click.Choice(SOLVERS), default="cprbm", show_default=True,
+              help="Solver of the scene.")  # fmt: skip
 @click.option("--out", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE",
-              help="What to write; its name's end says what it is: .png, .svg; .gif, .apng (an animation through the "
-              "stations); .3d.png, .3d.gif, .3d.apng (in space, by PyVista); .vtu, .pvd (one station, all, for "
-              "ParaView).  [default: the scene's name with .png]")  # fmt: skip
+              help="File to write; the ending selects the kind: .png, .svg; .gif, .apng (animation through the "
+              "stations); .3d.png, .3d.gif, .3d.apng (in space, by PyVista); .vtu, .pvd (a station, all stations, "
+              "for ParaView).  [default: the scene's name with .png]")  # fmt: skip
 @click.option("--quantity", type=click.Choice(_QUANTITIES), default=_QUANTITIES[0], show_default=True,
-              help="What colours the beams.")  # fmt: skip
+              help="Quantity behind the colours of the beams.")  # fmt: skip
 @click.option("--station", metavar="[STAGE:]VALUE",
               help="The station to show, in the file's units.  [default: the last of all]")  # fmt: skip
 @numerical
-@click.option("-q", "--quiet", is_flag=True, help="Do not say what was written.")
+@click.option("-q", "--quiet", is_flag=True, help="Print nothing about the written file.")
 @verbose
 @click.pass_obj
 def command(
@@ -54,20 +55,20 @@ def command(
     penetration: float,
     across: int,
     tol: float | None,
-    quiet: bool,  # noqa: FBT001 - click hands it over by name
+    quiet: bool,  # noqa: FBT001 - click passes a keyword
 ) -> int:
-    """Show one scene as one solver answers it: beams at their thickness, coloured by what stresses them."""
+    """Draw a solver's answer: picture, animation or VTU files."""
     from comparisons import cases
     from comparisons.audit import audit
     from comparisons.choices import Choices, check
-    from comparisons.cli import showing
+    from comparisons.cli import output
     from comparisons.display_units import at_station
     from comparisons.viewing.shown import KINDS, files, kind_of
     from comparisons.viewing.space import DrawingError
     from comparisons.viewing.strips import with_stresses
     from comparisons.writing import write
 
-    one_of_both(tol)
+    refuse_sizes_with(tol)
     scene = with_stresses(cases.opened(case, settings()))
     path = Path(f"{scene.name}.png") if out is None else out
     kind = kind_of(path)
@@ -77,12 +78,12 @@ def command(
     wanted = None if station is None else _wanted(scene, station)
     choices = Choices(links, formulation, elements, kinematics, penetration, across)
     check(choices, scene)
-    showing.room_for(None, path.parent)
-    answer, found = answered(planted, scene, solver, choices, tol, shown=not quiet)
-    code = told(scene, answer, found, audit(scene, answer).complaints)
+    output.room_for(None, path.parent)
+    answer, found = solve_scene(planted, scene, solver, choices, tol, shown=not quiet)
+    code = report_problems(scene, answer, found, audit(scene, answer).complaints)
     seen = _up_to(answer, wanted)
     if not seen.stations:
-        click.echo(f"cprbm: {scene.name}: there is nothing to show: that station was not reached.", err=True)
+        click.echo(f"cprbm: {scene.name}: no picture, since the solver did not reach the station.", err=True)
         return code
     try:
         for file, content in files(scene, seen, path, kind, quantity):
@@ -91,8 +92,7 @@ def command(
         from comparisons.starting.system import WHAT_DRAWS
 
         raise click.ClickException(
-            f"Nothing can be drawn in space here ({trouble}); on Debian and Ubuntu this installs what is needed: "
-            f"{WHAT_DRAWS}"
+            f"VTK cannot draw in space here ({trouble}). On Debian and Ubuntu install its libraries with: {WHAT_DRAWS}"
         ) from None
     if not quiet:
         click.echo(
@@ -124,7 +124,7 @@ def _wanted(scene: Scene, text: str) -> tuple[str, float]:
 
 
 def _up_to(answer: Answer, wanted: tuple[str, float] | None) -> Answer:
-    """The answer as far as the station that is wanted; without stations if it was not reached."""
+    """The answer up to the ``wanted`` station; without stations if the solver did not reach the station."""
     if wanted is None:
         return answer
     places = [place for place, each in enumerate(answer.stations) if (each.stage, each.value) == wanted]

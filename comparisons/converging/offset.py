@@ -10,7 +10,7 @@ from itertools import pairwise
 from math import log
 from statistics import median
 
-from comparisons.converging.report import Told
+from comparisons.converging.report import ConvergenceResult
 from comparisons.documents import Plain, plain
 from comparisons.figures import LOOKS, Picture, canvas, picture
 from comparisons.formats import number, percent
@@ -24,18 +24,20 @@ Curves = dict[tuple[str, float], list[OffsetRow]]
 """By spacing and offset the rows of all sizes, ascending."""
 
 
-def told(question: OffsetQuestion, sizes: tuple[int, ...], construct: OffsetConstruction) -> Told:
-    """Error against N for every spacing and offset, at those sizes that the question allows."""
+def result_of(question: OffsetQuestion, sizes: tuple[int, ...], construct: OffsetConstruction) -> ConvergenceResult:
+    """Error against N for every spacing and offset, at the allowed sizes."""
     numbers = tuple(n for n in sizes if FEWEST <= n <= MOST)
     left_out = ", ".join(str(n) for n in sizes if n not in numbers)
     sentences = (f"An offset question takes {FEWEST} to {MOST} springs; left out: {left_out}.",) if left_out else ()
     if len(numbers) < 2:
-        return Told(question, (), sentences, (), {"case": question.name, "families": [], "runs": []}, completed=True)
+        return ConvergenceResult(
+            question, (), sentences, (), {"case": question.name, "families": [], "runs": []}, completed=True
+        )
     compared = compared_offset(question.model_copy(update={"numbers": numbers}), construct)
     curves: Curves = {}
     for row in compared.rows:
         curves.setdefault((row.spacing, row.offset), []).append(row)
-    return Told(
+    return ConvergenceResult(
         question,
         (_sheet(question, numbers, curves),),
         sentences,

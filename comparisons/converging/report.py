@@ -1,4 +1,4 @@
-"""The folder of ``converge``: a page, rewritten after every finished case, and per case the numbers and the figure."""
+"""The folder of ``converge``: a page, written after every case, with numbers and figure of every case."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from cprbm_scene import Question
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """What there is to tell of one case; ``data`` is its documented JSON."""
+class ConvergenceResult:
+    """Result of a case; ``data`` is the documented JSON."""
 
     asked: Question
     sheets: tuple[Sheet, ...]
@@ -28,7 +28,7 @@ class Told:
 
 @dataclass(frozen=True, slots=True)
 class Chapter:
-    """What the page shows of one case."""
+    """Section of the page for a case."""
 
     name: str
     title: str
@@ -38,34 +38,34 @@ class Chapter:
     pictures: tuple[Embedded, ...]
 
 
-def added(folder: Path, told: Told) -> Chapter:
-    """Write a finished case into the folder, which is made where it is missing; its chapter of the page.
+def added(folder: Path, result: ConvergenceResult) -> Chapter:
+    """Write a finished case into the folder; the chapter of the page.
 
     Raises:
-        OSError: the folder cannot be written to.
+        OSError: the folder is not writable.
     """
-    written(folder, told)
-    asked, pictures = told.asked, tuple(embedded(picture) for picture in told.pictures)
-    return Chapter(asked.name, asked.title or asked.name, asked.source, told.sentences, told.sheets, pictures)
+    write_case(folder, result)
+    asked, pictures = result.asked, tuple(embedded(picture) for picture in result.pictures)
+    return Chapter(asked.name, asked.title or asked.name, asked.source, result.sentences, result.sheets, pictures)
 
 
-def written(folder: Path, told: Told) -> None:
-    """Write a finished case's numbers and figures into its folder.
+def write_case(folder: Path, result: ConvergenceResult) -> None:
+    """Write numbers and figures of a case.
 
     Raises:
-        OSError: the folder cannot be written to.
+        OSError: the folder is not writable.
     """
-    own = folder / told.asked.name
-    write(own / "convergence.json", documents.text(told.data))
-    for picture in told.pictures:
+    own = folder / result.asked.name
+    write(own / "convergence.json", documents.text(result.data))
+    for picture in result.pictures:
         write(own / f"{picture.name}.svg", picture.svg)
         write(own / f"{picture.name}.png", picture.png)
 
 
 def put_page(folder: Path, chapters: tuple[Chapter, ...]) -> None:
-    """Write the page of some chapters.
+    """Write the page of the chapters.
 
     Raises:
-        OSError: the folder cannot be written to.
+        OSError: the folder is not writable.
     """
     write(folder / "index.html", rendered("convergence.html", {"cases": chapters}))

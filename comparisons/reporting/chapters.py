@@ -7,10 +7,10 @@ from pathlib import Path
 
 from comparisons import offset_pages, sheets
 from comparisons.bench import drawn as bench_drawn
-from comparisons.bench import told as bench_told
+from comparisons.bench import tables as bench_tables
 from comparisons.bench.running import Benchmark
 from comparisons.case import Comparison
-from comparisons.converging.report import Told
+from comparisons.converging.report import ConvergenceResult
 from comparisons.documents import plain
 from comparisons.figures import Picture
 from comparisons.formats import percent
@@ -19,7 +19,7 @@ from comparisons.reporting.inlined import Inline, inlined
 from comparisons.reporting.stepping import Stepper, stepper
 from comparisons.sheet import Sheet
 from comparisons.sheets import Subject
-from comparisons.studies.told import Told as Study
+from comparisons.studies.result import StudyResult
 from cprbm_scene import Answer, Question
 
 
@@ -108,7 +108,7 @@ class Found:
 
     compared: Comparison | OffsetComparison
     pictures: tuple[Picture, ...]
-    convergence: Told | None = None
+    convergence: ConvergenceResult | None = None
     unconverged: str = ""
     benchmark: Benchmark | None = None
     untimed: str = ""
@@ -120,8 +120,8 @@ _SOLVED = ("shapes",)
 """Figures by their names: what the stepper shows as well is left to the files beside the page."""
 
 
-def section_of(study: Study) -> Section:
-    """What is told of a study as a section of its own."""
+def section_of(study: StudyResult) -> Section:
+    """Section of a study."""
     figures = tuple(inlined(picture, study.name) for picture in study.pictures)
     return Section(study.title, study.words, figures, study.sheets)
 
@@ -216,11 +216,11 @@ def _section(subject: Subject, tables: dict[Subject, tuple[Sheet, ...]], figures
 
 
 def _convergence(found: Found) -> tuple[Section, ...]:
-    told, heading = found.convergence, "Error against N, and the error budget"
-    if told is None:
+    result, heading = found.convergence, "Error against N, and the error budget"
+    if result is None:
         return (Section(heading, _sentences(found.unconverged), (), ()),)
-    figures = tuple(inlined(picture, told.asked.name) for picture in told.pictures)
-    return (Section(heading, told.sentences, figures, told.sheets),)
+    figures = tuple(inlined(picture, result.asked.name) for picture in result.pictures)
+    return (Section(heading, result.sentences, figures, result.sheets),)
 
 
 def _times(found: Found, seconds: tuple[Sheet, ...]) -> tuple[Section, ...]:
@@ -229,7 +229,7 @@ def _times(found: Found, seconds: tuple[Sheet, ...]) -> tuple[Section, ...]:
     if measured is None:
         return (Section(Subject.SECONDS.value, _sentences(found.untimed), (), seconds),)
     figures = tuple(inlined(picture, measured.scene.name) for picture in bench_drawn.pictures(measured))
-    return (Section("Run time against error", (), figures, (*bench_told.sheets(measured), *seconds)),)
+    return (Section("Run time against error", (), figures, (*bench_tables.sheets(measured), *seconds)),)
 
 
 def _sentences(text: str) -> tuple[str, ...]:
@@ -256,7 +256,7 @@ def _settings(compared: Comparison) -> Sheet:
     if runs.exact is not None:
         answers["exact (bending)"] = runs.exact
     keys = dict.fromkeys(key for answer in answers.values() for key in answer.settings)
-    body = tuple((key, *(_told(answer.settings.get(key)) for answer in answers.values())) for key in keys)
+    body = tuple((key, *(_setting(answer.settings.get(key)) for answer in answers.values())) for key in keys)
     others = ", ".join(name for name, _ in runs.everything())
     return Sheet(
         "Settings of the answers",
@@ -266,7 +266,7 @@ def _settings(compared: Comparison) -> Sheet:
     )
 
 
-def _told(value: object) -> str:
+def _setting(value: object) -> str:
     found = plain(value)
     if isinstance(found, dict):
         return ", ".join(f"{key} {each}" for key, each in found.items())

@@ -18,19 +18,19 @@ from pydantic import TypeAdapter, ValidationError
 
 from comparisons import documents, report
 from comparisons.bench import drawn as bench_drawn
-from comparisons.bench import told as bench_told
-from comparisons.converging.report import written as put_convergence
+from comparisons.bench import tables as bench_tables
+from comparisons.converging.report import write_case as put_convergence
 from comparisons.documents import Plain
 from comparisons.rendering import rendered, script
 from comparisons.reporting.chapters import Chapter, Found, Section, chapter, section_of
 from comparisons.reporting.inlined import letters_of
 from comparisons.sources import program
-from comparisons.studies.told import Told
+from comparisons.studies.result import StudyResult
 from comparisons.writing import write
 from cprbm_scene import Question
 
 _CHAPTER = "chapter.json"
-_TABLE = "table1-told.json"
+_TABLE = "table1-section.json"
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,7 @@ def added(folder: Path, question: Question, wanted: str, found: Found) -> Chapte
     if found.convergence is not None:
         put_convergence(folder, found.convergence)
     if found.benchmark is not None:
-        write(own / "bench.json", documents.text(bench_told.document(found.benchmark)))
+        write(own / "bench.json", documents.text(bench_tables.document(found.benchmark)))
         for picture in bench_drawn.pictures(found.benchmark):
             report.put_picture(own, picture)
     made = chapter(found)
@@ -79,7 +79,7 @@ def added(folder: Path, question: Question, wanted: str, found: Found) -> Chapte
 
 @dataclass(frozen=True, slots=True)
 class _KeptTable:
-    """What is told of the paper's Table 1, and the digest of what it hangs on."""
+    """Section of the paper's Table 1, with the digest of its sources."""
 
     key: str
     section: Section
@@ -94,16 +94,16 @@ def kept_table(folder: Path, made_on: Mapping[str, str | int]) -> Section | None
     return None
 
 
-def added_table(folder: Path, told: Told, made_on: Mapping[str, str | int]) -> Section:
+def added_table(folder: Path, result: StudyResult, made_on: Mapping[str, str | int]) -> Section:
     """Write the paper's Table 1 beside ours into a folder; its section of the page.
 
     Raises:
         OSError: the folder cannot be written to.
     """
-    write(folder / "table1.json", documents.text(told.data))
-    for picture in told.pictures:
+    write(folder / "table1.json", documents.text(result.data))
+    for picture in result.pictures:
         report.put_picture(folder, picture)
-    made = section_of(told)
+    made = section_of(result)
     write(folder / _TABLE, TypeAdapter(_KeptTable).dump_json(_KeptTable(_of_machine(made_on), made)))
     return made
 

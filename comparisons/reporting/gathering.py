@@ -10,14 +10,14 @@ from comparisons.bench import brief
 from comparisons.bench.running import Benchmark
 from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
-from comparisons.converging.report import Told
-from comparisons.converging.telling import all_told
+from comparisons.converging.report import ConvergenceResult
+from comparisons.converging.results import result_of
 from comparisons.figures import Picture
 from comparisons.offset_verdict import OffsetComparison, compared_offset
 from comparisons.pairing import Crew, Runs, Solvers, paired
 from comparisons.reporting.chapters import Found
-from comparisons.studies import table1, table1_told
-from comparisons.studies.told import Told as Study
+from comparisons.studies import table1, table1_result
+from comparisons.studies.result import StudyResult
 from cprbm_scene import OffsetQuestion, Question, SceneError
 
 
@@ -55,7 +55,7 @@ def gathered(
         crew: processes to share the runs.
 
     Raises:
-        SceneError: a solver refuses the comparison; what else is refused is told in the report.
+        SceneError: a solver refuses the comparison; the report names other refusals.
     """
     found: Comparison | OffsetComparison
     if isinstance(question, OffsetQuestion):
@@ -63,9 +63,9 @@ def gathered(
     else:
         runs = paired(question, wanted.choices, solvers, crew) if pending is None else pending()
         found = compare(question, runs)
-    told, unconverged = _converged(question, wanted, solvers, crew)
+    convergence, unconverged = _converged(question, wanted, solvers, crew)
     measured, untimed = _timed(question, wanted, timed, solvers)
-    return Found(found, _drawn(found), told, unconverged, measured, untimed)
+    return Found(found, _drawn(found), convergence, unconverged, measured, untimed)
 
 
 def has_table(questions: Sequence[Question]) -> bool:
@@ -73,7 +73,7 @@ def has_table(questions: Sequence[Question]) -> bool:
     return all(cases.asked(name) in questions for name in {cell.case for cell in table1.CELLS})
 
 
-def table(timed: Solvers, made_on: Mapping[str, str | int]) -> Study:
+def table(timed: Solvers, made_on: Mapping[str, str | int]) -> StudyResult:
     """The paper's Table 1 beside our run times.
 
     Args:
@@ -83,14 +83,16 @@ def table(timed: Solvers, made_on: Mapping[str, str | int]) -> Study:
     found = table1.begun(timed, made_on)
     for cell in table1.runs(brief.REPEAT):
         found = table1.solved(found, cell, timed, brief.AT_MOST)
-    return table1_told.told(found)
+    return table1_result.result_of(found)
 
 
-def _converged(question: Question, wanted: Wanted, solvers: Solvers, crew: Crew) -> tuple[Told | None, str]:
+def _converged(
+    question: Question, wanted: Wanted, solvers: Solvers, crew: Crew
+) -> tuple[ConvergenceResult | None, str]:
     if not wanted.sizes:
         return None, ""
     try:
-        return all_told(question, wanted.sizes, wanted.choices, solvers, crew), ""
+        return result_of(question, wanted.sizes, wanted.choices, solvers, crew), ""
     except SceneError as error:
         return None, f"There is no error against N: {_why(error)}."
 

@@ -103,8 +103,8 @@ class Stepper:
     thinner: tuple[str, ...]
 
     @property
-    def told(self) -> str:
-        """The stations as JSON that may stand in a page: label, paths, places, and the table's texts in one list."""
+    def data(self) -> str:
+        """The stations as JSON for a page: label, paths, places, and the texts of the table in a list."""
         every = [
             (each.label, each.paths, each.places, [text for row in each.cells for text in row])
             for each in self.stations

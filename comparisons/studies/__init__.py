@@ -1,1 +1,1 @@
-"""The longer questions: each a measurement piece by piece, and what is told of it in data, words and a figure."""
+"""Long studies: measurements in steps, with results as data, sentences and figures."""

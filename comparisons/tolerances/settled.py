@@ -65,11 +65,11 @@ def settled(scene: Scene, answers: Mapping[int, Answer], probes: Collection[str]
     if probes:
         sizes = (finest // 2, finest)
         settings = frozendict({**answer.settings, "extrapolated_from": list(sizes)})
-        answer = replace(answer, settings=settings, notes=(*answer.notes, told(sizes, probes)))
+        answer = replace(answer, settings=settings, notes=(*answer.notes, extrapolation_note(sizes, probes)))
     return Settled(answer, answers[finest // 2], frozendict(uncertainties))
 
 
-def told(sizes: tuple[int, ...], probes: Collection[str]) -> str:
+def extrapolation_note(sizes: tuple[int, ...], probes: Collection[str]) -> str:
     """Note about the values that are extrapolated from two ``sizes``, and the grid of all other values."""
     coarse, fine = sizes
     which = ", ".join(sorted(probes))

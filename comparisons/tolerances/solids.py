@@ -32,7 +32,7 @@ from comparisons.quantities import norm
 from comparisons.solid_limits import solid_limit
 from comparisons.stations import station_of
 from comparisons.tolerances.search import Estimate, Stated, Tolerance
-from comparisons.tolerances.settled import told
+from comparisons.tolerances.settled import extrapolation_note
 from comparisons.verdict.completeness import problems
 from comparisons.verdict.rows import Row, rows_of
 from comparisons.verdict.uncertainty import OWN, STANDARD, largest
@@ -184,5 +184,5 @@ def settled(scene: Scene, answers: Sequence[Answer]) -> Answer:
         settings=frozendict({**answers[-1].settings, "extrapolated_from": list(sizes)}),
         stations=tuple(stations),
         seconds=sum(answer.seconds for answer in answers),
-        notes=(*answers[-1].notes, told(sizes, [probe.name for probe in scene.probes])),
+        notes=(*answers[-1].notes, extrapolation_note(sizes, [probe.name for probe in scene.probes])),
     )

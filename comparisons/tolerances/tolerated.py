@@ -61,7 +61,7 @@ def solved(
         choices: formulation, theory and the penetration at the fewest elements; its numbers do not count.
         tolerance: of every row's stated uncertainty, a fraction.
         solvers: who answers.
-        say: told what is about to be solved.
+        say: called with a description of the next solve.
 
     Raises:
         SceneError: the solver refuses the question.
@@ -74,7 +74,7 @@ def solved(
     memory = Remembering(solvers=solvers, say=say)
     theory: Kinematics = choices.kinematics if solver == "fea" else "bending"
     reached = _reached(scene, solver, choices, (theory,), tolerance, memory, None)
-    return reached.value(theory), _told(reached, solver, tolerance)
+    return reached.value(theory), _tolerance(reached, solver, tolerance)
 
 
 def paired_within(
@@ -103,7 +103,7 @@ def _both_within(
     theories: tuple[Kinematics, ...] = tuple(dict.fromkeys(("bending", choices.kinematics)))
     fea = _reached(scene, "fea", choices, theories, tolerance, memory, None)
     cprbm = _reached(scene, "cprbm", choices, ("bending",), tolerance, memory, fea.value(choices.kinematics))
-    told = _told(cprbm, "cprbm", tolerance), _told(fea, "fea", tolerance)
+    tolerances = _tolerance(cprbm, "cprbm", tolerance), _tolerance(fea, "fea", tolerance)
     if cprbm.found.settled:
         driven, n, pair = perturbed_scene(scene), cprbm.found.n, cprbm.settled("bending")
         families, uncertainties = _families(fea, choices.kinematics)
@@ -118,13 +118,13 @@ def _both_within(
             exact=exact,
             exact_absence=exact_absence,
             settled=frozendict({"cprbm": pair.uncertainties, **uncertainties}),
-        ), told
+        ), tolerances
     elements = fea.levels.choices(choices.kinematics, fea.found.n)
     runs = paired(scene, replace(elements, links=cprbm.found.n, formulation=choices.formulation), solvers, memory)
     if fea.found.settled:
         families, uncertainties = _families(fea, choices.kinematics)
         runs = replace(runs, fea=families, fea_beside=None, settled=frozendict(uncertainties))
-    return runs, told
+    return runs, tolerances
 
 
 def _reached(
@@ -173,7 +173,7 @@ def _perturbed(cprbm: _Reached, driven: Scene) -> Answer:
     return replace(cprbm, levels=replace(cprbm.levels, scene=driven, reference=None)).value("bending")
 
 
-def _told(reached: _Reached, solver: Method, tolerance: float) -> Tolerance:
+def _tolerance(reached: _Reached, solver: Method, tolerance: float) -> Tolerance:
     found, levels = reached.found, reached.levels
     estimate = found.estimate
     return Tolerance(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from comparisons import cases, documents, geometry, machine
-from comparisons.bench import drawn, errors, question, told
+from comparisons.bench import drawn, errors, question, tables
 from comparisons.bench.contenders import Contender, Outcome, Run, contenders
 from comparisons.bench.running import Plan, Session, sizes_of, trend
 from comparisons.bench.standings import TARGETS, ratios, reached, standings
@@ -156,9 +156,9 @@ def test_what_does_not_complete_is_shown_with_its_reason_and_counts_for_nothing(
     ends = lambda n: (0.0, 1e-6, 5, "GAVE_UP", 0.0) if n == 80 else power(1.0)(n)  # noqa: E731
     found = Clock(bent, paper=power(1.0), ipopt=ends).benchmark(repeat=2)
     assert trend(found.of("ipopt")).sizes == (40, 160)
-    row = next(row for row in told.document(found)["rows"] if (row["method"], row["n"]) == ("ipopt", 80))
+    row = next(row for row in tables.document(found)["rows"] if (row["method"], row["n"]) == ("ipopt", 80))
     assert (row["ended"], row["why"], row["counts"]) == ("GAVE_UP", "why not", False)
-    assert any("GAVE_UP" in line for line in told.sheets(found)[0].rows)
+    assert any("GAVE_UP" in line for line in tables.sheets(found)[0].rows)
     assert [one.count for one in ratios(found)] == [40, 160]
 
 
@@ -167,7 +167,7 @@ def test_a_peer_with_a_worse_error_on_the_same_problem_does_not_count(bent):
     found = Clock(bent, paper=power(1.0), ipopt=wrong, fea=power(1.0, error=lambda n: 1.0)).benchmark(repeat=1)
     assert [timing.counts for timing in found.of("ipopt")] == [True, False, True]
     assert [timing.counts for timing in found.of("fea")] == [True, True, True]
-    assert [told.ended(timing) for timing in found.of("ipopt")] == ["COMPLETED", "WORSE", "COMPLETED"]
+    assert [tables.ended(timing) for timing in found.of("ipopt")] == ["COMPLETED", "WORSE", "COMPLETED"]
 
 
 def test_what_takes_too_long_is_not_repeated_and_not_exceeded(bent):
@@ -183,7 +183,7 @@ def test_a_size_that_is_refused_is_left_out_and_the_rest_goes_on(bent):
     assert [timing.n for timing in found.timings] == [80, 160]
     why = "contacts.contact.paper: found 2 joints; allowed: 3"
     assert [(one.count, one.why) for one in found.left_out] == [(40, why)]
-    assert ("paper", "40", why) in told.sheets(found)[-1].rows
+    assert ("paper", "40", why) in tables.sheets(found)[-1].rows
 
 
 def test_what_everybody_refuses_is_refused(bent):
@@ -204,8 +204,8 @@ def test_an_interrupted_session_has_what_was_done(bent):
 def test_numbers_by_beam_are_a_size_like_another(bent):
     found = Clock(bent, auto=power(1.0), paper=power(1.0)).benchmark(sizes=(20, FEW), repeat=1)
     assert [timing.n for timing in found.of("auto")] == [20.0, 35.0]
-    assert told.sized(FEW) == "30, 40"
-    assert told.document(found)["rows"][1]["n"] == {"beam1": 30, "beam2": 40}
+    assert tables.sized(FEW) == "30, 40"
+    assert tables.document(found)["rows"][1]["n"] == {"beam1": 30, "beam2": 40}
 
 
 def test_the_usual_sizes_end_where_a_method_does():
@@ -264,8 +264,8 @@ def test_ratios_are_of_solves_and_of_both(bent):
     expected = {"auto_both": 1.5, "slsqp_both": 400.0, "ipopt_solve": 3.0, "ipopt_both": 10.0}
     assert {f"{name}_{clocked}": ratio for (name, clocked), ratio in one.of.items()} == expected
     assert one.iterations == 5.0
-    assert told.document(found)["ratios"] == [{"n": 40, **expected, "iterations_per_station": 5.0}]
-    headers = next(sheet.headers for sheet in told.sheets(found) if sheet.title.startswith("How many times longer"))
+    assert tables.document(found)["ratios"] == [{"n": 40, **expected, "iterations_per_station": 5.0}]
+    headers = next(sheet.headers for sheet in tables.sheets(found) if sheet.title.startswith("How many times longer"))
     assert headers == ("N", "AUTO", "SLSQP", "IPOPT, solve", "IPOPT, both", "iterations per station")
 
 
@@ -320,7 +320,7 @@ def test_a_question_keeps_the_last_loads_and_what_errors_are_told_by():
 
 
 def test_the_document_has_the_documented_keys(bent):
-    data = json.loads(documents.text(told.document(Clock(bent, auto=power(1.2), fea=power(0.9)).benchmark(repeat=2))))
+    data = json.loads(documents.text(tables.document(Clock(bent, auto=power(1.2), fea=power(0.9)).benchmark(repeat=2))))
     assert {"case", "machine", "rows", "trends", "fastest", "ratios", "left_out", "reference", "tolerance"} <= set(data)
     assert data["machine"]["cpu"] == "made up"
     assert len(data["rows"]) == 6

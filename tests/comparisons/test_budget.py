@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.budgets import drawn, told
+from comparisons.budgets import drawn, tables
 from comparisons.budgets.accounts import accounted
 from comparisons.budgets.parts import Budget, budgets_of
 from comparisons.budgets.runs import budgeted
@@ -142,11 +142,11 @@ def test_what_the_beam_theories_miss_is_told_beside_the_sum(hinge):
     without = budget_at(hinge, beams)
     assert (without.missed, without.parts) == (None, found.parts)
     account = accounted(hinge, Choices(), Remembering(solvers=replace(beams, solid=a_solid(1.0072))))
-    (sheet,) = (one for one in told.sheets_of(account) if "Error budget" in one.title)
+    (sheet,) = (one for one in tables.sheets_of(account) if "Error budget" in one.title)
     assert sheet.headers[-2:] == ("missed", "±")
-    row = next(each for each in told.data_of(account)["budget"] if each["probe"] == "BD.rotation")
+    row = next(each for each in tables.data_of(account)["budget"] if each["probe"] == "BD.rotation")
     assert row["missed"] == pytest.approx(0.0022 / (1.005 - 8e-3 / 4.0), rel=1e-9)
-    assert "BD.rotation +0.2" in told.sentences_of(account)[-1]
+    assert "BD.rotation +0.2" in tables.sentences_of(account)[-1]
     (figure,) = drawn.of_account(account)
     assert "miss together" in figure.caption
 
@@ -155,8 +155,8 @@ def test_a_solid_that_did_not_arrive_says_why_and_leaves_the_budget(hinge, right
     account = accounted(hinge, Choices(), Remembering(solvers=replace(right, solid=ended_early)))
     assert account.budgets
     assert all(each.missed is None for each in account.budgets)
-    assert "det F" in told.sentences_of(account)[-1]
-    assert all("missed" not in each for each in told.data_of(account)["budget"])
+    assert "det F" in tables.sentences_of(account)[-1]
+    assert all("missed" not in each for each in tables.data_of(account)["budget"])
 
 
 def ended_early(scene, choices):
@@ -211,8 +211,8 @@ def test_an_answer_that_is_not_whole_leaves_no_budget_and_says_so(hinge, right):
     account = accounted(hinge, Choices(), Remembering(solvers=Solvers(right.cprbm, MadeUp("fea", 0.0, until=3))))
     assert account.budgets == account.claims == ()
     assert any("fea bending" in why for why in account.missing)
-    assert told.sheets_of(account) == ()
-    assert "no error budget" in told.sentences_of(account)[0]
+    assert tables.sheets_of(account) == ()
+    assert "no error budget" in tables.sentences_of(account)[0]
     assert drawn.of_account(account) == ()
 
 
@@ -240,14 +240,14 @@ def test_the_ratio_at_which_a_claim_would_be_ours(hinge):
         assert found.reruns == pytest.approx((0.0025,), rel=1e-6)
         assert found.without_shear == pytest.approx(0.002 / 1.002, rel=1e-6)
         assert found.incompressible == pytest.approx(1.0 - 1.0 / (1.002 + 0.003 * 1.5 / 1.35), rel=1e-6)
-    assert f"ν = {ratio:.3f}" in told.sentences_of(account)[0]
+    assert f"ν = {ratio:.3f}" in tables.sentences_of(account)[0]
 
 
 def test_a_claim_beyond_every_ratio_has_none(hinge, right):
     account = accounted(hinge, Choices(), Remembering(solvers=right))
     # 0.35 % at ν = 0.35, of which 0.3 % is shear; claims of 0.62 and 0.81 %
     assert [found.ratios for found in account.claims] == [(), ()]
-    assert "at no Poisson's ratio" in told.sentences_of(account)[0]
+    assert "at no Poisson's ratio" in tables.sentences_of(account)[0]
 
 
 def test_materials_of_two_ratios_or_a_theory_without_shear_have_no_such_ratio(hinge, right):
@@ -261,7 +261,7 @@ def test_materials_of_two_ratios_or_a_theory_without_shear_have_no_such_ratio(hi
 
 def test_the_table_has_every_probe_with_a_value_at_the_last_station(hinge, right):
     account = accounted(hinge, Choices(), Remembering(solvers=right))
-    budgets, claims = told.sheets_of(account)
+    budgets, claims = tables.sheets_of(account)
     assert [row[0] for row in budgets.rows] == [probe.name for probe in hinge.probes]
     for sheet in (budgets, claims):
         assert {len(row) for row in sheet.rows} == {len(sheet.headers)}
@@ -272,7 +272,7 @@ def test_the_table_has_every_probe_with_a_value_at_the_last_station(hinge, right
 
 def test_json_has_every_station_and_sums(hinge, right):
     account = accounted(hinge, Choices(), Remembering(solvers=right))
-    data = json.loads(text(told.data_of(account)))
+    data = json.loads(text(tables.data_of(account)))
     assert len({row["station"] for row in data["budget"]}) == 10
     for row in data["budget"]:
         assert sum(row["parts"].values()) == pytest.approx(row["difference"], rel=1e-9, abs=1e-15)

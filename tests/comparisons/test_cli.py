@@ -397,7 +397,7 @@ def test_an_interrupt_from_the_keyboard_ends_every_process_with_a_sentence(tmp_p
     os.killpg(process.pid, signal.SIGINT)
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert said == "cprbm: Interrupted; what was finished before stands.\n"
+    assert said == "cprbm: Interrupted; finished results stand.\n"
 
 
 @pytest.mark.parametrize("installed", [True, False])
@@ -417,7 +417,7 @@ def test_the_version_is_a_line_whether_or_not_the_package_is_installed(capsys, m
 def test_an_unknown_command_is_refused_with_those_that_there_are(capsys):
     assert run(["compar", "hinge"]) == 2
     said = capsys.readouterr().err
-    assert "found 'compar', which is no command of 'cprbm' (is 'compare' meant?); allowed: list, solve, compare" in said
+    assert "found 'compar', no command of 'cprbm' (is 'compare' meant?); allowed: new, import, solve, compare" in said
 
 
 PRESTRESSED = (Path(cases.__file__).parent / "prestressed.toml").read_text("utf-8")
@@ -490,3 +490,28 @@ def test_critical_values_go_with_n(tmp_path, capsys):
     assert forward["limit"] == pytest.approx(FORWARD, abs=1e-9)
     assert forward["errors"][0] == pytest.approx(1e-4 + forward["limit_uncertainty"], rel=1e-4)
     assert (forward["component"], forward["station"], forward["loss"]) == ("forward", None, "fold")
+
+
+def test_help_shows_every_command_once_under_three_headings(capsys):
+    assert run(["--help"]) == 0
+    text = capsys.readouterr().out.partition("--help ")[2]
+    assert re.findall(r"^(\w[\w -]+):$", text, re.MULTILINE) == [
+        "Your mechanism",
+        "Built-in cases and evidence",
+        "Development",
+    ]
+    shown = re.findall(r"^  (\w+) {2,}\S", text, re.MULTILINE)
+    assert run(["nonsense"]) == 2
+    allowed = re.search(r"allowed: ([\w, ]+)\.", capsys.readouterr().err)[1].split(", ")
+    assert shown == allowed
+
+
+def test_links_is_the_long_name_of_n(right, capsys):
+    """Both names give the same numbers; ``-n`` beside ``--tol`` is refused under either name."""
+    printed = []
+    for name in ("-n", "--links"):
+        assert run(["solve", "hinge", name, "10", "--json", "-"], solvers=right) == 0
+        printed.append(re.sub(r'"seconds": [^,]+', "", capsys.readouterr().out))
+    assert printed[0] == printed[1]
+    assert run(["solve", "hinge", "--links", "10", "--tol", "1%"], solvers=right) == 2
+    assert "--tol and -n" in capsys.readouterr().err

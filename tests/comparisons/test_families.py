@@ -9,7 +9,7 @@ import pytest
 from comparisons import cases, documents
 from comparisons.choices import Choices
 from comparisons.cli.main import run
-from comparisons.converging import drawn, told
+from comparisons.converging import drawn, tables
 from comparisons.converging.families import at, converged
 from comparisons.pairing import ALONE, Solvers
 from cprbm_scene import Ending
@@ -75,8 +75,8 @@ def test_both_limits_meet_in_bending_and_another_theory_stands_by_itself(hinge, 
         ("fea", "bending"),
         ("fea", "shear"),
     ]
-    for cprbm, fea in told.beside(found):
-        apart = told.between(cprbm, fea)
+    for cprbm, fea in tables.beside(found):
+        apart = tables.between(cprbm, fea)
         assert apart is None or apart[0] <= 1e-5 * cprbm.scale
     rotations = [
         one.found.value[0] for one in found.families if one.probe.name == "BD.rotation" and one.station == LAST
@@ -124,9 +124,9 @@ def test_a_run_that_is_not_whole_is_left_out_and_told(hinge, right):
     assert not found.completed
     family = _family(found, "BD.rotation")
     assert family.used == (20, 40, 80)
-    (sentence,) = told.sentences_of(found)
+    (sentence,) = tables.sentences_of(found)
     assert sentence.startswith("CPRBM (auto) at N = 10 gave no whole answer: it ended early")
-    entry = next(one for one in told.document(found)["families"] if one["probe"] == "BD.rotation")
+    entry = next(one for one in tables.document(found)["families"] if one["probe"] == "BD.rotation")
     assert entry["values"][0] is None
     assert entry["errors"][0] is None
 
@@ -135,7 +135,7 @@ def test_nothing_is_told_of_values_where_no_run_is_whole(hinge, right):
     broken = _changed(right.cprbm, lambda answer: replace(answer, stations=answer.stations[:2]), at_most=9999)
     found = _found(hinge, Solvers(broken, _changed(right.fea, lambda a: replace(a, stations=()), at_most=9999)))
     assert found.families == ()
-    assert told.sheets_of(found) == ()
+    assert tables.sheets_of(found) == ()
     assert drawn.of_convergence(found) == ()
 
 
@@ -155,11 +155,11 @@ def test_the_exact_values_stand_beside_where_they_are_known(hinge, right):
     assert family.true_error(20) == pytest.approx(family.apart(20), rel=1e-6)
     assert _family(found, "BD.rotation", hinge.stages[0].stations[0]).exact is None
     assert all(one.exact is None for one in found.families if one.series.kinematics == "shear")
-    assert told.sheets_of(found)[0].headers[-1] == "CPRBM limit from exact"
+    assert tables.sheets_of(found)[0].headers[-1] == "CPRBM limit from exact"
 
 
 def test_the_document_has_the_keys_that_are_promised(hinge, right):
-    data = json.loads(documents.text(told.document(_found(hinge, right))))
+    data = json.loads(documents.text(tables.document(_found(hinge, right))))
     assert data["case"] == "hinge"
     entry = next(one for one in data["families"] if one["probe"] == "B.displacement" and one["component"] == "y")
     assert entry["n"] == list(SIZES)
@@ -177,7 +177,7 @@ def test_the_same_answers_give_the_same_figure(hinge, right):
 
 
 def test_every_table_has_as_many_cells_as_headers(hinge, right):
-    for sheet in told.sheets_of(_found(hinge, right)):
+    for sheet in tables.sheets_of(_found(hinge, right)):
         assert sheet.rows
         assert {len(row) for row in sheet.rows} == {len(sheet.headers)}
 

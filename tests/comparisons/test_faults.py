@@ -161,7 +161,10 @@ def test_too_little_memory_is_a_sentence(asked, capsys):
         raise MemoryError
 
     assert run(["compare", asked[0]], Solvers(large, large)) == 1
-    assert capsys.readouterr().err == "cprbm: There is not enough memory for this; what was finished stands.\n"
+    assert (
+        capsys.readouterr().err
+        == "cprbm: The memory is too small for this model. Finished results stand; ask for fewer links.\n"
+    )
 
 
 @pytest.mark.parametrize("closed", ["full", "closed"])

@@ -8,9 +8,15 @@ from comparisons.cli.main import run
 from comparisons.starting.begun import begin
 
 WORDS = [
-    (["slove", "hinge"], "found 'slove'", "is 'solve' meant?", "allowed: list, solve, compare", "Try 'cprbm --help'"),
+    (
+        ["slove", "hinge"],
+        "found 'slove'",
+        "is 'solve' meant?",
+        "allowed: new, import, solve, compare",
+        "Try 'cprbm --help'",
+    ),
     (["study", "calibrate"], "found 'calibrate'", "is 'calibration' meant?", "Try 'cprbm study --help'"),
-    (["study", "zzz"], "found 'zzz', which is no command of 'cprbm study'; allowed: calibration, relations"),
+    (["study", "zzz"], "found 'zzz', no command of 'cprbm study'; allowed: calibration, relations"),
     (["solve"], "'CASE|FILE.toml'", "'cprbm list' names the cases", "'cprbm new NAME'", "Try 'cprbm solve --help'"),
     (["compare"], "'CASE|FILE.toml...|all'", "'cprbm list' names the cases", "Try 'cprbm compare --help'"),
     (["new"], "'NAME'", "Try 'cprbm new --help'"),
@@ -25,7 +31,7 @@ WORDS = [
     (["solve", "hinge", "-n", "bem1=30,beam2=40"], "found bem1=30", "the beams beam1, beam2"),
     (["compare", "hinge", "--tol", "2"], "found '2'; allowed: as 0.1%", "Try 'cprbm compare --help'"),
     (["converge", "hinge", "--sizes", "40,20"], "found '40,20'", "each larger than the one before"),
-    (["new", "mine"], "found mine.toml, which is kept", "another name"),
+    (["new", "mine"], "found mine.toml, an existing file", "another name"),
 ]
 FILES = [
     ("thickness =", "thicknes =", "beams.strip.thicknes: found 'thicknes'", "is 'thickness' meant?"),

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from comparisons.cli.main import run
-from comparisons.cli.showing import Rounds, progress
+from comparisons.cli.output import Rounds, progress
 from comparisons.listening import RUNS, SPEAKERS, heard_from, steps_of
 
 ROOT = Path(__file__).parents[2]

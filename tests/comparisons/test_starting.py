@@ -39,7 +39,7 @@ def test_what_is_there_is_kept(tmp_path, capsys):
     path = tmp_path / "mine.toml"
     path.write_text("my own", encoding="utf-8")
     assert run(["new", "mine", "--out", str(tmp_path)]) == 2
-    assert "mine.toml, which is kept as it is; allowed: another name" in capsys.readouterr().err
+    assert "mine.toml, an existing file; allowed: another name" in capsys.readouterr().err
     assert path.read_text(encoding="utf-8") == "my own"
 
 
@@ -99,7 +99,7 @@ def test_the_doctor_names_what_is_missing_and_what_installs_it(monkeypatch, caps
     assert run(["doctor"]) == 0
     said = capsys.readouterr().out
     line = f'{sys.executable} -m pip install "no-such-thing>=0.7"'
-    assert f"no-such-thing  missing      for the impossible; install it: {line}\n" in said
+    assert f"no-such-thing  missing      for the impossible; install: {line}\n" in said
     assert "cannot be imported (ModuleNotFoundError: No module named 'scipy.no_such_part')" in said
     monkeypatch.setattr(present, "LIBRARIES", (present.Library("no-such-thing", "nothing", "all", ""),))
     assert run(["doctor"]) == 1
@@ -128,7 +128,7 @@ def test_a_library_that_wants_one_of_the_system_is_told_with_what_installs_it(tm
     monkeypatch.setattr(present, "version", lambda name: "4.0")
     assert run(["doctor"]) == 0
     assert (
-        "what it wants, as root: apt-get install --yes --no-install-recommends libgl1 libglu1-mesa"
+        "its system libraries, as root: apt-get install --yes --no-install-recommends libgl1 libglu1-mesa"
         in capsys.readouterr().out
     )
 
@@ -152,7 +152,7 @@ def test_where_no_process_can_work_beside_this_one_it_does_all_of_the_work(no_se
 def test_the_doctor_says_whether_processes_can_share_the_work(no_semaphores, monkeypatch, capsys):
     monkeypatch.setattr(present, "LIBRARIES", present.LIBRARIES[:1])
     assert run(["doctor"]) == 0
-    assert "processes      one          does all of the work: no processes beside this one ([Errno 13]" in (
+    assert "processes      single       process for all work: no processes beside this one ([Errno 13]" in (
         capsys.readouterr().out
     )
 
@@ -160,9 +160,9 @@ def test_the_doctor_says_whether_processes_can_share_the_work(no_semaphores, mon
 @pytest.mark.parametrize(
     ("found", "said"),
     [
-        ((), "Everything is there."),
-        (("casadi", "pyvista"), "reports need; casadi, pyvista: only for what stands beside the name."),
-        (("numpy", "casadi"), "Without what is missing above nothing works; the lines beside it install it."),
+        ((), "All libraries are installed."),
+        (("casadi", "pyvista"), "reports work; casadi, pyvista: only for the purpose beside the name."),
+        (("numpy", "casadi"), "A required library is missing; install the library with the command above."),
     ],
 )
 def test_the_doctor_s_last_line_sums_up(found, said, monkeypatch, capsys):
@@ -219,7 +219,7 @@ def test_a_library_of_the_core_that_is_wanting_is_a_sentence(tmp_path, library, 
     assert done.stdout == ""
     distribution = {"skfem": "scikit-fem"}.get(library, library)
     install = f"{sys.executable} -m pip install --upgrade --force-reinstall {distribution}"
-    assert done.stderr == f"cprbm: {said} (PLEASE READ THIS); this installs what is needed: {install}\n"
+    assert done.stderr == f"cprbm: {said} (PLEASE READ THIS). Install it with: {install}\n"
 
 
 def test_the_line_that_installs_is_one_for_a_shell(monkeypatch):
@@ -239,6 +239,6 @@ def test_the_doctor_can_be_asked_where_numpy_is_wanting(tmp_path):
     )
     assert done.returncode == 1
     numpy = done.stdout.splitlines()[0]
-    assert "cannot be imported (ImportError: broken); for every number; install it anew: " in numpy
+    assert "cannot be imported (ImportError: broken); for every number; install the library again: " in numpy
     assert numpy.endswith('-m pip install "numpy>=2.0" --force-reinstall')
     assert done.stderr == ""

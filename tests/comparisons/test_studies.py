@@ -11,7 +11,7 @@ from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
 from comparisons.studies import table1
-from comparisons.studies.table1_told import told as told_of_table1
+from comparisons.studies.table1_result import result_of
 from cprbm_scene import Answer, Ending, Mistake, Scene, SceneError
 from cprbm_scene.frozendict import frozendict
 
@@ -92,10 +92,10 @@ def test_every_cell_is_solved_as_often_as_asked_and_a_refusal_is_said():
             assert times.median is not None
             assert times.median > 0.0
     assert not table.unfinished
-    told = told_of_table1(table)
-    assert [row[-1] for row in told.sheets[0].rows].count("refused") == 3
-    assert sum("found nothing" in sentence for sentence in told.words) == 3
-    assert "i5-8500" in told.sheets[0].note
+    result = result_of(table)
+    assert [row[-1] for row in result.sheets[0].rows].count("refused") == 3
+    assert sum("found nothing" in sentence for sentence in result.words) == 3
+    assert "i5-8500" in result.sheets[0].note
     # one solve warms up, and a refused cell is not tried again
     assert solvers.cprbm.solves == 1 + 2 * 7 + 3
 

@@ -53,10 +53,11 @@ def promised_by(name: str, command: click.Command) -> Promises:
         if isinstance(parameter.type, click.Choice):
             promises |= {f"{name} choice {spelled} {choice}": "" for choice in parameter.type.choices}
         default = parameter.to_info_dict()["default"] if isinstance(parameter, click.Option) else None
-        if isinstance(default, str | int | float) and not isinstance(default, bool):
-            promises[f"{name} default {spelled}"] = str(default)
-        elif hasattr(default, "__fspath__"):
-            promises[f"{name} default {spelled}"] = default.__fspath__()
+        for spelling in parameter.opts:  # a further spelling must not hide the promise of the first
+            if isinstance(default, str | int | float) and not isinstance(default, bool):
+                promises[f"{name} default {spelling}"] = str(default)
+            elif hasattr(default, "__fspath__"):
+                promises[f"{name} default {spelling}"] = default.__fspath__()
     promises[f"{name} requires"] = sorted(demands)
     return promises
 

@@ -1,4 +1,4 @@
-"""``cprbm study relations``: by how much the solvers' answers break relations that hold for every scene."""
+"""``cprbm study relations``: violations of relations that hold for every scene."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from pathlib import Path
 
 import click
 
-from comparisons.cli.completing import offered
-from comparisons.cli.options import count, folder, output
-from comparisons.cli.study_ import Shown, answered
+from comparisons.cli.completion import candidates
+from comparisons.cli.options import COUNT, count, folder, output_options
+from comparisons.cli.study_ import StudyOutput, run_steps
 
 
 @click.command("relations")
-@click.argument("scenes", nargs=-1, metavar="[CASE]...", shell_complete=offered)
-@click.option("-n", "links", callback=count, metavar="COUNT", default="20", show_default=True,
-              help="CPRBM links per beam: one number or beam1=30,beam2=40.")  # fmt: skip
-@click.option("--elements", callback=count, metavar="COUNT", default="20", show_default=True,
-              help="Finite elements per beam, likewise.")  # fmt: skip
-@output
+@click.argument("scenes", nargs=-1, metavar="[CASE]...", shell_complete=candidates)
+@click.option("-n", "--links", "links", callback=count, metavar=COUNT, default="20", show_default=True,
+              help="CPRBM links per beam: 20 for all beams, or beam1=30,beam2=40.")  # fmt: skip
+@click.option("--elements", callback=count, metavar=COUNT, default="20", show_default=True,
+              help="Finite elements per beam, in the same form.")  # fmt: skip
+@output_options
 @folder("Folder for the page and the numbers.")
 @click.pass_obj
 def command(
@@ -29,17 +29,17 @@ def command(
     quiet: bool,
     out: Path | None,
 ) -> int:
-    """What must not change an answer: place, mirror, order, direction, units, steps, company; action and reaction."""
+    """Compare a scene with its moved, mirrored, reordered and scaled images."""
     from comparisons.choices import Choices
-    from comparisons.cli import showing
+    from comparisons.cli import output
     from comparisons.pairing import solvers_of
     from comparisons.resuming import resumed
     from tests.relations import study
-    from tests.relations.told import told
+    from tests.relations.result import result_of
 
-    showing.room_for(json_file, out)
-    show = Shown(json_file, out, quiet)
+    output.room_for(json_file, out)
+    show = StudyOutput(json_file, out, quiet)
     with resumed(out, solvers_of(planted), ()) as whole:
         asked = study.pieces(scenes, Choices(links=links, elements=elements), whole.solvers)
-        found = answered(study.Relations(), showing.progress(asked, shown=not quiet), study.with_piece, told, show)
+        found = run_steps(study.Relations(), output.progress(asked, shown=not quiet), study.with_piece, result_of, show)
     return 1 if found.broken else 0

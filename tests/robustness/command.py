@@ -1,4 +1,4 @@
-"""``cprbm robustness``: both solvers on random scenes, and in which way each of them ends."""
+"""``cprbm robustness``: both solvers on random scenes, with an outcome per scene."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from comparisons.cli.options import folder, output, positive, whole
+from comparisons.cli.options import folder, output_options, positive, whole
 
 if TYPE_CHECKING:
     from tests.robustness.outcomes import Outcome
@@ -19,19 +19,19 @@ UNDECIDED = 3
 
 
 @click.command("robustness")
-@click.option("--scenes", callback=whole, metavar="K", default="40", show_default=True, help="How many.")
+@click.option("--scenes", callback=whole, metavar="K", default="40", show_default=True, help="Number of scenes.")
 @click.option("--seed", type=click.IntRange(min=0), metavar="S", default=1, show_default=True,
-              help="Of the scenes: one seed is one list of them, however many are asked.")  # fmt: skip
+              help="Seed of the scenes: a seed always draws the same list.")  # fmt: skip
 @click.option("--at-most", callback=positive, metavar="SECONDS", default="60", show_default=True,
-              help="A scene that takes longer, in seconds of the processor, is out of time.")  # fmt: skip
-@click.option("--workers", type=click.IntRange(1, 256), metavar="COUNT",
-              help="Processes that share the scenes; unless given one for each core, at most two.")  # fmt: skip
+              help="Limit of processor seconds per scene.")  # fmt: skip
+@click.option("--workers", type=click.IntRange(1, 256), metavar="N",
+              help="Worker processes.  [default: a process per core, at most two]")  # fmt: skip
 @click.option("--save", "also", multiple=True, type=click.Choice(["undecided", "ended", "refused"]),
-              help="Save scenes that end so too, beside those that are wrong, crashed or timed out.")  # fmt: skip
+              help="Save scenes with this outcome too, beside wrong, crashed and timed out.")  # fmt: skip
 @click.option("--replay", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE.toml",
-              help="Judge this scene alone.")  # fmt: skip
-@output
-@folder("Folder of outcomes and of scenes that fail, 'robustness-SEED' unless given; a run goes on from what is there.")
+              help="Judge a single scene.")  # fmt: skip
+@output_options
+@folder("Folder of outcomes and failing scenes; a run goes on from there.  [default: 'robustness-SEED']")
 @click.pass_context
 def command(
     ctx: click.Context,
@@ -45,11 +45,14 @@ def command(
     quiet: bool,
     out: Path | None,
 ) -> int:
-    """See on random scenes how stable both solvers are, and whether a certified answer is ever wrong."""
+    """Judge both solvers on random scenes.
+
+    The question: is a certified answer ever wrong?
+    """
     from comparisons.cases import opened
-    from comparisons.cli import showing
+    from comparisons.cli import output
     from comparisons.pairing import solvers_of
-    from tests.robustness import told
+    from tests.robustness import tables
     from tests.robustness.apart import Limits
     from tests.robustness.outcomes import Way
     from tests.robustness.running import Crew, Plan, Stress, replayed, run
@@ -58,18 +61,18 @@ def command(
     plan = Plan(seed, limits=Limits(seconds=at_most))
     printing = str(json_file) != "-"
     if replay is not None:
-        showing.room_for(json_file)
+        output.room_for(json_file)
         there = Stress(plan, {0: replayed(opened(str(replay)), solvers, plan)}, {})
         if json_file is not None:
-            showing.json(json_file, told.document(there))
+            output.json(json_file, tables.document(there))
         if printing:
-            click.echo(told.told_of(there.outcomes[0]))
+            click.echo(tables.text_of(there.outcomes[0]))
         return exit_code(there.outcomes.values())
     out = Path(f"{ctx.info_name}-{seed}") if out is None else out
-    showing.room_for(json_file, out)
+    output.room_for(json_file, out)
     there = Stress(plan, {}, {})
     try:
-        with showing.counted(scenes, shown=not quiet) as count:
+        with output.counted(scenes, shown=not quiet) as count:
             for there in run(plan, scenes, out, [Way(way) for way in also], Crew(solvers, workers or _cores())):
                 count(len(there.outcomes))
     finally:
@@ -99,15 +102,15 @@ def _cores() -> int:
 
 def _show(there: Stress, json_file: Path | None, out: Path, *, quiet: bool) -> None:
     """Write and print a run, or as much of it as there is."""
-    from comparisons.cli import showing
-    from tests.robustness import told
+    from comparisons.cli import output
+    from tests.robustness import tables
 
     if json_file is not None:
-        showing.json(json_file, told.document(there))
+        output.json(json_file, tables.document(there))
     if str(json_file) == "-":
         return
     if not quiet:
-        showing.tables(told.sheets_of(there))
-    click.echo(told.sentence(there))
+        output.tables(tables.sheets_of(there))
+    click.echo(tables.sentence(there))
     if there.saved and not quiet:
         click.echo(f"saved: {', '.join(str(out / file) for file in there.saved.values())}")

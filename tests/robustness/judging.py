@@ -102,7 +102,7 @@ def judged(scene: Scene, solvers: Solvers, effort: Effort) -> Outcome:
         except SceneError as error:
             outcome = Outcome(scene.name, Way.REFUSED, "; ".join(map(str, error.mistakes)))
         else:
-            outcome = _told(scene, finding)
+            outcome = _outcome(scene, finding)
     return replace(
         outcome,
         seconds=time.process_time() - begun,
@@ -314,7 +314,7 @@ def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]
             yield solver, norm(row.probe.quantity, mine - its), EXACT_FACTOR * (own + row.bounds.round_off)
 
 
-def _told(scene: Scene, finding: _Finding) -> Outcome:
+def _outcome(scene: Scene, finding: _Finding) -> Outcome:
     """The outcome that a finding is, without what the whole effort took."""
     rows = [(row, row.bounds) for row in finding.rows if row.bounds is not None]
     links, elements = finding.choices.links, finding.choices.elements

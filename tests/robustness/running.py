@@ -121,7 +121,7 @@ def prepared(solvers: Solvers) -> None:
 
 
 def _judged(there: Stress, left: Sequence[int], kept: Kept, hosts: Hosts[int, Outcome], crew: Crew) -> Iterator[Stress]:
-    def told(index: int, outcome: Outcome) -> Stress:
+    def with_outcome(index: int, outcome: Outcome) -> Stress:
         kept.ended(index, outcome)
         return replace(there, outcomes=dict(sorted({**there.outcomes, index: outcome}.items())))
 
@@ -129,11 +129,11 @@ def _judged(there: Stress, left: Sequence[int], kept: Kept, hosts: Hosts[int, Ou
     for index, end in hosts.each(partial(_drawn_and_judged, there.plan, crew), left):
         if not isinstance(end, Returned):  # nobody was left to say what scene it was
             nameless.append(index)
-        there = told(index, _outcome(f"scene-{index}", end))
+        there = with_outcome(index, _outcome(f"scene-{index}", end))
         yield there
     for index, end in hosts.each(partial(_named, there, crew.draw), sorted(nameless)):
         if isinstance(end, Returned):
-            there = told(index, end.value)
+            there = with_outcome(index, end.value)
             yield there
 
 

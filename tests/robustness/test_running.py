@@ -27,7 +27,7 @@ from tests.robustness.kept import Kept, digest
 from tests.robustness.outcomes import Outcome, Way, in_bending, packed, shares, totals, unpacked
 from tests.robustness.running import FAILURES, Crew, Plan, Stress, run
 from tests.robustness.shrinking import Patience, shrunk, steps
-from tests.robustness.told import document, sentence, sheets_of, told_of
+from tests.robustness.tables import document, sentence, sheets_of, text_of
 from tests.robustness.toml import toml_of
 from tests.verdict.made_up import MadeUp
 
@@ -304,7 +304,7 @@ def test_where_the_theories_are_too_far_apart_both_solvers_are_told_in_bending()
     assert outcome.uncertainty < 0.015
     assert stretching.asked == {(theory, n) for theory in ("bending", "shear") for n in (40, 80)}
     assert in_bending([outcome]) == 1
-    assert "Judged in the theory of bending alone" in told_of(outcome)
+    assert "Judged in the theory of bending alone" in text_of(outcome)
     # nothing is excused by the step between the theories
     assert judged(scene, Solvers(replace(right, stiffness=1.02), stretching), Effort()).way is Way.WRONG
     assert judged(scene, Solvers(right, Stretching(-5e-4, off=1.02)), Effort()).way is Way.WRONG
@@ -508,7 +508,7 @@ def test_an_interrupt_leaves_what_is_finished_and_says_so(tmp_path):
     os.killpg(process.pid, signal.SIGINT)
     out, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert said == "cprbm: Interrupted; what was finished before stands.\n"
+    assert said == "cprbm: Interrupted; finished results stand.\n"
     assert "scenes:" in out
     (file,) = (tmp_path / "out").glob("*.jsonl")
     assert Kept(file).read()[0]

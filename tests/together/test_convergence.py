@@ -15,7 +15,7 @@ import pytest
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.converging.families import Convergence, Family, converged
-from comparisons.converging.told import beside, between
+from comparisons.converging.tables import beside, between
 from comparisons.pairing import ALONE, Solvers
 from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Scene

@@ -12,7 +12,7 @@ import pytest
 from comparisons import archive, documents, sheets
 from comparisons.choices import Choices
 from comparisons.claims import standings
-from comparisons.converging import told
+from comparisons.converging import tables
 from comparisons.converging.critical import critical_families
 from comparisons.converging.families import converged
 from comparisons.pairing import ALONE, Solvers
@@ -117,14 +117,14 @@ def test_critical_values_converge_though_the_branches_end(crank):
     """No probe has all stations; the critical value has its limit, the planted 70.4°."""
     found = converged(crank, (20, 40, 80), Choices(), Solvers(*STOPPING), ALONE)
     assert (found.completed, found.families) == (False, ())
-    entries = told.document(found)["families"]
+    entries = tables.document(found)["families"]
     assert [(each["solver"], each["component"]) for each in entries] == [
         (solver, "forward") for solver in ("cprbm", "fea", "fea")
     ]
     assert entries[0]["limit"] == pytest.approx(FORWARD, abs=1e-8)
-    (sheet,) = told.sheets_of(found)
+    (sheet,) = tables.sheets_of(found)
     assert len(sheet.rows) == 3
-    assert any("within bending" in sentence for sentence in told.sentences_of(found))
+    assert any("within bending" in sentence for sentence in tables.sentences_of(found))
 
 
 def test_a_mechanism_that_changes_with_n_counts_from_there_on(crank):

@@ -13,7 +13,7 @@ from comparisons import documents, sheets
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers, solvers_of
 from comparisons.studies import calibration as study
-from comparisons.studies.calibration_told import told
+from comparisons.studies.calibration_result import result_of
 from comparisons.verdict.calibration import EXACT_FACTOR, error_ratios, tally
 from cprbm_scene import Ending, Stage
 from tests.verdict.comparing import compared, row_of, word_of
@@ -179,7 +179,7 @@ def measured(hinge, exact):
 
 
 def test_the_study_says_whose_statements_hold(hinge):
-    found = told(measured(hinge, EXACT))
+    found = result_of(measured(hinge, EXACT))
     (case,) = json.loads(documents.text(found.data))["cases"]
     assert [(trial["links"], trial["elements"]) for trial in case["trials"]] == [(17, 40), (40, 80)]
     for mine in (mine for trial in case["trials"] for mine in trial["solvers"].values()):
@@ -188,8 +188,8 @@ def test_the_study_says_whose_statements_hold(hinge):
         assert 1.0 <= mine["stated_over_true"] <= 10.0
     assert found.pictures[0].svg.startswith(b"<?xml")
     assert all(len(row) == len(sheet.headers) for sheet in found.sheets for row in sheet.rows)
-    assert "broken by the CPRBM on hinge" in told(measured(hinge, replace(EXACT, stiffness=1.02))).words[0]
-    silent = told(measured(hinge, nobody))
+    assert "broken by the CPRBM on hinge" in result_of(measured(hinge, replace(EXACT, stiffness=1.02))).words[0]
+    silent = result_of(measured(hinge, nobody))
     assert (silent.pictures, silent.sheets) == ((), ())
     assert silent.words == ("hinge: an exact answer is known for no station. It is made up.",)
 

@@ -1,4 +1,4 @@
-"""What is told of the calibration: a table by case and size, the worst rows, a picture, and the documented JSON."""
+"""Result of the calibration: a table by case and size, the worst rows, a figure, and the documented JSON."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from comparisons.formats import number, percent
 from comparisons.sheet import Sheet
 from comparisons.studies.calibration import Calibration, Trial, tallies
 from comparisons.studies.calibration_drawn import stated_against_true
-from comparisons.studies.told import Told
+from comparisons.studies.result import StudyResult
 from comparisons.verdict.calibration import LARGEST_MEDIAN, SHARE_WITHIN, SOLVERS, ErrorRatio, Tally
 from comparisons.verdict.words import Word
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA in bending"}
 
 
-def told(found: Calibration) -> Told:
-    """Everything that is told of what was measured so far."""
-    return Told(
+def result_of(found: Calibration) -> StudyResult:
+    """Result of the measurements so far."""
+    return StudyResult(
         name="calibration",
         title="Stated uncertainties beside true errors",
         words=_words(found),

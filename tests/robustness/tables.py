@@ -1,4 +1,4 @@
-"""What is told of a run of random scenes: its documented JSON, its tables, and a sentence."""
+"""Tables, sentence and documented JSON of a run of random scenes."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def sentence(there: Stress) -> str:
     return f"{len(there.outcomes)} scenes{before}: {said or 'none'}."
 
 
-def told_of(outcome: Outcome) -> str:
+def text_of(outcome: Outcome) -> str:
     """One scene in a line."""
     apart = "" if outcome.apart is None else f" Judged in the theory of bending alone: {_too_far(outcome.apart)}."
     return f"{outcome.name}: {_way(outcome)}. {outcome.sentence}{apart}"

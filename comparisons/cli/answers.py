@@ -1,4 +1,4 @@
-"""One solver's answer to one scene, as several sub-commands ask for it, and what they say where it is not whole."""
+"""The answer of a single solver to a scene, and its report on standard error."""
 
 from __future__ import annotations
 
@@ -18,45 +18,47 @@ NOT_COMPLETED = 1
 NOT_WITHIN = 3
 
 
-def answered(
+def solve_scene(
     planted: object, scene: Scene, solver: SolverName, choices: Choices, tol: float | None, *, shown: bool
 ) -> tuple[Answer, tuple[Tolerance, ...]]:
-    """The answer, and what the search for N within a tolerance has found where one is given.
+    """The answer, and the result of the search for N with a tolerance ``tol``.
 
     Raises:
-        SceneError: the question is none that the solver can be asked.
+        SceneError: the solver does not support the scene.
     """
-    from comparisons.cli import showing
+    from comparisons.cli import output
     from comparisons.pairing import exact_answer, solid_answer, solvers_of
 
-    solvers = solvers_of(planted, exact=True)  # who names the solver is not held to the rule
+    solvers = solvers_of(planted, exact=True)  # a named solver has no rule on its size
     if tol is not None and solver != "exact":
         from comparisons.tolerances import tolerated
 
-        with showing.current(shown=shown) as say:
+        with output.current(shown=shown) as say:
             answer, reached = tolerated.solved(scene, solver, choices, tol, solvers, say)
         return answer, (reached,)
-    asked = {
+    solve = {
         "cprbm": solvers.cprbm,
         "fea": solvers.fea,
         "exact": solvers.exact or exact_answer,
         "solid": solvers.solid or solid_answer,
     }[solver]
-    with showing.stations(shown=shown):
-        return asked(scene, choices), ()
+    with output.stations(shown=shown):
+        return solve(scene, choices), ()
 
 
-def told(scene: Scene, answer: Answer, found: tuple[Tolerance, ...], complaints: tuple[str, ...]) -> int:
-    """Say of an answer what is not whole about it, as its audit ``complaints`` too; the exit code."""
+def report_problems(scene: Scene, answer: Answer, found: tuple[Tolerance, ...], complaints: tuple[str, ...]) -> int:
+    """Report an early end, ``complaints`` of the audit, or a missed tolerance; the exit code."""
     if not answer.completed:
-        click.echo(f"cprbm: {scene.name}: {answer.ending.value}. {answer.sentence}".rstrip(), err=True)
+        ending = answer.ending.value
+        sentence = answer.sentence if answer.sentence.startswith(ending) else f"{ending}. {answer.sentence}".rstrip()
+        click.echo(f"cprbm: {scene.name}: {sentence}", err=True)
         return NOT_COMPLETED
     if complaints:
         for complaint in complaints:
             click.echo(f"cprbm: {scene.name}: the audit fails {complaint}", err=True)
         return NOT_WITHIN
-    for reached in found:
-        if not reached.met:
-            click.echo(f"cprbm: {scene.name}: {reached.sentence(scene)}", err=True)
+    for tolerance in found:
+        if not tolerance.met:
+            click.echo(f"cprbm: {scene.name}: {tolerance.sentence(scene)}", err=True)
             return NOT_WITHIN
     return 0

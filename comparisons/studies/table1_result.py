@@ -1,4 +1,4 @@
-"""What is told of the paper's Table 1 beside ours: tables, sentences and the documented JSON."""
+"""Result of the paper's Table 1 beside ours: tables, sentences and the documented JSON."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from comparisons.documents import Plain, plain
 from comparisons.formats import number
 from comparisons.sheet import Sheet
 from comparisons.studies.drawn import run_times
+from comparisons.studies.result import StudyResult
 from comparisons.studies.table1 import THEIR_MACHINE, Cell, Table, Times
-from comparisons.studies.told import Told
 
 
-def told(table: Table) -> Told:
-    """Everything that is told of what was measured so far."""
+def result_of(table: Table) -> StudyResult:
+    """Result of the measurements so far."""
     measured = any(times.seconds for times in table.times.values())
-    return Told(
+    return StudyResult(
         name="table1",
         title="Run times, beside Table 1 of the paper",
         words=_words(table),

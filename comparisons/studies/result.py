@@ -1,4 +1,4 @@
-"""What is told of a study: its numbers, its words, its tables and its figures."""
+"""The result of a study: numbers, sentences, tables and figures, with its files."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from comparisons.writing import write
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """A study as it is shown; ``data`` is its documented JSON."""
+class StudyResult:
+    """The displayed result of a study; ``data`` is the documented JSON."""
 
     name: str
     title: str
@@ -24,15 +24,15 @@ class Told:
     data: Plain
 
 
-def written(folder: Path, told: Told) -> None:
-    """Put a study's page, its numbers and its figures into a folder.
+def write_result(folder: Path, result: StudyResult) -> None:
+    """Write page, numbers and figures of a study into a folder.
 
     Raises:
-        OSError: the folder cannot be written to.
+        OSError: the folder is not writable.
     """
-    for picture in told.pictures:
+    for picture in result.pictures:
         write(folder / f"{picture.name}.svg", picture.svg)
         write(folder / f"{picture.name}.png", picture.png)
-    write(folder / f"{told.name}.json", text(told.data))
-    pictures = tuple(embedded(picture) for picture in told.pictures)
-    write(folder / f"{told.name}.html", rendered("study.html", {"study": told, "pictures": pictures}))
+    write(folder / f"{result.name}.json", text(result.data))
+    pictures = tuple(embedded(picture) for picture in result.pictures)
+    write(folder / f"{result.name}.html", rendered("study.html", {"study": result, "pictures": pictures}))

@@ -1,4 +1,4 @@
-"""What is told of an error budget: tables, sentences made of the numbers, and the documented JSON."""
+"""Tables, sentences and documented JSON of an error budget."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ _HEADERS = {
     "penalty": "penalty",
 }
 _MOVED = ("displacement", "rotation")
-_TOLD = 0.02
-"""Parts below this share of a difference are told together."""
+_LISTED = 0.02
+"""Share of a difference below which parts are summed in a sentence."""
 
 
 def sheets_of(account: Account) -> tuple[Sheet, ...]:
@@ -99,12 +99,12 @@ def _budgets(account: Account) -> Sheet:
     names = [name for name in _HEADERS if chosen or name != "contact"]
     body = []
     for budget in rows:
-        told = budget.all_parts > 0.0
+        has_parts = budget.all_parts > 0.0
         cells = [_cell(budget, budget.row.difference)]
         for name in names:
-            cells.append(_cell(budget, getattr(budget.parts, name), sign=True) if told else "–")
+            cells.append(_cell(budget, getattr(budget.parts, name), sign=True) if has_parts else "–")
             if name == "rest":
-                cells.append(_cell(budget, budget.rest_uncertainty) if told else "–")
+                cells.append(_cell(budget, budget.rest_uncertainty) if has_parts else "–")
         cells += [_cell(budget, budget.paper, sign=True)] if beside else []
         cells += [_cell(budget, budget.curved)] if curved else []
         cells += [_cell(budget, budget.missed, sign=True), _cell(budget, budget.missed_uncertainty)] if solid else []
@@ -190,9 +190,9 @@ def _signed(budget: Budget, value: float) -> str:
 def _made_of(scene: Scene, budget: Budget) -> str:
     row = budget.row
     parts = budget.parts.by_name()
-    told = {name: part for name, part in parts.items() if abs(part) > _TOLD * row.difference}
-    listed = ", ".join(f"{_HEADERS[name]} {_signed(budget, part)}" for name, part in told.items())
-    left = sum(part for name, part in parts.items() if name not in told)
+    listed_parts = {name: part for name, part in parts.items() if abs(part) > _LISTED * row.difference}
+    listed = ", ".join(f"{_HEADERS[name]} {_signed(budget, part)}" for name, part in listed_parts.items())
+    left = sum(part for name, part in parts.items() if name not in listed_parts)
     return (
         f"{row.probe.name} at {at_station(scene, row.stage, row.station)}: our difference of "
         f"{percent(row.fraction(row.difference))} is "
@@ -205,12 +205,12 @@ def _missed(account: Account) -> str:
     if account.silent:
         return f"The solid says nothing: {account.silent}"
     of_all = last_budgets(account.scene, account.budgets)
-    told = [each for each in of_all if each.missed is not None and each.row.probe.quantity in _MOVED]
-    if not told:
+    missed = [each for each in of_all if each.missed is not None and each.row.probe.quantity in _MOVED]
+    if not missed:
         return "The solid has no displacement or rotation to hold the beam theories against."
     listed = ", ".join(
         f"{each.row.probe.name} {_cell(each, each.missed, sign=True)} % (± {_cell(each, each.missed_uncertainty)} %)"
-        for each in told
+        for each in missed
     )
     return f"What the beam theories miss together, beside the sum, by the solid: {listed}."
 

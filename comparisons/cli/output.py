@@ -1,4 +1,4 @@
-"""What the sub-commands write: tables, JSON and a bar that shows how far they are."""
+"""Output of the sub-commands: tables, JSON and progress bars."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from comparisons.sheet import Sheet
 T = TypeVar("T")
 
 _PLAIN_WIDTH = 140
-"""Columns where there is no terminal to ask."""
+"""Columns of tables outside a terminal."""
 
 
 def tables(sheets: Iterable[Sheet], most: int = 10_000) -> None:
-    """Print tables, at most ``most`` columns wide; colours only reach a terminal."""
+    """Print tables with at most ``most`` columns; colours appear on a terminal only."""
     from comparisons.tables import drawn
 
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else _PLAIN_WIDTH
@@ -47,10 +47,10 @@ def json(file: Path, data: Plain) -> None:
 
 
 def room_for(file: Path | None, out: Path | None = None) -> None:
-    """See before anything is solved that JSON has a folder to go to, and a report its own.
+    """Create the folders of JSON and report before any solve.
 
     Raises:
-        OSError: a folder cannot be made.
+        OSError: a folder cannot be created.
     """
     if file is not None and str(file) != "-":
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -59,10 +59,10 @@ def room_for(file: Path | None, out: Path | None = None) -> None:
 
 
 class Steps(Generic[T]):
-    """The items one after the other, with a bar on standard error if that is a terminal and the bar is wanted.
+    """Items in order, with a bar on standard error on a terminal, if ``shown``.
 
-    Between one item and the next the bar goes on as those ``within`` it say how much of their own is done.  They may
-    do so in several rounds, each from the beginning: a round takes ``share`` of what was left of the item.
+    During an item the loggers ``within`` move the bar by their own progress.  Several rounds are possible, every round
+    from its beginning: a round takes ``share`` of the remaining part of the item.
     """
 
     def __init__(self, items: Sequence[T], within: tuple[str, ...], share: float, noun: str, *, shown: bool) -> None:
@@ -70,7 +70,7 @@ class Steps(Generic[T]):
         self._bar: Bar | None = None
 
     def __iter__(self) -> Iterator[T]:
-        """The items; the bar is there until the last one is done with."""
+        """The items; the bar stays until the end of the last item."""
         with _bar(len(self.items), self.noun, shown=self.shown) as bar:
             if bar is None:
                 yield from self.items
@@ -83,16 +83,16 @@ class Steps(Generic[T]):
                     yield item
 
     def clear(self) -> None:
-        """Take the bar away before something else is printed; its next move brings it back."""
+        """Erase the bar before other output; the next move draws the bar again."""
         if self._bar is not None:
             self._bar.clear()
 
 
 @dataclass(slots=True)
 class Rounds:
-    """How far an item is whose steps come in rounds, of which each takes a ``share`` of what is left of it.
+    """Progress of an item with rounds of steps; a round takes a ``share`` of the remaining part of the item.
 
-    ``begun`` is the item's number, ``left`` the fraction of it that the round before has left, ``done`` the last step.
+    ``begun`` is the item's number, ``left`` the remaining fraction after the last round, ``done`` the last step.
     """
 
     share: float
@@ -106,7 +106,7 @@ class Rounds:
         return self.begun
 
     def at(self, done: int, whole: int) -> float:
-        """The items done, and the part of the one that is not, after a step of a round; never less than before."""
+        """Number of finished items plus the finished part of the present item; the value never falls."""
         if done <= self.done:
             self.left *= 1.0 - self.share
         self.done = done
@@ -116,16 +116,16 @@ class Rounds:
 def progress(
     items: Sequence[T], *, shown: bool, within: tuple[str, ...] = (RUNS,), share: float = 1.0, noun: str = ""
 ) -> Steps[T]:
-    """Some items as :class:`Steps`, of a comparison's runs, in one round, unless told otherwise.
+    """Items as :class:`Steps`, by default with the runs of a comparison in a single round.
 
-    With a ``noun`` the bar says the number of the item: "case 3 of 11".
+    With a ``noun`` the bar shows the number of the item: "case 3 of 11".
     """
     return Steps(items, within, share, noun, shown=shown)
 
 
 @contextmanager
 def stations(*, shown: bool) -> Iterator[None]:
-    """While within, a bar on standard error, as of :class:`Steps`, of the stations that a solver reaches."""
+    """Context with a bar on standard error, as in :class:`Steps`, for the stations of a solver."""
     with _bar(1, shown=shown) as bar:
         if bar is None:
             yield
@@ -136,14 +136,14 @@ def stations(*, shown: bool) -> Iterator[None]:
 
 @contextmanager
 def counted(whole: int, *, shown: bool) -> Iterator[Callable[[int], None]]:
-    """A bar on standard error, as of :class:`Steps`, that is told how many of a ``whole`` are done."""
+    """Context with a bar on standard error, as in :class:`Steps`; call the value with the number of finished items."""
     with _bar(whole, shown=shown) as bar:
         yield (lambda done: None) if bar is None else bar.move
 
 
 @dataclass(frozen=True, slots=True)
 class Bar:
-    """A bar on a terminal: ``move`` it to how many are done, ``clear`` its line."""
+    """A bar on a terminal: ``move`` to a number of finished items, ``clear`` the line."""
 
     move: Callable[[float], None]
     clear: Callable[[], None]
@@ -151,10 +151,10 @@ class Bar:
 
 @contextmanager
 def _bar(whole: int, noun: str = "", *, shown: bool) -> Iterator[Bar | None]:
-    """A bar of a ``whole``, with the time that remains; None where none is shown.
+    """Context with a bar for ``whole`` items and the remaining time; None without a bar.
 
-    None is where standard error is no terminal, where sentences are asked for in its place, and where none is wanted.
-    It is drawn when it is told, by no thread of its own: who shows it may still start processes.
+    There is no bar outside a terminal, with ``--verbose``, and with ``--quiet``.  The bar has no thread, so that the
+    program may still fork processes.
     """
     if not shown or not sys.stderr.isatty() or heard_from() != NOTSET:
         yield None
@@ -166,7 +166,7 @@ def _bar(whole: int, noun: str = "", *, shown: bool) -> Iterator[Bar | None]:
 
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn())
     terminal = Console(stderr=True)
-    # what goes to standard output stays there: redirected, it would go where the bar is
+    # standard output keeps its stream: a redirection would print at the place of the bar
     with Progress(
         *columns,
         console=terminal,
@@ -196,7 +196,7 @@ def _bar(whole: int, noun: str = "", *, shown: bool) -> Iterator[Bar | None]:
 
 @contextmanager
 def current(*, shown: bool) -> Iterator[Callable[[str], None]]:
-    """A line on standard error that says what is being done, if that is a terminal and the line is wanted."""
+    """Context with a status line on standard error on a terminal, if ``shown``; call the value with the text."""
     if not shown or not sys.stderr.isatty() or heard_from() != NOTSET:
         yield lambda text: None
         return

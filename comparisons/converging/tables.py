@@ -1,4 +1,4 @@
-"""What is told of a scene at a family of sizes: tables, sentences and the documented JSON."""
+"""Tables, sentences and documented JSON of a scene at a family of sizes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from statistics import median
 
 from comparisons import documents
-from comparisons.converging import critical_told
+from comparisons.converging import critical_tables
 from comparisons.converging.critical import critical_families
 from comparisons.converging.families import STANDARD_AT, Convergence, Family
 from comparisons.display_units import at_station, display_unit
@@ -23,7 +23,7 @@ def document(found: Convergence) -> Plain:
         "case": found.scene.name,
         "families": [
             *(entry for family in found.families for entry in _entries(found, family)),
-            *(critical_told.entry(found.sizes, family) for family in critical_families(found.scene, found.series)),
+            *(critical_tables.entry(found.sizes, family) for family in critical_families(found.scene, found.series)),
         ],
         "runs": [
             {"n": n, **documents.solver(answer), "complaint": series.why.get(n)}
@@ -66,7 +66,7 @@ def _entries(found: Convergence, family: Family) -> Iterable[Plain]:
 def sheets_of(found: Convergence) -> tuple[Sheet, ...]:
     """Critical values, the limits at the last station, and over all stations orders and how far limits are apart."""
     title = found.scene.title or found.scene.name
-    critical = critical_told.sheet_of(found.scene, title, found.sizes, critical_families(found.scene, found.series))
+    critical = critical_tables.sheet_of(found.scene, title, found.sizes, critical_families(found.scene, found.series))
     of_probes = (_limits(found), _orders(found)) if found.families else ()
     return (*((critical,) if critical.rows else ()), *of_probes)
 
@@ -78,7 +78,7 @@ def sentences_of(found: Convergence) -> tuple[str, ...]:
         for series in found.series
         for n, why in series.why.items()
     )
-    return (*ended, *critical_told.sentences_of(found.scene, critical_families(found.scene, found.series)))
+    return (*ended, *critical_tables.sentences_of(found.scene, critical_families(found.scene, found.series)))
 
 
 def shown_size(found: Convergence) -> int:
@@ -163,23 +163,25 @@ def _orders(found: Convergence) -> Sheet:
     body = []
     for probe in found.scene.probes:
         mine = [(cprbm, fea) for cprbm, fea in pairs if cprbm.probe.name == probe.name]
-        # a limit of nothing tells nothing: contacts that are open
-        told = [(pair, apart) for pair in mine if pair[0].why != "the contact is open" and (apart := between(*pair))]
-        if not told:
+        # an open contact has no limit
+        compared = [
+            (pair, apart) for pair in mine if pair[0].why != "the contact is open" and (apart := between(*pair))
+        ]
+        if not compared:
             continue
-        within = sum(apart[0] <= apart[1] for _, apart in told)
-        (worst, _), (far, may) = max(told, key=lambda one: one[1][0] / one[0][0].scale)
-        errors = [family.apart(n) for (family, _), _ in told]
+        within = sum(apart[0] <= apart[1] for _, apart in compared)
+        (worst, _), (far, may) = max(compared, key=lambda entry: entry[1][0] / entry[0][0].scale)
+        errors = [family.apart(n) for (family, _), _ in compared]
         body.append(
             (
                 probe.name,
-                _range([family for (family, _), _ in told]),
-                _range([family for (_, family), _ in told]),
+                _range([family for (family, _), _ in compared]),
+                _range([family for (_, family), _ in compared]),
                 percent(max((error / worst.scale for error in errors if error is not None), default=None)),
                 _share(worst, far),
                 _share(worst, may),
                 at_station(found.scene, worst.stage, worst.station),
-                f"{within} of {len(told)}",
+                f"{within} of {len(compared)}",
             )
         )
     return Sheet(

@@ -1,4 +1,4 @@
-"""What the tables and the JSON of a benchmark say."""
+"""Tables and documented JSON of a benchmark."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is told of the relations: a table of the worst violations, what is broken, and the documented JSON."""
+"""Result of the relations: the worst violations, the broken relations, and the documented JSON."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 from comparisons.documents import Plain
 from comparisons.formats import number
 from comparisons.sheet import Sheet
-from comparisons.studies.told import Told
+from comparisons.studies.result import StudyResult
 from tests.relations.measured import TARGET
 from tests.relations.relations import RELATIONS
 from tests.relations.study import Relations, Seen
@@ -15,9 +15,9 @@ from tests.relations.study import Relations, Seen
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
 
 
-def told(found: Relations) -> Told:
-    """Everything that is told of what was measured so far."""
-    return Told(
+def result_of(found: Relations) -> StudyResult:
+    """Result of the measurements so far."""
+    return StudyResult(
         name="relations",
         title="What must not change an answer",
         words=_words(found),

@@ -1,4 +1,4 @@
-"""What is told of critical values at a family of sizes: a table, sentences and entries of the documented JSON."""
+"""Table, sentences and entries of the documented JSON for critical values at a family of sizes."""
 
 from __future__ import annotations
 

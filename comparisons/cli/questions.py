@@ -1,0 +1,31 @@
+"""Questions of a command line: built-in cases, files and ``all``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import click
+
+from comparisons.cli.options import settings
+
+if TYPE_CHECKING:
+    from cprbm_scene import Question
+
+
+def read_questions(arguments: Sequence[str]) -> list[Question]:
+    """Questions of the arguments, without repetition.
+
+    Raises:
+        SceneError: a case does not exist, or a file is no valid question.
+        click.UsageError: two questions have the same name.
+    """
+    from comparisons import cases
+
+    names = [name for text in arguments for name in (cases.names() if text == "all" else (text,))]
+    questions = [cases.asked(name, settings()) for name in dict.fromkeys(names)]
+    own = [question.name for question in questions]
+    twice = sorted({name for name in own if own.count(name) > 1})
+    if twice:
+        raise click.UsageError(f"Several scenes have the name {', '.join(twice)}; allowed: a name for each scene.")
+    return questions
