@@ -16,13 +16,12 @@ Between two stated places u is the cubic through the stated displacements with t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 from comparisons.geometry import length
 from cprbm_scene.answer import Answer, Array, BeamState, StationAnswer
@@ -99,10 +98,16 @@ class DeformedBeam:
         return self.state.section_angle - np.unwrap(np.angle(self.rest(self.state.s)[1]))
 
     @cached_property
-    def displacement(self) -> CubicHermiteSpline:
-        """Displacement u of the neutral line by arc length."""
-        X, tangents = self.rest(self.state.s)
-        return CubicHermiteSpline(self.state.s, self.places - X, np.exp(1j * self.state.angle) - tangents)
+    def displacement(self) -> Callable[..., Complex]:
+        """Displacement u of the neutral line by arc length, or a derivative of the order in a second argument."""
+        from scipy.interpolate import CubicHermiteSpline  # a command without an answer needs no SciPy
+
+        displacement: Callable[..., Complex] = CubicHermiteSpline(
+            self.state.s,
+            self.places - self.rest(self.state.s)[0],
+            np.exp(1j * self.state.angle) - self.rest(self.state.s)[1],
+        )
+        return displacement
 
     @cached_property
     def fine(self) -> tuple[Array, Complex]:

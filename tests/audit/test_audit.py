@@ -1,6 +1,6 @@
-"""The audit of answers: right answers of both solvers stay quiet, and every planted fault is a complaint.
+"""The audit of answers: no complaint about right answers of both solvers, a complaint about every planted fault.
 
-Faults are planted in right answers, so that the complaint is the fault's.
+Faults are planted in right answers.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def test_beams_that_are_thicker_than_solved_penetrate(solver):
 
 @pytest.mark.parametrize("solver", ["cprbm", "bending"])
 def test_energy_that_a_silent_jump_loses_is_a_complaint(solver):
-    # the answer states where it jumped; the altered answer does not
+    # the answer states the critical point of the jump; the altered answer states none
     scene = scene_from(branches.snap([[0.0, 0.61, 0.69]]))
     answer = SOLVERS[solver](scene)
     assert answer.completed, answer.sentence

@@ -67,7 +67,7 @@ def only(solver: Solver, other: Solver, when: Callable[[Choices], bool]) -> Solv
 
 
 def in_bending(solver: Solver) -> Solver:
-    """A solver of finite elements that answers in ``bending`` whatever theory is chosen: the step of theory is 0."""
+    """A solver of finite elements in ``bending`` for every chosen theory: the step of theory is 0."""
     return lambda scene, choices: solver(scene, choices.within("bending"))
 
 

@@ -1,7 +1,7 @@
-"""A solver by hand whose branches end: a driven crank that jumps forwards at one angle and back at another.
+"""A made-up solver with ends of branches: a driven crank jumps forwards at 70.4° and back at 25.3°.
 
-Before the jump the moment is M = sin α + C/N², and the energy its integral; what is on another branch is a constant
-less.  Numbers follow :class:`tests.verdict.made_up.MadeUp`'s law of an error C/N² and a step per theory.
+Before the jump the moment is M = sin α + C/N², and the energy the integral of M; on another branch both are smaller.
+Numbers follow the law of :class:`tests.verdict.made_up.MadeUp`: an error C/N² and a step per theory.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from cprbm_scene.statement import TurningBody
 from tests.verdict.made_up import THEORY, MadeUp
 
 FORWARD, BACK = radians(70.4), radians(25.3)
-"""Where the branch ends forwards, and where the one after it ends on the way back."""
+"""Ends of the first branch forwards and of the second branch on the way back, rad."""
 
 FALL = 0.3
-"""The energy that a jump forwards releases, J."""
+"""Released energy of a jump forwards, J."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class Jumping:
         return replace(base, stations=tuple(stations), ending=ending, events=(), **ends)
 
     def _passed(self, last: float, value: float, shift: float, *, away: bool) -> float | None:
-        """The critical value between two stations: before the jump the one forwards, after it the one back."""
+        """The critical value between two stations: of the way forwards before the jump, of the way back behind."""
         end = BACK - shift if away else FORWARD + shift
         passed = value <= end < last if away else last < end <= value
         return end if self.jumps and passed else None
@@ -119,7 +119,7 @@ class Jumping:
 
 
 def _shapes(scene: Scene, alpha: float, away: int) -> dict[str, Shape]:
-    """Cubic curves from each beam's start to its pin on the crank, which bulge one way before the jump."""
+    """Cubic curves from the starts of the beams to the pins on the crank; the side of the bulge changes at the jump."""
     u = np.linspace(0.0, 1.0, 41)[:, None]
     turn = np.array([[cos(alpha), -sin(alpha)], [sin(alpha), cos(alpha)]])
     found = {}

@@ -29,7 +29,7 @@ def without(probe):
 
 
 def drawn(**fields):
-    """The first beam's shape with numbers that are not finite, or no shape."""
+    """The first beam's shape with non-finite numbers, or no shape."""
 
     def change(station):
         shape = station.shapes["beam1"]

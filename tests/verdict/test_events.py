@@ -110,7 +110,7 @@ def late_in_theory(off):
     ],
 )
 def test_the_word_of_a_critical_point(crank, cprbm, fea, word):
-    """0.3° are allowed within one theory, and 1.5 % of 90° by theory; no row differs for a critical point."""
+    """0.3° are allowed within a theory, and 1.5 % of 90° by theory; no row differs for a critical point."""
     found = compared(crank, cprbm, fea)
     assert word_of(found) == word, found.verdict.sentence
     said = {" ".join(each.value for each in row.judged if each is not None) for row in found.criticals}
@@ -305,7 +305,7 @@ def test_solvers_that_pass_a_critical_point(forward, fea, word, sentence):
 
 
 def test_within_a_tolerance_of_a_passed_point_a_contradiction_is_undecided(forward):
-    """At 70.6° one solver has passed the point at 70.4°, and the other may pass it just behind."""
+    """At 70.6° a solver has passed the point at 70.4°; the other solver may pass the point just behind."""
     (stage,) = forward.stages
     stations = (*(value for value in stage.stations if value < radians(69.0)), radians(70.6))
     short = forward.model_copy(update={"stages": (stage.model_copy(update={"stations": stations}),)})

@@ -172,11 +172,6 @@ def test_without_bending_a_row_agrees_if_the_values_do(hinge):
     assert (word_of(found), row_of(found, ROTATION).bounds.bending) == ("AGREE", None)
 
 
-def test_round_off_is_a_billionth_of_the_scale(hinge):
-    row = row_of(compared(hinge, C, F), ROTATION)
-    assert row.bounds.round_off == pytest.approx(1e-9 * row.scale, rel=1e-9)
-
-
 @pytest.mark.parametrize(("off", "word"), [(1e-9, "AGREE"), (1e-8, "DIFFER VALUES")])
 def test_more_than_round_off_is_a_difference(last, off, word):
     """Values of 3.6 N that no grid changes: nothing but 3.6e-9 N of round-off is stated."""

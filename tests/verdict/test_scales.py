@@ -26,7 +26,7 @@ CRANK = 2e11 * 0.008 * 0.001**3 / 12.0 / 0.06  # E·I/ℓ of the case prestresse
 
 
 def scales(scene, values):
-    """Scales with these ``values`` by probe at every station, and the made-up ones of the other probes."""
+    """Scales with these ``values`` by probe at every station; other probes have made-up values."""
     answer = MadeUp("fea", 0.0, contact=False)(scene, Choices(kinematics="bending"))
     given = {name: frozen_array(value) for name, value in values.items()}
     stations = (replace(each, values=frozendict({**each.values, **given})) for each in answer.stations)
@@ -120,7 +120,7 @@ PLACES = np.linspace(0.0, LENGTH, 801)
 
 
 def pressed(hinge, *forces, source="contact", beam="beam1"):
-    """A station whose contact presses the beam, at fractions of its length, with (0, 1) N or a given force."""
+    """A station with contact forces on the beam at fractions of the length: (0, 1) N or a given force."""
     station = MadeUp("cprbm", 0.0, contact=False)(hinge, Choices()).stations[-1]
     pairs = [each if isinstance(each, tuple) else (each, 1.0) for each in forces]
     k = len(pairs)

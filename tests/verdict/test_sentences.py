@@ -1,4 +1,4 @@
-"""Sentences of a verdict: what decides, where, whose uncertainty, and the next command."""
+"""Sentences of a verdict: the deciding row, the uncertain solver, and the next command."""
 
 import re
 from dataclasses import replace
@@ -19,7 +19,7 @@ COARSE = MadeUp("cprbm", 2e-2), MadeUp("fea", -8e-2)
 
 @pytest.fixture
 def away(hinge):
-    """The hinge without the station 0.201, near which the contact closes."""
+    """The hinge without the station 0.201, beside the closing of the contact."""
     (stage,) = hinge.stages
     stations = tuple(value for value in stage.stations if value != 0.201)
     return hinge.model_copy(update={"stages": (stage.model_copy(update={"stations": stations}),)})
@@ -30,7 +30,7 @@ def away(hinge):
     [(COARSE[0], F, {"-n"}), (MadeUp("cprbm", 1e-3), COARSE[1], {"--elements"}), (*COARSE, {"-n", "--elements"})],
 )
 def test_the_size_of_the_hint_makes_the_limit(away, cprbm, fea, options):
-    """Errors of second order: the command of the sentence agrees, and half of its sizes does not."""
+    """Errors of second order: the sizes of the command make AGREE, half of the sizes make UNDECIDED."""
     found = compared(away, cprbm, fea)
     assert word_of(found) == "UNDECIDED COARSE"
     command = re.search(r"`([^`]*)` would do", found.verdict.because)[1].split()
@@ -59,7 +59,7 @@ def test_whose_uncertainty_is_too_large(away):
 
 
 def test_a_problem_of_several_runs_is_told_once(hinge):
-    """Six runs of the finite elements end alike, and one run of the CPRBM for another reason."""
+    """Six runs of the finite elements end alike, a run of the CPRBM for another reason."""
 
     def stuck(scene, choices):
         found = ending(C, 5)(scene, choices)
@@ -73,7 +73,7 @@ def test_a_problem_of_several_runs_is_told_once(hinge):
 
 
 def test_no_sentence_is_said_twice_and_the_worst_comes_first(crank):
-    """A critical point that differs, another that agrees, and a run that ended."""
+    """Critical points with DIFFER and with AGREE, and an ended run."""
     found = compared(crank, Jumping("cprbm", stops=True), Jumping("fea"))
     assert found.verdict.because.startswith("The branch ends in back at nowhere in the CPRBM and 0.44")
     assert len(set(found.verdict.sentences)) == len(found.verdict.sentences)
