@@ -16,14 +16,25 @@ Of a polynomial and a spline they are what the scene's own geometry says, :mod:`
 from __future__ import annotations
 
 import math
-from typing import assert_never
+from typing import TypeAlias, assert_never
 
 import numpy as np
 
 from cprbm_scene import Arc, Beam, Line, Polynomial, Scene, Spline
 from cprbm_scene.answer import Array
 from cprbm_scene.geometry import arc_length, curvature_on, largest_curvature, points_on
-from cprbm_scene.statement import Curve, EdgeContact, FunctionContact, HalfPlaneContact, LineContact
+from cprbm_scene.statement import (
+    Curve,
+    EdgeContact,
+    EllipseContact,
+    FunctionContact,
+    HalfPlaneContact,
+    LineContact,
+    SplineContact,
+)
+
+RigidEdge: TypeAlias = EdgeContact | SplineContact | EllipseContact
+"""Contacts with a rigid edge that has places along it."""
 
 _SAMPLES = 1001  # along a beam whose thickness varies
 
@@ -90,13 +101,13 @@ def points(curve: Curve, s: Array) -> Array:
             assert_never(curve)
 
 
-def edge_places(contact: EdgeContact, reach: float, count: int) -> Array:
+def edge_places(contact: RigidEdge, reach: float, count: int) -> Array:
     """Places (k, 2) along a rigid edge as drawn, m.
 
     Args:
         contact: with the edge.
         reach: length of a half-plane's edge to either side of its point, m.
-        count: number of places of a function's graph.
+        count: number of places along a curve.
     """
     match contact:
         case LineContact():
@@ -104,16 +115,16 @@ def edge_places(contact: EdgeContact, reach: float, count: int) -> Array:
         case HalfPlaneContact():
             n = np.array(contact.normal) / np.hypot(*contact.normal)
             return np.array(contact.point) + np.outer([-reach, reach], [-n[1], n[0]])
-        case FunctionContact():
+        case FunctionContact() | SplineContact() | EllipseContact():
             return points(contact.curve, np.linspace(0.0, length(contact.curve), count))
         case _:
             assert_never(contact)
 
 
-def is_free_on_the_left(contact: EdgeContact) -> bool:
-    """Whether the beam's side of an edge lies on the left of :func:`edge_places`."""
+def is_free_on_the_left(contact: RigidEdge) -> bool:
+    """Whether the beam's side of an edge lies on the left of :func:`edge_places`; an ellipse is counter-clockwise."""
     if not isinstance(contact, FunctionContact):
-        return isinstance(contact, LineContact) and contact.side == "left"
+        return not isinstance(contact, HalfPlaneContact) and contact.side in ("left", "inside")
     # the places above a function of x lie on the left of a graph towards larger x
     forward = (contact.range[1] > contact.range[0]) == (contact.axis == "x")
     return forward == (contact.side == "above")

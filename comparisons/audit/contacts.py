@@ -30,12 +30,12 @@ import numpy as np
 import shapely
 
 from comparisons.audit.state import PIECES, Complex, Finding, StationState
-from comparisons.geometry import edge_places, is_free_on_the_left
+from comparisons.geometry import RigidEdge, edge_places, is_free_on_the_left
 from cprbm_scene.answer import Array
 from cprbm_scene.contact_states import ACTIVE
-from cprbm_scene.statement import CircleContact, Contact, EdgeContact, RigidContact, Scene, SelfContact
+from cprbm_scene.statement import CircleContact, Contact, RigidContact, Scene, SelfContact
 
-Rigid = CircleContact | EdgeContact
+Rigid = CircleContact | RigidEdge
 
 DEEP, SUNK = 0.05, 2e-3
 """Largest penetration, and largest gap under a force: of thick beams over the thickness, also without a declared
