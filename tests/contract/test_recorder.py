@@ -45,6 +45,7 @@ def test_a_command_has_its_arguments_options_choices_and_defaults():
         "demo paint option --colour": "value",
         "demo paint choice --colour red": "",
         "demo paint choice --colour blue": "",
+        "demo paint default -c": "red",
         "demo paint default --colour": "red",
         "demo paint option --coats": "value",
         "demo paint option --tape": "values, repeated",
