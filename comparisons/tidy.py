@@ -153,8 +153,7 @@ def _in_file_units(scene: Scene, record: Mapping[str, object]) -> dict[str, obje
 def _csv_text(rows: Iterable[Mapping[str, object]], kind: type) -> str:
     """Rows of a ``kind`` as comma-separated values; also without rows a line of headers."""
     text = io.StringIO()
-    columns = list(kind.__annotations__)
-    columns.insert(columns.index("arc_length") + 1, "arc_length_unit")
+    columns = [*kind.__annotations__, "arc_length_unit"]
     table = csv.DictWriter(text, fieldnames=columns, lineterminator="\n")
     table.writeheader()
     table.writerows(rows)

@@ -1,4 +1,4 @@
-"""Requirements of a scene that only some solvers meet: a solver states the met requirements and refuses all others."""
+"""Requirements of a scene for its solvers: a solver states the met requirements and refuses the others by name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Requirement = Literal["theory", "overlap at rest", "from", "together", "support"
 
 
 def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
-    """Kinds of requirements, with the keys, the values found, and values that every solver allows."""
+    """Kinds of requirements, with keys, values found, and values for a solver without the feature."""
     if scene.theory != "bending":
         yield "theory", Mistake("theory", repr(scene.theory), "'bending'", scene.file)
     for name, drive in scene.drives.items():
@@ -39,10 +39,15 @@ def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
 
 
 def refuse(scene: Scene, solver: str, *met: Requirement) -> None:
-    """Refuse a scene with requirements that a ``solver`` has not ``met``.
+    """Refuse a scene with requirements beyond those ``met`` by a ``solver``.
+
+    Args:
+        scene: the problem statement.
+        solver: name of the solver for the message.
+        met: kinds of requirements for which the solver has equations.
 
     Raises:
-        SceneError: the scene has such requirements; the error names every key.
+        SceneError: the scene has further requirements; the error names every key.
     """
     found = [mistake for kind, mistake in requirements(scene) if kind not in met]
     if found:

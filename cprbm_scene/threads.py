@@ -1,7 +1,7 @@
-"""One thread of BLAS while a solver works: for small matrices further threads cost more time than they save.
+"""One thread of BLAS while a solver works: for small matrices further threads take time.
 
 In a process with a loaded BLAS only threadpoolctl can limit the threads.  Without threadpoolctl BLAS keeps the threads
-of the process, and the program ``cprbm`` limits them at its start (:mod:`comparisons.threads`).
+of the process; the program ``cprbm`` limits these threads at the start (:mod:`comparisons.threads`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""An imperfection of a beam: a part of its curve, that every solver answers."""
+"""An imperfection of a beam: a part of the curve, for every solver."""
 
 from math import cos, pi, sin
 

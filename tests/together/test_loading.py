@@ -1,4 +1,4 @@
-"""What stages ask and hold, and which solver answers."""
+"""Probes, drives and loads by stage, and the solvers that answer."""
 
 import json
 
@@ -23,7 +23,7 @@ SOLVERS = {
 
 
 def two_stages(**stages):
-    """A cantilever that is pressed on a circle and then pulled; ``stages`` in which the probes of a name are asked."""
+    """A cantilever, pressed on a circle and then pulled; ``stages`` of probes by the names of parts."""
     data = held_by(CIRCLE) | {"probes": probes("T.displacement", "c.force", "R.reaction", "beam.bending_stress")}
     data["loads"] |= {"H": {"kind": "force", "point": "T", "direction": [1.0, 0.0]}}
     steps = {"down": ("F", 1.5 * FORCE), "pull": ("H", FORCE)}
@@ -57,7 +57,7 @@ def test_rows_of_a_comparison_are_those_asked(tmp_path, capsys):
 
 
 def pressed_then_held(begins="hold"):
-    """A cantilever under a force at its tip; in a second stage a drive holds the tip where it is, and lifts it."""
+    """A cantilever under a force at its tip; in a second stage a drive holds the tip and lowers the tip."""
     drive = {"kind": "displacement", "point": "T", "direction": [0.0, -1.0], "from": begins}
     stages = [("press", "F", [FORCE]), ("hold", "d", [0.01])]
     return edited(

@@ -1,4 +1,4 @@
-"""What solvers refuse by name, and what they take that looks like a mistake."""
+"""Refusals of solvers by name, and scenes with rounded coordinates or dead points."""
 
 import re
 from math import asin, hypot
