@@ -12,7 +12,7 @@ PRINTS = {  # what the figures in the pages rest on, known from elsewhere
     "solve_a_case": "holds: True",
     "own_mechanism": "AGREE",
     "sweep": "t = 2.0 mm: 0.782 rad,",
-    "numbers_to_csv": "scene,solver,stage,station,branch,probe,component,arc_length,arc_length_unit,unit,value",
+    "numbers_to_csv": "scene,solver,stage,station,branch,probe,component,arc_length,unit,value",
     "energy_and_force": "minimum of the energy",
 }
 DRAWS = {"sweep", "energy_and_force"}
