@@ -130,7 +130,7 @@ def _energies(state: StationState) -> tuple[float, float, float]:
     """Strain energy, work of the loads, and the energy that an even curvature of elements leaves out, J."""
     strain = even = 0.0
     for name, beam in state.beams.items():
-        s, ds = gauss(beam.state.s)
+        s, ds = gauss(np.unique(np.concatenate((beam.state.s, state.on[name]["s"]))))  # M may step at a load
         N, Q, M = (np.interp(s, beam.state.s, of) for of in (beam.state.N, beam.state.Q, state.unbalance(name)))
         EI, EA, GA = beam.stiffness(s)
         density = (M + state.beyond(name, s)[1]) ** 2 / EI + N**2 / EA * (state.kinematics != "bending")
@@ -156,8 +156,10 @@ def path(answer: Answer, states: Sequence[StationState]) -> Iterator[Finding]:
             )
     for critical in answer.critical:
         gained = 0.0 if critical.after is None else critical.after - critical.energy
-        floor = CONTINUOUS * abs(critical.energy) + (ROUND_OFF * states[0].natural if states else 0.0)
-        yield gained - floor, f"beyond {critical.stage} {critical.value:g} the energy is {gained:.3g} J larger"
+        yield (
+            gained - CONTINUOUS * abs(critical.energy) - (ROUND_OFF * states[0].natural if states else 0.0),
+            f"beyond {critical.stage} {critical.value:g} the energy is {gained:.3g} J larger",
+        )
 
 
 def _driving(state: StationState) -> float:
