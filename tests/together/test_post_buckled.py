@@ -40,7 +40,7 @@ def errors(solve, n):
 
 @pytest.mark.parametrize(
     ("solve", "counts", "order", "last"),
-    [(by_cprbm, (20, 40, 80), 2.0, 2e-3), (by_fea, (8, 16, 32), 4.0, 1e-6)],
+    [(by_cprbm, (20, 40, 80), 4.0, 2e-5), (by_fea, (8, 16, 32), 4.0, 1e-6)],
     ids=["cprbm", "fea"],
 )
 def test_convergence(solve, counts, order, last):

@@ -56,9 +56,9 @@ def test_the_third_solver_comes_near_the_parabola(name):
 def test_orders(name, directions):
     """Points are few enough for the kinks of the curvature to lie within elements."""
     true = of_five_points(name, directions)
-    for solve, counts, order, last in (
-        (cprbm_answer, (20, 40, 80), 2.0, 1e-4),
-        (fea_answer, (6, 12, 24, 48), 4.0, 1e-7),
+    for solve, counts, least, last in (
+        (cprbm_answer, (20, 40, 80), 2.5, 2e-6),
+        (fea_answer, (6, 12, 24, 48), 3.5, 1e-7),
     ):
         errors = []
         for n in counts:
@@ -71,7 +71,7 @@ def test_orders(name, directions):
                 ]
             )
         overall = np.log2(np.array(errors[0]) / errors[-1]) / (len(counts) - 1)
-        assert overall == pytest.approx(np.full(3, order), abs=0.03 if order == 2.0 else 0.5)
+        assert np.all(overall > least)
         assert np.all(np.array(errors[-1]) < last)
 
 

@@ -57,7 +57,13 @@ def _answer(data: Data, solver: str) -> Answer:
     return fea_reference.answer(scene_from(data), fea_reference.Settings(elements=20, kinematics=solver))
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+NOT_YET = pytest.mark.xfail(
+    strict=True,
+    reason="the second edition ends with STEP_TOO_SMALL where a rigid link comes to its dead point (issue 36)",
+)
+
+
+@pytest.mark.parametrize("solver", [pytest.param(each, marks=NOT_YET if each == "cprbm" else ()) for each in SOLVERS])
 @pytest.mark.parametrize("stations", [(0.47, 2.3), (2.3,), (0.99, 1.01, 7.9)])
 def test_the_slide_carries_what_the_beam_does_not(stations, solver):
     answer = _answer(lifted(*stations), solver)
@@ -68,6 +74,7 @@ def test_the_slide_carries_what_the_beam_does_not(stations, solver):
         np.testing.assert_allclose(pull, (0.0, -max(part - 1.0, 0.0) * NEEDED), atol=NEEDED / LINKS**2)
 
 
+@NOT_YET
 def test_on_the_way_back_a_link_that_would_be_pushed_is_no_minimum():
     # reference: less force than NEEDED leaves a push in the link, which nothing keeps from turning; to which side it
     # folds then nothing says

@@ -75,11 +75,10 @@ def observed(solver, counts: tuple[int, int], profile: str, load: str, last: flo
 
 @pytest.mark.parametrize("load", ["force", "moment"])
 @pytest.mark.parametrize("profile", list(PROFILES))
-def test_the_cprbm_converges_with_order_two(profile, load):
-    # reference: tests.references.tapered
-    orders = observed(by_cprbm, (256, 1024), profile, load, 3e-6)
-    assert orders == pytest.approx(dict.fromkeys(orders, 2.0), abs=0.1)
-    assert "place" in orders
+def test_the_cprbm_converges_with_order_four(profile, load):
+    # reference: tests.references.tapered; a kink within an element leaves the third order
+    orders = observed(by_cprbm, (16, 64), profile, load, 2e-5)
+    assert min(orders.values(), default=4.0) > 2.7
 
 
 @pytest.mark.parametrize("load", ["force", "moment"])
@@ -101,8 +100,7 @@ def test_it_hardly_matters_where_in_an_element_a_kink_lies(knot):
     data = cantilever_data(force(0.0, 1.0), [FORCE])
     data["beams"]["beam"]["thickness"] = sized(thickness)
     scene = scene_from(data)
-    first, second = (n**2 * errors(by_cprbm(scene, n), reference)["place"] for n in (160, 161))
-    assert second == pytest.approx(first, rel=0.15)
+    assert all(errors(by_cprbm(scene, n), reference)["place"] < 1e-8 for n in (160, 161))
     assert errors(by_fea(scene, 41), reference)["place"] < 5e-7
 
 
