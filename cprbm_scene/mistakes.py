@@ -69,7 +69,9 @@ def hint(word: str, known: Iterable[str]) -> str:
     if word.casefold() in _NOT_MODELLED:
         return f" ({word} is not modelled)"
     by_case = {each.casefold(): each for each in known}
-    near = get_close_matches(_MEANT.get(word.casefold(), word.casefold()), by_case, n=1)
+    near = get_close_matches(
+        ({} if word.casefold() in by_case else _MEANT).get(word.casefold(), word.casefold()), by_case, n=1
+    )
     # any two words as short as a unit are close
     told = near and (len(word) > 2 or near[0] == word.casefold())
     return f" (is {by_case[near[0]]!r} meant?)" if told else ""

@@ -56,10 +56,10 @@ def test_edges_move_with_their_bodies(scene, station):
         axes = figure.add_subplot()
         draw_edges(axes, scene, places_at(scene, station), "black")
         edge, plane, curve = axes.get_lines()
-    assert edge.get_xydata() == pytest.approx(np.array([[150.0, 0.0], [250.0, 0.0]]), abs=1e-9)
+    assert edge.get_xydata() == pytest.approx(np.array([[0.15, 0.0], [0.25, 0.0]]), abs=1e-9)
     x, y = plane.get_xydata().T
-    assert x == pytest.approx([300.0, 300.0])
+    assert x == pytest.approx([0.3, 0.3])
     assert math.isclose(y[0], -y[1])
     assert edge.get_linestyle() == plane.get_linestyle() == "-"
     assert curve.get_linestyle() == "--"  # of the crank one place is known, and no rotation
-    assert curve.get_xydata()[[0, -1]] == pytest.approx(np.array([[-500.0, 0.0], [-490.0, 100.0]]))
+    assert curve.get_xydata()[[0, -1]] == pytest.approx(np.array([[-0.5, 0.0], [-0.49, 0.1]]))

@@ -46,11 +46,11 @@ def test_the_slider_moves_the_mechanism_and_its_values(tab):
         document.querySelector("[data-stepper] input").getAttribute("aria-valuetext")]"""
     assert not tab.run("document.querySelector('.steps').hidden")
     last = tab.run(seen)
-    assert last[0] == last[3] == "load, M = 670.0 mN·m"
+    assert last[0] == last[3] == "load, M = 0.67 N·m"
     tab.run("document.querySelector('[data-stepper] input').focus()")
     tab.press("ArrowLeft")
     before = tab.run(seen)
-    assert before[0] == before[3] == "load, M = 603.0 mN·m"
+    assert before[0] == before[3] == "load, M = 0.603 N·m"
     assert all(one != other for one, other in zip(last, before, strict=True))
     tab.run("document.querySelector('[data-stepper] button[data-by=\"1\"]').click()")
     assert tab.run(seen) == last
@@ -131,7 +131,7 @@ def test_without_a_script_the_last_station_is_shown_and_the_tables_are_whole(tab
     tab.call("Emulation.setScriptExecutionDisabled", value=True)
     tab.open(page)
     tab.call("Emulation.setScriptExecutionDisabled", value=False)
-    assert tab.run("document.querySelector('[data-stepper] output').textContent") == "load, M = 670.0 mN·m"
+    assert tab.run("document.querySelector('[data-stepper] output').textContent") == "load, M = 0.67 N·m"
     assert tab.run("document.querySelector('.steps').hidden")
     assert tab.run("[...document.querySelectorAll('tbody')].every((each) => each.rows.length > 0)")
     assert tab.run("document.querySelectorAll('th button').length") == 0

@@ -99,14 +99,14 @@ def test_one_station_alone_is_no_curve(hinge, right):
 def test_a_mechanism_that_draws_itself_together_is_shown_as_large_as_it_is():
     """A line of 240 mm rolled to 60 x 50 mm has a window of its own; one of 60 x 40 mm stands beside the whole line."""
     shape = namedtuple("Shape", "x y")
-    for across, high, most in ((0.03, 0.025, 60.0), (0.13, 0.04, 300.0)):
+    for across, high, most in ((0.03, 0.025, 0.06), (0.13, 0.04, 0.3)):
         turn = np.linspace(0.0, 2.0 * np.pi, 30)
         loaded = namedtuple("Station", "shapes")({"strip": shape(across * np.cos(turn), high * np.sin(turn))})
         with figures.canvas(4.0, 4.0) as figure:
             axes = figure.add_subplot()
-            axes.plot([0.0, 240.0], [0.0, 0.0])
-            axes.plot(1e3 * loaded.shapes["strip"].x, 1e3 * loaded.shapes["strip"].y)
+            axes.plot([0.0, 0.24], [0.0, 0.0])
+            axes.plot(loaded.shapes["strip"].x, loaded.shapes["strip"].y)
             frame(axes, loaded)
             assert np.ptp(axes.get_xlim()) < 1.7 * most
-            assert axes.get_xlim()[0] < -1e3 * across
-            assert (axes.get_xlim()[1] > 240.0) == (across > 0.1)
+            assert axes.get_xlim()[0] < -across
+            assert (axes.get_xlim()[1] > 0.24) == (across > 0.1)

@@ -16,13 +16,14 @@ How each is planted:
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+import cprbm.chain.beam
 import cprbm.nearest
-import cprbm.section
 from comparisons import cases
 from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
@@ -111,10 +112,10 @@ def test_a_mean_thickness_is_caught(tapered):
 
 
 def test_a_stiffness_sampled_at_the_ends_of_elements_is_caught(tapered, monkeypatch):
-    def sampled(section: cprbm.section.Section, borders: np.ndarray) -> np.ndarray:
-        return np.diff(borders) / section.rigidity_at(borders[1:])
+    def sampled(function: Callable[[np.ndarray], np.ndarray], borders: np.ndarray, knots: np.ndarray) -> np.ndarray:
+        return np.diff(borders) * function(borders[1:])
 
-    monkeypatch.setattr(cprbm.section.Section, "flexibility", sampled)
+    monkeypatch.setattr(cprbm.chain.beam, "_integrals", sampled)
     assert in_bending(tapered, Solvers()) is not Word.AGREE
 
 
