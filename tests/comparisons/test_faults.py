@@ -181,7 +181,8 @@ def test_standard_output_that_takes_nothing_is_a_sentence(closed):
 def test_a_signal_while_modules_are_loaded_is_a_sentence(number, code):
     """Sent by the program itself as it comes to a module, so that it is never too early or too late."""
     program = f"""
-import os, sys
+import os, signal, sys
+signal.signal({int(number)}, signal.SIG_DFL)  # a test run may be started so that it ignores the signal
 class Sending:
     def find_spec(self, name, path=None, target=None):
         if name == 'cprbm_scene.statement':
