@@ -8,14 +8,17 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from cprbm.march import March
 from cprbm.refining import coarser
-from cprbm.results.stations import Run
 from cprbm.settings import Settings
 from cprbm_scene import Answer, Ending, Scene
 from cprbm_scene.contact_states import openings
 from cprbm_scene.threads import one_thread
+
+if TYPE_CHECKING:
+    from cprbm.results.stations import Run
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +76,8 @@ def prepared(scene: Scene, settings: Settings | None = None) -> Prepared | Run:
     settings = settings or Settings()
     settings.check(scene)
     if not scene.contacts:
+        from cprbm.results.stations import Run  # Numba and its kernels take 0.4 s to load
+
         return Run(scene, settings)
     march = March(scene, coarser(settings))
     return Prepared(scene, settings, march, time.perf_counter() - began)
