@@ -72,9 +72,7 @@ def axis_unit(scene: Scene, unit: str, size: float) -> tuple[float, str]:
 def with_unit(scene: Scene, value: float, unit: str, digits: int) -> str:
     """An SI value with its displayed unit; an angle of a file in radians also in degrees."""
     factor, name = display_unit(scene, unit, value)
-    if name == "rad":
-        return f"{number(value, digits)} rad ({_degrees(value)})"
-    return _joined(number(value / factor, digits), name)
+    return _joined(number(value / factor, digits), name) + _in_degrees(value, name)
 
 
 def distance_text(scene: Scene, value: float, unit: str) -> str:
@@ -89,14 +87,13 @@ def load_text(scene: Scene, stage: str, value: float) -> str:
     """A value of the load or drive that the stage of a name steps, with its displayed unit."""
     unit = load_unit(scene, next(each for each in scene.stages if each.name == stage))
     factor, name = _with_symbols(*file_unit(scene, unit))
-    return _joined(f"{value / factor:.6g}", name) + (f" ({_degrees(value)})" if name == "rad" else "")
+    return _joined(f"{value / factor:.6g}", name) + _in_degrees(value, name)
 
 
 def load_column(scene: Scene, stage: Stage, values: Sequence[float]) -> tuple[str, tuple[str, ...]]:
     """Heading and texts of a column with values of a stage's load or drive."""
     factor, unit = _with_symbols(*file_unit(scene, load_unit(scene, stage)))
-    texts = (f"{value / factor:.6g}" + (f" ({_degrees(value)})" if unit == "rad" else "") for value in values)
-    return f"{stage.steps}, {unit}", tuple(texts)
+    return f"{stage.steps}, {unit}", tuple(f"{value / factor:.6g}{_in_degrees(value, unit)}" for value in values)
 
 
 def at_station(scene: Scene, stage: str, value: float) -> str:
@@ -111,8 +108,9 @@ def _with_symbols(size: float, name: str) -> tuple[float, str]:
     return size, name
 
 
-def _degrees(angle: float) -> str:
-    return f"{number(angle / DEGREE, 4)}°"
+def _in_degrees(value: float, unit: str) -> str:
+    """Addition to an angle that is displayed in radians; empty for other units."""
+    return f" ({number(value / DEGREE, 4)}°)" if unit == "rad" else ""
 
 
 def _joined(text: str, unit: str) -> str:

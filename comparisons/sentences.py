@@ -131,13 +131,12 @@ def passed_sentences(table: RunsTable, rows: Sequence[Row], judged: Sequence[Jud
     differing = [row for row, (word, _) in zip(rows, judged, strict=True) if word is Word.DIFFER]
     if not differing:
         return
-    stages = {stage.name: stage for stage in table.scene.stages}
-    stage = stages[differing[0].stage]
+    names = [stage.name for stage in table.scene.stages]
+    current = names.index(differing[0].stage)
+    stage, before = table.scene.stages[current], names[:current]
     index = stage.stations.index(differing[0].station)
     for name, answer in zip(NAMES.values(), table.pair, strict=True):
-        earlier = [
-            one for one in answer.gone_over if list(stages).index(one.end.stage) < list(stages).index(stage.name)
-        ]
+        earlier = [one for one in answer.gone_over if one.end.stage in before]
         mine = [one for one in answer.gone_over if one.end.stage == stage.name]
         for one in (*earlier, *mine[: passed_by(table.scene, stage, answer, index)])[-1:]:
             yield (

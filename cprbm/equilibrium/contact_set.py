@@ -24,7 +24,7 @@ from cprbm.contact import (
     taken,
 )
 from cprbm.equilibrium.factors import Factors, SingularError, factorise
-from cprbm.equilibrium.newton import CLOSE, LARGEST_TURN, ROUNDED, SHRINKING, NotConvergedError
+from cprbm.equilibrium.newton import NotConvergedError, correction, has_converged
 from cprbm.equilibrium.system import State, System
 from cprbm.equilibrium.touching import Touching, contact_terms, touching
 from cprbm_scene.answer import Array, Flags, Ints
@@ -146,7 +146,7 @@ def solve_set(system: System, geometry: Geometry, start: State, contacts: Contac
             if seen[closed.tobytes()] > RETURNS:
                 raise NotConvergedError("the set of closed places returns")
         factors, size = _iterate(system, geometry, state, places, closed)
-        arrived = size < CLOSE or (size < ROUNDED and size > SHRINKING * last)
+        arrived = has_converged(size, last)
         last = size
         if arrived and not changed:
             settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, FINDING)
@@ -174,11 +174,7 @@ def _iterate(
             change = free.solve(-gradient)
     except (SingularError, np.linalg.LinAlgError) as singular:
         raise NotConvergedError("the system is singular") from singular
-    turn = float(np.abs(change[system.angles]).max())
-    size = max(turn, float(np.abs(change[system.nodes]).max()))
-    if not np.isfinite(size):
-        raise NotConvergedError("the correction is not finite")
-    share = min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0
+    size, share = correction(system, change)
     moved = move_places(z, geometry.arrays, places, change, force, share, LONGEST_MOVE)
     change[system.rows.first :][~state.driven] = 0.0
     z += share * change

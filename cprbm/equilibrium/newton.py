@@ -96,19 +96,33 @@ def _iterated(system: System, start: State, iterations: int, springs: Springs | 
         for iteration in range(1, iterations + 1):
             factors, gradient = factorise(system, state, springs)
             change = -factors.solve(gradient)
-            turn = float(np.abs(change[system.turns]).max())
-            size = float(np.abs(change[system.motions]).max())
-            if not np.isfinite(size):
-                raise NotConvergedError("the correction is not finite")
-            share = min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0
+            size, share = correction(system, change)
             change[system.rows.first :][forced] = 0.0
             z += share * change
-            if size < CLOSE or (size < ROUNDED and size > SHRINKING * last):
+            if has_converged(size, last):
                 return Solved(system, state, *factorise(system, state, springs), iteration)
             last = size
     except SingularError as singular:
         raise NotConvergedError("the system is singular") from singular
     raise NotConvergedError(f"{iterations} iterations did not converge")
+
+
+def correction(system: System, change: Array) -> tuple[float, float]:
+    """Size of a change (size,) of the unknowns, and the share of the change that turns no part too far.
+
+    Raises:
+        NotConvergedError: the change is not finite.
+    """
+    turn = float(np.abs(change[system.turns]).max())
+    size = float(np.abs(change[system.motions]).max())
+    if not np.isfinite(size):
+        raise NotConvergedError("the correction is not finite")
+    return size, min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0
+
+
+def has_converged(size: float, last: float) -> bool:
+    """Whether a correction of this size after the ``last`` is as small as it gets."""
+    return size < CLOSE or SHRINKING * last < size < ROUNDED
 
 
 def _contradicted(solved: Solved) -> int | None:
