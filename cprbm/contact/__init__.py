@@ -32,6 +32,7 @@ from cprbm.contact.settling import (
     new_counters,
     separations,
     settle,
+    settle_near,
 )
 
 __all__ = [
@@ -67,6 +68,7 @@ __all__ = [
     "new_counters",
     "separations",
     "settle",
+    "settle_near",
     "sides_at_rest",
     "taken",
 ]

@@ -17,29 +17,23 @@ from cprbm.contact import (
     choose_sides,
     fixed_places,
     joined,
-    move_places,
     near_pairs,
     separations,
-    settle,
     taken,
 )
-from cprbm.equilibrium.factors import Factors, SingularError, factorise
-from cprbm.equilibrium.newton import NotConvergedError, correction, has_converged
+from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_of, new_work, pulls, solved_border
+from cprbm.equilibrium.iteration import apply_change, settle_and_change
+from cprbm.equilibrium.linear import linearise
+from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
-from cprbm.equilibrium.touching import Touching, contact_terms, touching
+from cprbm.equilibrium.touching import Touching
 from cprbm_scene.answer import Array, Flags, Ints
-
-OVERLAP = 1e-12
-"""Overlap, over the longest beam, from which an open place closes: round-off."""
 
 FREE_CHANGES = 12
 """Iterations with any change of the set; later iterations change one place at a time."""
 
 RETURNS = 2
 """Returns of a set after which the iteration counts as a cycle."""
-
-LONGEST_MOVE = 2.0
-"""Largest change of a moving place in an iteration, pieces."""
 
 ARRIVED = 1e-6
 """Largest last change of a moving place, pieces."""
@@ -116,7 +110,14 @@ def _identity(places: Places, k: int) -> tuple[int, int, int, float]:
     return int(places.pair[k]), int(places.curve[k]), int(places.piece[k]), float(places.xi[k])
 
 
-def solve_set(system: System, geometry: Geometry, start: State, contacts: Contacts, iterations: int) -> Touched:
+def solve_set(
+    system: System,
+    geometry: Geometry,
+    start: State,
+    contacts: Contacts,
+    iterations: int,
+    springs: Springs | None = None,
+) -> Touched:
     """Equilibrium near a state under the state's targets, and the set of closed places.
 
     Args:
@@ -124,104 +125,48 @@ def solve_set(system: System, geometry: Geometry, start: State, contacts: Contac
         start: state with targets.
         contacts: places at the start; not changed.
         iterations: largest number of Newton iterations.
+        springs: springs on the links' angles, of a descent.
 
     Raises:
         NotConvergedError: no equilibrium was found, or the set of closed places returns.
     """
     z, driven = start.z.copy(), start.driven
     z[system.rows.first :][~driven] = start.target[~driven] * ~start.repeated[~driven]
-    state = replace(start, z=z)
+    m, work, pulled, curves = system.numbers, new_work(system), pulls(system, springs), geometry.arrays
     places, closed = taken(contacts.places, np.ones(len(contacts.closed), dtype=bool)), contacts.closed.copy()
-    gaps, curvatures = np.empty(len(closed)), np.empty(len(closed))
-    settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, FINDING)
+    gaps, curvatures, room = np.empty(len(closed)), np.empty(len(closed)), np.zeros(len(closed))
+    settling = z, curves, places, closed, gaps, curvatures, room, contacts.counters
+    settle_and_change(*settling, FINDING, 0)
     seen: dict[bytes, int] = {}
     last = np.inf
     for iteration in range(1, iterations + 1):
-        settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, 0)
-        changed = iteration > 1 and update_set(
-            geometry, places, closed, gaps, len(closed) if iteration <= FREE_CHANGES else 1
-        )
+        most = 0 if iteration == 1 else len(closed) if iteration <= FREE_CHANGES else 1
+        changed = settle_and_change(*settling, 0, most)
         if changed:
             seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
             if seen[closed.tobytes()] > RETURNS:
                 raise NotConvergedError("the set of closed places returns")
-        factors, size = _iterate(system, geometry, state, places, closed)
+        bordered, change, reduced = linearise(z, m, driven, start.target, *pulled, work, curves, places, closed)
+        try:
+            factors = factors_of(system, driven, work, bordered)
+        except SingularError as singular:
+            raise NotConvergedError("the system is singular") from singular
+        solution = solved_border(factors.factored, factors.order, reduced)
+        size, moved = apply_change(z, m, work, curves, places, closed, bordered.reached, change, solution, room)
+        if not np.isfinite(size):
+            raise NotConvergedError("the correction is not finite")
+        size = size if moved < ARRIVED else max(size, moved)
         arrived = has_converged(size, last)
         last = size
         if arrived and not changed:
-            settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, FINDING)
-            if not update_set(geometry, places, closed, gaps, len(closed)):
+            room[:] = 0.0
+            if not settle_and_change(*settling, FINDING, len(closed)):
                 settled = replace(contacts, places=places, closed=closed)
-                return Touched(state, settled, factors, gaps, curvatures, iteration)
+                of_all = Touching(factors) if closed.any() else factors
+                return Touched(replace(start, z=z), settled, of_all, gaps, curvatures, iteration)
     raise NotConvergedError(f"{iterations} iterations did not converge")
-
-
-def _iterate(
-    system: System, geometry: Geometry, state: State, places: Places, closed: Flags
-) -> tuple[Factors | Touching, float]:
-    """One Newton iteration in place: factors before the change, and the size of the change."""
-    z, force = state.z, np.zeros(len(closed))
-    try:
-        free, gradient = factorise(system, state)
-        factors: Factors | Touching = free
-        if closed.any():
-            terms = contact_terms(geometry, z, places, closed)
-            factors = touching(free, terms)
-            change, by_force = factors.solve(-gradient - terms.gradient, terms.values)
-            force[closed & (places.shares == 0)] = by_force
-            force[:] = force[np.arange(len(force)) + places.shares] * closed
-        else:
-            change = free.solve(-gradient)
-    except (SingularError, np.linalg.LinAlgError) as singular:
-        raise NotConvergedError("the system is singular") from singular
-    size, share = correction(system, change)
-    moved = move_places(z, geometry.arrays, places, change, force, share, LONGEST_MOVE)
-    change[system.rows.first :][~state.driven] = 0.0
-    z += share * change
-    places.force[:] += share * force
-    return factors, size if moved < ARRIVED else max(size, moved)
-
-
-def update_set(geometry: Geometry, places: Places, closed: Flags, gaps: Array, most: int) -> bool:
-    """Close overlapping places, open pulling places, in place; True if the set changed.
-
-    With more changes than ``most`` only the worst overlap closes, or without overlaps the largest pull opens.
-    """
-    own = places.shares == 0
-    leaders = np.arange(len(closed)) + places.shares
-    gap = gaps.copy()
-    np.add.at(gap, leaders[~own], gaps[~own])
-    beside, depth = _beside_points(geometry, places, closed)
-    thick = geometry.arrays.thickness[places.piece] + geometry.arrays.thickness[places.foot] > 0.0
-    opens = closed & own & ((places.force < 0.0) | beside)
-    closes = own & ~closed & ~beside & (gap < -OVERLAP - depth) & (thick | ~places.at_point)
-    if opens.sum() + closes.sum() > most:
-        worst = int(np.argmin(np.where(closes, gap, 0.0))) if closes.any() else int(np.argmin(places.force * opens))
-        only = np.arange(len(closed)) == worst
-        opens, closes = opens & only, closes & only
-    closed[opens], closed[closes] = False, True
-    closed[:] = closed[leaders]
-    places.force[~closed] = 0.0
-    return bool(opens.any() or closes.any())
 
 
 def arc_of(geometry: Geometry, places: Places) -> Array:
     """Arc lengths of places on their own curves."""
     return np.asarray(geometry.arrays.arc[places.piece] + places.xi * geometry.arrays.span[places.piece])
-
-
-def _beside_points(geometry: Geometry, places: Places, closed: Flags) -> tuple[Flags, Array]:
-    """Fixed places within a piece of a closed moving place, and the overlap of every pair's point contact.
-
-    Outside of the point the other places of the pair may overlap by as much without contact.
-    """
-    beside, depth, arcs = np.zeros(len(closed), dtype=bool), np.zeros(len(closed)), arc_of(geometry, places)
-    arrays = geometry.arrays
-    middle = 0.5 ** np.arange(arrays.lost.shape[1])
-    for k in np.flatnonzero(places.moves & closed):
-        pair = ~places.moves & (places.pair == places.pair[k])
-        near = np.abs(arcs - arcs[k]) < arrays.span[places.piece[k]]
-        beside |= pair & (places.curve == places.curve[k]) & near
-        lost = (arrays.lost[places.piece[k]] + arrays.lost[places.foot[k]]) @ middle
-        depth[pair] = np.maximum(depth[pair], lost * places.force[k])
-    return beside, depth

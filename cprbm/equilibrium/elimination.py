@@ -16,7 +16,8 @@ angles, the link equations give the positions by sums from the start.  By Sylves
 for the link equations, and as many as T has negative pivots.
 
 The border holds bodies, nodes carried by bodies, the multipliers of the rows, and three unknowns per chain against the
-springs (1 on the diagonal, √ρ beside the diagonal).  A contact adds a multiplier and local motions.
+springs (1 on the diagonal, √ρ beside the diagonal).  Closed places add columns, :mod:`cprbm.equilibrium.columns`.
+The lower triangle of G counts.
 The multiplier of a row with prescribed force is no unknown; 1 stands on the diagonal.
 
 So the Hessian has neg(A) + neg(G) negative eigenvalues.  The equalities account for as many; the
@@ -182,7 +183,7 @@ def eliminate(
             continue
         beam = border.pair_beam[q]
         local, column = border.entry_index[t] - beams.first[beam], border.pair_column[q]
-        for other in range(border.beam_pairs[beam], border.beam_pairs[beam + 1]):
+        for other in range(border.beam_pairs[beam], q + 1):
             G[column, border.pair_column[other]] -= border.entry_value[t] * X[border.pair_offset[other] + local]
     return negative
 

@@ -8,12 +8,14 @@ multiplier μ* of a row with prescribed force.  Repeated rows are left out
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from cprbm.chain import Joints, Links, Mechanism, RowArrays, hidden_flexibility, link_arrays, row_arrays
 from cprbm.chain.mechanism import PER_LINK
 from cprbm.equilibrium.elimination import Beams, Border
+from cprbm.equilibrium.linear import Numbers
 from cprbm_scene.answer import Array, Flags, Ints
 
 
@@ -53,6 +55,12 @@ class System:
     def size(self) -> int:
         """Number of unknowns, multipliers included."""
         return self.rows.first + len(self.rows.constant)
+
+    @cached_property
+    def numbers(self) -> Numbers:
+        """The arrays for the kernels."""
+        of_chains = self.links, self.joints, self.rows, self.beams, self.border
+        return Numbers(*of_chains, self.angles, self.turns, self.motions)
 
 
 @dataclass(frozen=True, eq=False)
