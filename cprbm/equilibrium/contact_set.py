@@ -19,11 +19,11 @@ from cprbm.contact import (
     joined,
     near_pairs,
     separations,
+    settle_near,
     taken,
 )
 from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_of, new_work, pulls, solved_border
-from cprbm.equilibrium.iteration import apply_change, settle_and_change
-from cprbm.equilibrium.linear import linearise
+from cprbm.equilibrium.iteration import begin_iteration, change_set, end_iteration
 from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
 from cprbm.equilibrium.touching import Touching
@@ -132,27 +132,27 @@ def solve_set(
     """
     z, driven = start.z.copy(), start.driven
     z[system.rows.first :][~driven] = start.target[~driven] * ~start.repeated[~driven]
-    m, work, pulled, curves = system.numbers, new_work(system), pulls(system, springs), geometry.arrays
+    m, work, curves = system.numbers, new_work(system), geometry.arrays
     places, closed = taken(contacts.places, np.ones(len(contacts.closed), dtype=bool)), contacts.closed.copy()
     gaps, curvatures, room = np.empty(len(closed)), np.empty(len(closed)), np.zeros(len(closed))
-    settling = z, curves, places, closed, gaps, curvatures, room, contacts.counters
-    settle_and_change(*settling, FINDING, 0)
+    linear = z, m, driven, start.target, *pulls(system, springs), work
+    settling = curves, places, closed, gaps, curvatures, room, contacts.counters
+    settle_near(z, *settling, FINDING)
     seen: dict[bytes, int] = {}
     last = np.inf
     for iteration in range(1, iterations + 1):
         most = 0 if iteration == 1 else len(closed) if iteration <= FREE_CHANGES else 1
-        changed = settle_and_change(*settling, 0, most)
+        changed, bordered, change, reduced = begin_iteration(*linear, *settling, most)
         if changed:
             seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
             if seen[closed.tobytes()] > RETURNS:
                 raise NotConvergedError("the set of closed places returns")
-        bordered, change, reduced = linearise(z, m, driven, start.target, *pulled, work, curves, places, closed)
         try:
             factors = factors_of(system, driven, work, bordered)
         except SingularError as singular:
             raise NotConvergedError("the system is singular") from singular
-        solution = solved_border(factors.factored, factors.order, reduced)
-        size, moved = apply_change(z, m, work, curves, places, closed, bordered.reached, change, solution, room)
+        moving = m.beams, m.border, m.turns, m.motions, curves, places, closed, bordered.reached, change
+        size, moved = end_iteration(z, *moving, solved_border(factors.factored, factors.order, reduced), room)
         if not np.isfinite(size):
             raise NotConvergedError("the correction is not finite")
         size = size if moved < ARRIVED else max(size, moved)
@@ -160,7 +160,8 @@ def solve_set(
         last = size
         if arrived and not changed:
             room[:] = 0.0
-            if not settle_and_change(*settling, FINDING, len(closed)):
+            settle_near(z, *settling, FINDING)
+            if not change_set(curves, places, closed, gaps, len(closed)):
                 settled = replace(contacts, places=places, closed=closed)
                 of_all = Touching(factors) if closed.any() else factors
                 return Touched(replace(start, z=z), settled, of_all, gaps, curvatures, iteration)

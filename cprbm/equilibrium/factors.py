@@ -12,9 +12,8 @@ import numpy as np
 from scipy.linalg.lapack import dsytrf, dsytrs
 
 from cprbm.chain import Blocks, empty_blocks
-from cprbm.equilibrium.columns import reached_chains
 from cprbm.equilibrium.elimination import negative_pivots
-from cprbm.equilibrium.linear import NO_COLUMNS, Bordered, Work, add_gradient, assemble, reduced_load, restored
+from cprbm.equilibrium.linear import NO_COLUMNS, Bordered, Work, add_gradient, linearise, reduced_load, restored
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -63,7 +62,7 @@ class Factors:
         m, size, solution = self.system.numbers, self.system.border.size, np.array(load)
         reduced = reduced_load(m, self.work, self.driven, self.bordered, values, solution)
         within = solved_border(self.factored, self.order, reduced)
-        restored(m, self.work, self.bordered.reached, within, solution)
+        restored(m.beams, m.border, self.bordered.reached, within, solution)
         return solution, within[size : size + len(self.bordered.columns.values)]
 
 
@@ -71,7 +70,7 @@ def new_work(system: System) -> Work:
     """Arrays for the chains' factors, to write into."""
     count = len(system.metric)
     blocks = empty_blocks(count, count - len(system.beams.first))
-    return Work(blocks, np.zeros(count), np.zeros(count), np.empty(system.border.pair_offset[-1]))
+    return Work(blocks, np.zeros(count), np.zeros(count))
 
 
 def pulls(system: System, springs: Springs | None) -> tuple[Array, Array]:
@@ -95,15 +94,9 @@ def factorise(system: System, state: State, springs: Springs | None = None) -> t
     Raises:
         SingularError: no number is left to divide by.
     """
-    m, work, gradient = system.numbers, new_work(system), np.zeros(system.size)
-    G = np.zeros((system.border.size, system.border.size))
-    negative = assemble(state.z, m, state.driven, state.target, *pulls(system, springs), work, gradient, G)
-    return factors_of(system, state.driven, work, free_border(system, G, negative)), gradient
-
-
-def free_border(system: System, border: Array, negative: int) -> Bordered:
-    """Border without closed places."""
-    return Bordered(border, negative, NO_COLUMNS, reached_chains(system.beams, system.border.first, NO_COLUMNS))
+    m, work, gradient, pulled = system.numbers, new_work(system), np.zeros(system.size), pulls(system, springs)
+    bordered = linearise(state.z, m, state.driven, state.target, *pulled, work, NO_COLUMNS, gradient)
+    return factors_of(system, state.driven, work, bordered), gradient
 
 
 def factored_border(border: Array) -> tuple[Array, Ints]:

@@ -1,4 +1,4 @@
-"""Parts of an iteration with a closed set: the set's changes, and the change of unknowns, forces and places; compiled."""
+"""An iteration with a closed set, compiled: changes of the set, linear system, changes of forces and places."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ import numpy as np
 
 from cprbm.chain.compiled import compiled
 from cprbm.contact import CurveArrays, Places, move_places, settle_near
-from cprbm.equilibrium.columns import Reached
-from cprbm.equilibrium.linear import Numbers, Work, restored
+from cprbm.equilibrium.columns import contact_columns
+from cprbm.equilibrium.elimination import Beams, Border, Reached
+from cprbm.equilibrium.linear import Bordered, Numbers, Work, linearise, reduced_load, restored
 from cprbm.equilibrium.newton import LARGEST_TURN
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -21,26 +22,11 @@ LONGEST_MOVE = 2.0
 
 
 @compiled
-def settle_and_change(
-    z: Array,
-    curves: CurveArrays,
-    places: Places,
-    closed: Flags,
-    gaps: Array,
-    curvatures: Array,
-    room: Array,
-    counters: Ints,
-    steps: int,
-    most: int,
-) -> bool:  # pragma: no cover
-    """Settle all places that may close, then close overlapping places and open pulling places; True if the set changed.
+def change_set(curves: CurveArrays, places: Places, closed: Flags, gaps: Array, most: int) -> bool:  # pragma: no cover
+    """Close overlapping places and open pulling places; True if the set changed.
 
-    With more changes than ``most`` only the worst overlap closes, or without overlaps the largest pull opens; no change
-    is allowed with ``most`` of 0.
+    With more changes than ``most`` only the worst overlap closes, or without overlaps the largest pull opens.
     """
-    settle_near(z, curves, places, closed, gaps, curvatures, room, counters, steps)
-    if most == 0:
-        return False
     opens, closes, gap = _wanted(curves, places, closed, gaps)
     if np.sum(opens) + np.sum(closes) > most:
         worst, any_closes, least = -1, np.any(closes), np.inf
@@ -56,7 +42,7 @@ def settle_and_change(
         closed[k] = closed[k + places.shares[k]]
         if not closed[k]:
             places.force[k] = 0.0
-    return np.any(opens) or np.any(closes)
+    return bool(np.any(opens) or np.any(closes))
 
 
 @compiled
@@ -104,10 +90,43 @@ def _beside_points(curves: CurveArrays, places: Places, closed: Flags) -> tuple[
 
 
 @compiled
-def apply_change(
+def begin_iteration(
     z: Array,
     m: Numbers,
+    driven: Flags,
+    target: Array,
+    stiffness: Array,
+    anchor: Array,
     work: Work,
+    curves: CurveArrays,
+    places: Places,
+    closed: Flags,
+    gaps: Array,
+    curvatures: Array,
+    room: Array,
+    counters: Ints,
+    most: int,
+) -> tuple[bool, Bordered, Array, Array]:  # pragma: no cover
+    """Whether the set changed, the border, the chains' solution for minus the gradient, and the border's load.
+
+    Settles the places that may close; changes the set unless ``most`` is 0.
+    """
+    settle_near(z, curves, places, closed, gaps, curvatures, room, counters, 0)
+    changed = most > 0 and change_set(curves, places, closed, gaps, most)
+    gradient = np.zeros(z.size)
+    columns = contact_columns(z, curves, places, closed, gradient)
+    bordered = linearise(z, m, driven, target, stiffness, anchor, work, columns, gradient)
+    load = -gradient
+    return changed, bordered, load, reduced_load(m, work, driven, bordered, columns.values, load)
+
+
+@compiled
+def end_iteration(
+    z: Array,
+    beams: Beams,
+    border: Border,
+    turns: Ints,
+    motions: Ints,
     curves: CurveArrays,
     places: Places,
     closed: Flags,
@@ -122,15 +141,15 @@ def apply_change(
     most ``LARGEST_TURN``; nothing if the correction is not finite.
     """
     size, turn = 0.0, 0.0
-    restored(m, work, reached, solution, change)
-    for i in m.motions:
+    restored(beams, border, reached, solution, change)
+    for i in motions:
         if not isfinite(change[i]):
             return np.inf, 0.0
         size = max(size, abs(change[i]))
-    for i in m.turns:
+    for i in turns:
         turn = max(turn, abs(change[i]))
     share = min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0
-    by_force, column = np.zeros(closed.size), m.border.size
+    by_force, column = np.zeros(closed.size), border.size
     for k in range(closed.size):
         if closed[k] and places.shares[k] == 0:
             by_force[k] = solution[column]

@@ -12,16 +12,8 @@ import numpy as np
 
 from cprbm.chain import Blocks, Joints, Links, RowArrays, add_row_gradient, evaluate_chains, row_values
 from cprbm.chain.compiled import compiled
-from cprbm.contact import CurveArrays, Places
-from cprbm.equilibrium.columns import (
-    Columns,
-    Reached,
-    contact_columns,
-    eliminate_columns,
-    reduce_columns,
-    restore_columns,
-)
-from cprbm.equilibrium.elimination import Beams, Border, border_block, eliminate, reduce_load, restore
+from cprbm.equilibrium.columns import Columns
+from cprbm.equilibrium.elimination import Beams, Border, Reached, border_block, eliminate, reduce_load, restore
 from cprbm_scene.answer import Array, Flags, Ints
 
 
@@ -39,23 +31,24 @@ class Numbers(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Factors of the chains: blocks, inverse pivots and ratios of T, X of the rows' columns."""
+    """Factors of the chains: blocks, inverse pivots and ratios of T."""
 
     blocks: Blocks
     pivot: Array
     ratio: Array
-    columns: Array
 
 
 class Bordered(NamedTuple):
     """Border after the elimination of the chains.
 
     Attributes:
+        rows: D of the rows without closed places.
         border: G, lower triangle.
         negative: number of negative pivots of all T.
-        columns, reached: of the closed places.
+        columns, reached: of the closed places, and X.
     """
 
+    rows: Array
     border: Array
     negative: int
     columns: Columns
@@ -105,36 +98,27 @@ def reduced_load(
         if not driven[r]:
             reduced[border.rows + r] = 0.0
     reduced[border.size : border.size + values.size] = values
-    reduce_load(m.beams, work.blocks, work.pivot, work.ratio, driven, border, load, reduced)
-    reduce_columns(border.size, bordered.columns, bordered.reached, load, reduced)
+    columns, reached = bordered.columns, bordered.reached
+    reduce_load(m.beams, work.blocks, work.pivot, work.ratio, driven, border, columns, reached, load, reduced)
     return reduced
 
 
 @compiled
-def restored(m: Numbers, work: Work, reached: Reached, solution: Array, load: Array) -> None:  # pragma: no cover
+def restored(beams: Beams, border: Border, reached: Reached, solution: Array, load: Array) -> None:  # pragma: no cover
     """Turn the chains' solution ``load`` into the solution of the whole system, in place."""
-    restore(m.beams, m.border, work.columns, solution, load)
-    restore_columns(m.beams, m.border.size, reached, solution, load)
-    for i in range(m.border.first, load.size):
-        load[i] = solution[i - m.border.first]
+    restore(beams, reached, solution, load)
+    for i in range(border.first, load.size):
+        load[i] = solution[i - border.first]
 
 
 @compiled
-def assemble(
-    z: Array,
-    m: Numbers,
-    driven: Flags,
-    target: Array,
-    stiffness: Array,
-    anchor: Array,
-    work: Work,
-    gradient: Array,
-    G: Array,
-) -> int:  # pragma: no cover
-    """Add the gradient without contacts to ``gradient``; write ``work`` and the border; negative pivots of all T."""
-    add_gradient(z, m, driven, target, stiffness, anchor, work.blocks, gradient)
-    border_block(z, m.rows, driven, m.border, G)
-    return eliminate(m.beams, work.blocks, work.pivot, work.ratio, driven, m.border, work.columns, G)
+def border_of(m: Numbers, work: Work, driven: Flags, rows: Array, columns: Columns) -> Bordered:  # pragma: no cover
+    """Border from D of the rows; writes the factors of the chains."""
+    size = m.border.size
+    G = np.zeros((size + columns.diagonal.size, size + columns.diagonal.size))
+    G[:size, :size] = rows
+    negative, reached = eliminate(m.beams, work.blocks, work.pivot, work.ratio, driven, m.border, columns, G)
+    return Bordered(rows, G, negative, columns, reached)
 
 
 @compiled
@@ -146,29 +130,11 @@ def linearise(
     stiffness: Array,
     anchor: Array,
     work: Work,
-    curves: CurveArrays,
-    places: Places,
-    closed: Flags,
-) -> tuple[Bordered, Array, Array]:  # pragma: no cover
-    """Border at a state with the places marked ``closed``, the chains' solution for minus the gradient, and the border's.
-
-    Writes ``work``.
-    """
-    gradient = np.zeros(z.size)
-    columns = contact_columns(z, curves, places, closed, gradient)
-    size = m.border.size + columns.diagonal.size
-    G = np.zeros((size, size))
-    negative = assemble(z, m, driven, target, stiffness, anchor, work, gradient, G)
-    reached = eliminate_columns(m.beams, work.blocks, work.pivot, work.ratio, m.border, work.columns, columns, G)
-    bordered, load = Bordered(G, negative, columns, reached), -gradient
-    return bordered, load, reduced_load(m, work, driven, bordered, columns.values, load)
-
-
-@compiled
-def widened(m: Numbers, work: Work, free: Bordered, columns: Columns) -> Bordered:  # pragma: no cover
-    """Border of the rows with the columns of closed places."""
-    size = m.border.size
-    G = np.zeros((size + columns.diagonal.size, size + columns.diagonal.size))
-    G[:size, :size] = free.border
-    reached = eliminate_columns(m.beams, work.blocks, work.pivot, work.ratio, m.border, work.columns, columns, G)
-    return Bordered(G, free.negative, columns, reached)
+    columns: Columns,
+    gradient: Array,
+) -> Bordered:  # pragma: no cover
+    """Border at a state with the columns of closed places; adds the gradient without contacts to ``gradient``."""
+    add_gradient(z, m, driven, target, stiffness, anchor, work.blocks, gradient)
+    rows = np.zeros((m.border.size, m.border.size))
+    border_block(z, m.rows, driven, m.border, rows)
+    return border_of(m, work, driven, rows, columns)

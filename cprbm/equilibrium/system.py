@@ -151,18 +151,17 @@ def _border(m: Mechanism, rows: RowArrays, beams: Beams) -> Border:
     row = np.concatenate([rows.linear_row[inner], np.full(len(springs), -1)])
     value = np.concatenate([rows.linear_factor[inner], np.sqrt(beams.springs).ravel()])
     beam = np.searchsorted(beams.first, index, side="right") - 1
-    pairs, entry_pair = np.unique(np.column_stack([beam, columns]), axis=0, return_inverse=True)
-    sizes = 2 + PER_LINK * beams.links[pairs[:, 0]]
+    pairs, pair = np.unique(np.column_stack([beam, columns]), axis=0, return_inverse=True)
+    begin = np.searchsorted(pairs[:, 0], np.arange(len(beams.first) + 1)).astype(np.int64)
     return Border(
         first=first,
         size=size,
         rows=column,
-        pair_column=pairs[:, 1].astype(np.int64),
-        pair_beam=pairs[:, 0].astype(np.int64),
-        pair_offset=np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64),
-        beam_pairs=np.searchsorted(pairs[:, 0], np.arange(len(beams.first) + 1)).astype(np.int64),
-        entry_pair=entry_pair.ravel().astype(np.int64),
-        entry_index=index.astype(np.int64),
+        begin=begin,
+        column=pairs[:, 1].astype(np.int64),
+        entry_beam=beam.astype(np.int64),
+        entry_slot=(pair.ravel() - begin[beam]).astype(np.int64),
+        entry_local=(index - beams.first[beam]).astype(np.int64),
         entry_row=row.astype(np.int64),
         entry_value=value,
     )

@@ -9,7 +9,7 @@ import numpy as np
 from cprbm.contact import Geometry, Places
 from cprbm.equilibrium.columns import Columns, contact_columns
 from cprbm.equilibrium.factors import Factors, factors_of
-from cprbm.equilibrium.linear import widened
+from cprbm.equilibrium.linear import border_of
 from cprbm_scene.answer import Array, Flags
 
 
@@ -59,5 +59,5 @@ def touching(free: Factors, terms: ContactTerms) -> Touching:
     Raises:
         SingularError: no number is left to divide by.
     """
-    bordered = widened(free.system.numbers, free.work, free.bordered, terms.columns)
+    bordered = border_of(free.system.numbers, free.work, free.driven, free.bordered.rows, terms.columns)
     return Touching(factors_of(free.system, free.driven, free.work, bordered))
