@@ -1,12 +1,11 @@
 """Contact of curves: geometry, gaps with derivatives, places, pairs of a scene.
 
-The solver does not call the package yet; :mod:`cprbm.equilibrium.contact_points` and tests do.
-
 * :mod:`cprbm.contact.curve`: pieces, linear in the positions of nodes;
 * :mod:`cprbm.contact.compliance`: compliance lost by a chain under a point force;
 * :mod:`cprbm.contact.closest`: points, closest points, boxes; :mod:`cprbm.contact.gap`: gap and derivatives;
 * :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
 * :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.own_pin`, :mod:`cprbm.contact.candidates`: contacts of a scene.
+* :mod:`cprbm.contact.contacts`: places and closed set of a state.
 """
 
 from cprbm.contact.candidates import (
@@ -18,6 +17,8 @@ from cprbm.contact.candidates import (
     sides_at_rest,
     taken,
 )
+from cprbm.contact.closest import lost_at
+from cprbm.contact.contacts import Contacts, open_contacts
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
 from cprbm.contact.gap import COUPLING, GRADIENT, LOCAL, SHIFT, TANGENT, TURN, Places, Row, gap_row, local_indices
 from cprbm.contact.pairs import Pair
@@ -45,6 +46,7 @@ __all__ = [
     "STENCIL",
     "TANGENT",
     "TURN",
+    "Contacts",
     "Curve",
     "CurveArrays",
     "Frames",
@@ -61,10 +63,12 @@ __all__ = [
     "gap_row",
     "joined",
     "local_indices",
+    "lost_at",
     "may_move",
     "move_places",
     "near_pairs",
     "new_counters",
+    "open_contacts",
     "separations",
     "settle",
     "sides_at_rest",

@@ -15,8 +15,9 @@ import numpy as np
 from cprbm.chain import apart_ends, stop_angle
 from cprbm.continuation.driver import Driver, StepError
 from cprbm.continuation.path import Way
-from cprbm.equilibrium.newton import NotConvergedError, equilibrium
+from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.rank import repeated_rows
+from cprbm.equilibrium.solving import equilibrium
 from cprbm.equilibrium.system import State, System, rest_state
 from cprbm.settings import Settings
 from cprbm_scene import Ending, Mistake, SceneError

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cprbm.chain import add_rows, mechanism_of
+from cprbm.contact import contact_geometry
 from cprbm.continuation.assembly import assembled
 from cprbm.continuation.driver import Driver, Passed, StepError
 from cprbm.continuation.path import Way, potential, turned
@@ -67,7 +68,7 @@ class Run:
         links = {beam: self.settings.links_of(beam) for beam in self.scene.beams}
         mechanism = mechanism_of(self.scene, links, self.scene.theory, corrected=corrected)
         add_rows(mechanism)
-        return system_of(mechanism)
+        return system_of(mechanism, contact_geometry(mechanism))
 
     def answer(self) -> Answer:
         """Solve the scene."""
