@@ -17,10 +17,22 @@ from cprbm.contact.candidates import (
     sides_at_rest,
     taken,
 )
-from cprbm.contact.closest import lost_at
+from cprbm.contact.closest import curve_point, lost_at
 from cprbm.contact.contacts import Contacts, open_contacts
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
-from cprbm.contact.gap import COUPLING, GRADIENT, LOCAL, SHIFT, TANGENT, TURN, Places, Row, gap_row, local_indices
+from cprbm.contact.gap import (
+    COUPLING,
+    GRADIENT,
+    LOCAL,
+    SHIFT,
+    TANGENT,
+    TURN,
+    Places,
+    Row,
+    gap_frame,
+    gap_row,
+    local_indices,
+)
 from cprbm.contact.pairs import Pair
 from cprbm.contact.settling import (
     BOX_TESTS,
@@ -58,8 +70,10 @@ __all__ = [
     "choose_sides",
     "contact_geometry",
     "curve_arrays",
+    "curve_point",
     "find_feet",
     "fixed_places",
+    "gap_frame",
     "gap_row",
     "joined",
     "local_indices",

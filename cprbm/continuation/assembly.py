@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from cprbm.chain import apart_ends, stop_angle
+from cprbm.continuation.closing import pressing_names
 from cprbm.continuation.driver import Driver, StepError
 from cprbm.continuation.path import Way
 from cprbm.equilibrium.newton import NotConvergedError
@@ -45,7 +46,7 @@ def assembled(system: System, settings: Settings) -> Driver:
     scene = system.mechanism.scene
     if scene.assembly is not None:
         _assemble(system, driver, loose, scene.assembly.moments)
-    driver.acting = system.limits
+    driver.acting, driver.touching = system.limits, pressing_names(driver.solved)
     return driver
 
 

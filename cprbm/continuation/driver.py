@@ -108,6 +108,7 @@ class Driver:
         spent: Newton iterations since the last station.
         passed: critical points on the way to the present station.
         events: closings and openings of contacts on the way to the present station.
+        touching: names of the contacts that press.
     """
 
     system: System
@@ -118,6 +119,7 @@ class Driver:
     spent: int = 0
     passed: list[Passed] = field(default_factory=list)
     events: list[ContactEvent] = field(default_factory=list)
+    touching: frozenset[str] = frozenset()
 
     def follow(self, way: Way, beyond: Beyond = None) -> None:
         """Follow the equilibria along a way.
@@ -196,17 +198,17 @@ class Driver:
         return np.where(self.system.limits, 0.0, way.change)
 
     def _accept(self, way: Way, t: float, solved: Solved, trail: list[Reached]) -> None:
-        self._note(way, t, solved)
+        self._note(way, t, pressing_names(solved))
         self.reached, self.solved = t, solved
         trail.append(Reached(t, solved))
         del trail[:-TRAIL]
 
-    def _note(self, way: Way, t: float, solved: Solved, *, opens: bool = True) -> None:
+    def _note(self, way: Way, t: float, names: frozenset[str], *, opens: bool = True) -> None:
         """Add the contacts that have closed or opened since the last state to the events."""
-        before, after = pressing_names(self.solved), pressing_names(solved)
-        self.events += [ContactEvent(name, way.value(t), closes=True) for name in sorted(after - before)]
+        before, self.touching = self.touching, names
+        self.events += [ContactEvent(name, way.value(t), closes=True) for name in sorted(names - before)]
         if opens:
-            self.events += [ContactEvent(name, way.value(t), closes=False) for name in sorted(before - after)]
+            self.events += [ContactEvent(name, way.value(t), closes=False) for name in sorted(before - names)]
 
     def _changed(self, way: Way, t: float, change: StopChange | ContactChange, beyond: Beyond) -> list[Reached]:
         """Close or open a stop or contacts at the present state; the trail from there on.
@@ -214,10 +216,10 @@ class Driver:
         Raises:
             StepError: the branch ends there.
         """
-        before, names = self.solved, [row.name for row in self.system.mechanism.rows]
+        before, rows = self.solved, self.system.mechanism.rows
         if isinstance(change, StopChange):
             state = changed(before.state, change.row, self.system)
-            name = names[change.row].rpartition(".")[0]
+            name = rows[change.row].name.rpartition(".")[0]
         else:
             state = kept_open(before.state, frozenset() if change.closes else change.pairs)
             name = pair_name(self.system, min(change.pairs))
@@ -229,7 +231,8 @@ class Driver:
         if after.lost:
             loss = Loss.CONTACT if name in self.system.mechanism.scene.contacts else Loss.STOP
             return self._leave(way, opened(before, after, t, loss, name), beyond)
-        self._note(way, t, after)
+        names = pressing_names(after)
+        self._note(way, t, names | {name} if isinstance(change, ContactChange) and change.closes else names)
         self.solved = after
         return [Reached(t, after)]
 
@@ -287,7 +290,7 @@ class Driver:
             landed = self._landed(descent, point, beside=beyond is None)
             if landed is not None:
                 self.passed.append(passed(landed))
-                self._note(way, t, landed, opens=False)
+                self._note(way, t, pressing_names(landed), opens=False)
                 self.solved, self.reached = landed, t
                 return [Reached(t, landed)]
         self.passed.append(passed(None))
