@@ -8,7 +8,7 @@ Fixed places are the joints and ends of the first curve, and the ends of a secon
 * A place may move everywhere but in an end link held by the body of the foot.
 
 The side of two beams is the side at the least distance as drawn.  In self-contact a place lies before the foot, so
-that no gap counts twice.
+that no gap counts twice; only the beam's end is a place as well.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def fixed_places(geometry: Geometry, z: Array, sides: Array, near: Flags, counte
     before, behind = node, arrays.last[places.curve] - arrays.first[places.curve] + 1 - node
     itself = places.curve == places.other
     kept = ~(start & (before == 0)) & ~(end & (behind == 0))
-    kept &= np.isfinite(distance) & ~(itself & (places.foot < places.piece))
+    kept &= np.isfinite(distance) & ~(itself & (places.foot < places.piece) & (behind > 0))
     welded = geometry.ends.welded[places.curve]
     places.shares[(before == 1) & start & welded[:, 0]] = 1
     places.shares[(behind == 1) & end & welded[:, 1]] = -1
