@@ -18,7 +18,7 @@ from cprbm.contact.candidates import (
     taken,
 )
 from cprbm.contact.closest import curve_point, lost_at
-from cprbm.contact.contacts import Contacts, open_contacts
+from cprbm.contact.contacts import TOUCHING, Contacts, open_contacts, touching_as_drawn
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
 from cprbm.contact.gap import (
     COUPLING,
@@ -57,6 +57,7 @@ __all__ = [
     "SHIFT",
     "STENCIL",
     "TANGENT",
+    "TOUCHING",
     "TURN",
     "Contacts",
     "Curve",
@@ -87,4 +88,5 @@ __all__ = [
     "settle",
     "sides_at_rest",
     "taken",
+    "touching_as_drawn",
 ]

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm.contact.candidates import Geometry, sides_at_rest, taken
+from cprbm.contact.candidates import Geometry, fixed_places, sides_at_rest, taken
 from cprbm.contact.gap import Places
 from cprbm.contact.settling import new_counters, settle
 from cprbm_scene.answer import Array, Flags, Ints
+
+TOUCHING = 1e-9
+"""Gap, over the longest beam, below which curves touch: round-off of a scene's coordinates."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +39,14 @@ class Contacts:
         places, gaps = taken(self.places, np.arange(count)), np.empty(count)
         settle(z, geometry.arrays, places, gaps, np.empty(count), self.counters, 0)
         return gaps
+
+
+def touching_as_drawn(geometry: Geometry, z: Array, contacts: Contacts) -> frozenset[int]:
+    """Pairs that touch in a state as drawn, at a weld on the rigid body of the foot too."""
+    near = np.ones(len(geometry.pairs), dtype=bool)
+    places = fixed_places(geometry, z, contacts.sides, near, contacts.counters, welds=True)
+    gaps = replace(contacts, places=places, closed=np.zeros(len(places.pair), dtype=bool)).gaps(geometry, z)
+    return frozenset(places.pair[gaps < TOUCHING].tolist())
 
 
 def open_contacts(geometry: Geometry, z: Array) -> Contacts:

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from cprbm.chain import apart_ends, stop_angle
-from cprbm.continuation.closing import pressing_names
+from cprbm.continuation.closing import drawn_names, pressing_names
 from cprbm.continuation.driver import Driver, StepError
 from cprbm.continuation.path import Way
 from cprbm.equilibrium.newton import NotConvergedError
@@ -42,11 +42,11 @@ def assembled(system: System, settings: Settings) -> Driver:
         first = equilibrium(system, state, settings.iterations)
     except NotConvergedError as failure:
         raise StepError(Ending.STEP_TOO_SMALL, f"no equilibrium as drawn: {failure}") from failure
-    driver = Driver(system, settings, first, np.zeros(len(loose), dtype=bool))
+    driver = Driver(system, settings, first, np.zeros(len(loose), dtype=bool), drawn=drawn_names(system, state))
     scene = system.mechanism.scene
     if scene.assembly is not None:
         _assemble(system, driver, loose, scene.assembly.moments)
-    driver.acting, driver.touching = system.limits, pressing_names(driver.solved)
+    driver.acting, driver.touching = system.limits, driver.drawn | pressing_names(driver.solved)
     return driver
 
 

@@ -7,8 +7,8 @@ g        least gap of an open pair of curves
 F        sum of the contact forces of a closed pair
 =======  ====================================================================================
 
-Brent's method locates the first closing on states with the pair kept open: g = −CLOSED there, so that the free active
-set closes the pair.  An opening is the zero of F, continued by −g where the pair is open.
+Brent's method locates the first closing, g = 0 on states with the pair kept open.  An opening is the zero of F,
+continued by −g where the pair is open.
 """
 
 from __future__ import annotations
@@ -20,17 +20,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from cprbm.contact import taken
+from cprbm.contact import TOUCHING, taken, touching_as_drawn
 from cprbm.equilibrium.contact_gaps import least_gap
 from cprbm.equilibrium.newton import NotConvergedError, Solved
 from cprbm.equilibrium.solving import at_state
 from cprbm.equilibrium.system import State, System
-
-CLOSED = 1e-10
-"""Overlap, over the longest beam, at which a contact has closed: a hundred times the active set's round-off."""
-
-TOUCHING = 1e-9
-"""Gap, over the longest beam, below which curves touch already: no closing is located, and tangents are one-sided."""
 
 LOCATED = 1e-12
 """Accuracy of the fraction of a step."""
@@ -57,6 +51,14 @@ def pressing_names(solved: Solved) -> frozenset[str]:
         return frozenset()
     pins = {row.name.removesuffix(".pin") for row, closed in zip(rows, solved.state.driven, strict=True) if closed}
     return frozenset(pair.name for k, pair in enumerate(geometry.pairs) if k in pressing(solved) or pair.name in pins)
+
+
+def drawn_names(system: System, state: State) -> frozenset[str]:
+    """Names of the contacts that touch in a state as drawn: such contacts neither close nor open later."""
+    geometry, contacts = system.geometry, state.contacts
+    if geometry is None or contacts is None:
+        return frozenset()
+    return frozenset(geometry.pairs[pair].name for pair in touching_as_drawn(geometry, state.z, contacts))
 
 
 def touches(solved: Solved) -> bool:
@@ -126,18 +128,18 @@ def first_change(
 def _closing(
     before: Solved, pairs: frozenset[int], solve: Callable[[float, frozenset[int]], Solved]
 ) -> list[ContactChange]:
-    """The first closing of some pairs; empty for pairs that touch already, or have no overlap when kept open."""
+    """The first closing of some pairs; empty for pairs that touch already, or stay apart when kept open."""
     apart = frozenset(pair for pair in pairs if _gap(before, pair) > TOUCHING)
     if not apart:
         return []
 
-    def overlap(share: float) -> float:
+    def gap(share: float) -> float:
         solved = solve(share, apart)
-        return min(_gap(solved, pair) for pair in apart) + CLOSED
+        return min(_gap(solved, pair) for pair in apart)
 
-    if overlap(1.0) >= 0.0:
+    if gap(1.0) >= 0.0:
         return []
-    return [ContactChange(float(brentq(overlap, 0.0, 1.0, xtol=LOCATED)), apart, closes=True)]
+    return [ContactChange(float(brentq(gap, 0.0, 1.0, xtol=LOCATED)), apart, closes=True)]
 
 
 def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[ContactChange]:

@@ -108,7 +108,8 @@ class Driver:
         spent: Newton iterations since the last station.
         passed: critical points on the way to the present station.
         events: closings and openings of contacts on the way to the present station.
-        touching: names of the contacts that press.
+        drawn: names of the contacts that touch as drawn.
+        touching: names of the contacts that press, and of those that touch as drawn.
     """
 
     system: System
@@ -119,6 +120,7 @@ class Driver:
     spent: int = 0
     passed: list[Passed] = field(default_factory=list)
     events: list[ContactEvent] = field(default_factory=list)
+    drawn: frozenset[str] = frozenset()
     touching: frozenset[str] = frozenset()
 
     def follow(self, way: Way, beyond: Beyond = None) -> None:
@@ -205,7 +207,8 @@ class Driver:
 
     def _note(self, way: Way, t: float, names: frozenset[str], *, opens: bool = True) -> None:
         """Add the contacts that have closed or opened since the last state to the events."""
-        before, self.touching = self.touching, names
+        before, self.touching = self.touching, names | self.drawn
+        names = self.touching
         self.events += [ContactEvent(name, way.value(t), closes=True) for name in sorted(names - before)]
         if opens:
             self.events += [ContactEvent(name, way.value(t), closes=False) for name in sorted(before - names)]

@@ -1,15 +1,11 @@
-"""Forces, places and zones of contacts.
+"""Forces and places of contacts.
 
 =======  ====================================================================================
 symbol   meaning
 =======  ====================================================================================
 F, N     force of a closed place, unit normal from the foot to the place
 C_A, C_B place on the first curve of a row, foot on the second; F N acts at C_A, −F N at C_B
-g, e     gap beyond the end of a zone, arc length of the end
 =======  ====================================================================================
-
-In a zone a beam follows the other curve; beyond the end the shear force jumps, so that g grows like |s − e|³.  The
-cube roots of g at the two next joints give e.
 """
 
 from __future__ import annotations
@@ -28,9 +24,6 @@ from cprbm_scene import FreeEnd
 from cprbm_scene.answer import Array, ContactState, PointForce, PointForces, frozen_array
 from cprbm_scene.contact_states import contact_states
 from cprbm_scene.statement import EdgeContact
-
-ZONE = 3
-"""Closed joints from which a contact has a length: two neighbours share the force of a point."""
 
 NO_FORCE = np.zeros(2)
 
@@ -147,41 +140,6 @@ def contact_moment(view: View, contact: str) -> float:
             held = sum(pin.moment for pin in pin_moments(view, contact))
             return float(held + sum(arm[0] * force[1] - arm[1] * force[0] for arm, force in arms))
     return 0.0
-
-
-def contact_ends(view: View, contact: str) -> list[float]:
-    """Arc lengths on the first beam at which the first zone begins and the last zone ends; empty without contact."""
-    found = pressed(view, contact)
-    arcs = [view.end(pin.beam, pin.end)[0] for pin in pin_moments(view, contact)]
-    arcs += [_zone_end(view, contact, found, last=last) for last in (False, True) if found]
-    return [min(arcs), max(arcs)] if arcs else []
-
-
-def _zone_end(view: View, contact: str, found: list[Pressed], *, last: bool) -> float:
-    """Arc length at which the outer zone of a contact begins, or of the ``last`` zone the end."""
-    geometry, contacts = view.solved.system.geometry, view.solved.state.contacts
-    assert geometry is not None
-    assert contacts is not None
-    outer, places = found[-1 if last else 0], contacts.places
-    k = outer.k
-    curve, arcs = places.curve[k], geometry.arrays.arc[places.piece] + places.xi * geometry.arrays.span[places.piece]
-    on_first = curve == geometry.pairs[places.pair[k]].first and curve != places.other[k]
-    if len(found) < ZONE or places.moves[k] or not on_first:
-        return outer.arcs[0]
-    if places.shares[k] != 0:
-        # clamp and contact share the force: the zone begins at the clamp
-        return view.chain(view.scene.contacts[contact].beams[0]).length if last else 0.0
-    sense = 1.0 if last else -1.0
-    beyond = (
-        (places.pair == places.pair[k]) & (places.curve == curve) & ~contacts.closed & (sense * (arcs - arcs[k]) > 0)
-    )
-    near = np.flatnonzero(beyond)[np.argsort(sense * arcs[beyond])][:2]
-    roots = np.cbrt(np.maximum(view.solved.gaps[near], 0.0))
-    if len(near) < 2 or not 0.0 < roots[0] < roots[1] < np.inf:
-        return outer.arcs[0]
-    end = arcs[near[0]] - (arcs[near[1]] - arcs[near[0]]) * roots[0] / (roots[1] - roots[0])
-    low, high = sorted((outer.arcs[0], float(arcs[near[0]])))
-    return float(np.clip(end, low, high))
 
 
 def touching_places(view: View) -> dict[str, Array]:

@@ -8,10 +8,11 @@ import numpy as np
 
 from cprbm.chain import stop_angle
 from cprbm.chain.form import X_AXIS, Y_AXIS
-from cprbm.results.contacts import contact_centre, contact_ends, contact_force, contact_moment
+from cprbm.results.contacts import contact_centre, contact_force, contact_moment
 from cprbm.results.forces import all_forces, stop_moment
 from cprbm.results.statics import bending_stress, combined_stress
 from cprbm.results.view import View
+from cprbm.results.zones import contact_ends
 from cprbm_scene import Probe
 from cprbm_scene.answer import Array, frozen_array
 from cprbm_scene.statement import DisplacementDrive

@@ -105,7 +105,8 @@ class Run:
             self.driver = assembled(self.system, self.settings)
         except StepError as failure:
             return failure.ending, str(failure)
-        self.closing = dict.fromkeys(self.driver.touching, 0.0)
+        first = self.scene.stages[0].name
+        self._note_contacts(first, [ContactEvent(name, 0.0, closes=True) for name in sorted(self.driver.touching)])
         for stage in self.scene.stages:
             for station in stage.stations:
                 try:
@@ -133,7 +134,7 @@ class Run:
             driver.follow(Way(begin, end, (before, station), stage.steps), stage.beyond)
         finally:
             self._note(stage, driver.passed)
-            self._note_contacts(stage, driver.events)
+            self._note_contacts(stage.name, driver.events)
         self.values[stage.steps] = station
         certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent, driver.acting)
         if ending is not Ending.COMPLETED:
@@ -173,12 +174,12 @@ class Run:
             else:
                 self.critical.append(critical)
 
-    def _note_contacts(self, stage: Stage, events: list[ContactEvent]) -> None:
+    def _note_contacts(self, stage: str, events: list[ContactEvent]) -> None:
         """Add closings and openings on the way to a station to the answer."""
         for event in events:
             if event.closes:
                 self.closing.setdefault(event.name, event.value)
-            self.events.append(Event(stage.name, event.name, "closes" if event.closes else "opens", event.value))
+            self.events.append(Event(stage, event.name, "closes" if event.closes else "opens", event.value))
 
     def _station(self, driver: Driver, stage: Stage, station: float, certificate: Certificate) -> StationAnswer:
         """Answer at a station."""
