@@ -43,7 +43,8 @@ class Compilation(Listener):
                 LOGGER.info("cprbm compiles its kernels; later runs find the stored machine code")
 
 
-register("numba:compile", Compilation())  # type: ignore[no-untyped-call]
+COMPILATION = Compilation()
+register("numba:compile", COMPILATION)  # type: ignore[no-untyped-call]
 
 
 def compiled(function: Function) -> Function:

@@ -38,6 +38,7 @@ from cprbm.contact import (
     TANGENT,
     TURN,
     CurveArrays,
+    Geometry,
     Places,
     gap_row,
     local_indices,
@@ -65,6 +66,12 @@ class Columns(NamedTuple):
     entry_column: Ints
     entry_index: Ints
     entry_value: Array
+
+
+def contact_terms(geometry: Geometry, z: Array, places: Places, closed: Flags) -> tuple[Columns, Array]:
+    """Columns of the places marked ``closed``, and the gradient (size,) of all −F λ; shared forces are equal."""
+    gradient = np.zeros(len(z))
+    return contact_columns(z, geometry.arrays, places, closed, gradient), gradient
 
 
 @compiled

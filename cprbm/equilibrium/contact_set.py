@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm.contact import (
+    Contacts,
     Geometry,
     Places,
     choose_sides,
@@ -26,8 +27,7 @@ from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_o
 from cprbm.equilibrium.iteration import begin_iteration, change_set, end_iteration
 from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
-from cprbm.equilibrium.touching import Touching
-from cprbm_scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array
 
 FREE_CHANGES = 12
 """Iterations with any change of the set; later iterations change one place at a time."""
@@ -46,26 +46,12 @@ REACH = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Contacts:
-    """Possible places of contact, marks of the closed places, sides of the pairs, counters.
-
-    ``given_up`` holds pairs and pieces at which a moving place failed.
-    """
-
-    places: Places
-    closed: Flags
-    sides: Array
-    counters: Ints
-    given_up: frozenset[tuple[int, int]] = frozenset()
-
-
-@dataclass(frozen=True, eq=False)
 class Touched:
     """An equilibrium with contacts: state, contacts, factors, gaps and curvatures of the places, iterations."""
 
     state: State
     contacts: Contacts
-    factors: Factors | Touching
+    factors: Factors
     gaps: Array
     curvatures: Array
     iterations: int
@@ -79,6 +65,7 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     old = contacts.places
     near = near_pairs(z, geometry.arrays, geometry.columns, np.full(len(geometry.pairs), REACH), contacts.counters)
     near[old.pair[contacts.closed]] = True
+    near[list(contacts.kept_open)] = False
     fixed = fixed_places(geometry, z, contacts.sides, near, contacts.counters)
     known = {_identity(old, k): k for k in range(len(old.pair)) if not old.moves[k]}
     closed = np.zeros(len(fixed.pair), dtype=bool)
@@ -163,8 +150,7 @@ def solve_set(
             settle_near(z, *settling, FINDING)
             if not change_set(curves, places, closed, gaps, len(closed)):
                 settled = replace(contacts, places=places, closed=closed)
-                of_all = Touching(factors) if closed.any() else factors
-                return Touched(replace(start, z=z), settled, of_all, gaps, curvatures, iteration)
+                return Touched(replace(start, z=z), settled, factors, gaps, curvatures, iteration)
     raise NotConvergedError(f"{iterations} iterations did not converge")
 
 

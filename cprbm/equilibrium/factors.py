@@ -12,6 +12,7 @@ import numpy as np
 from scipy.linalg.lapack import dsytrf, dsytrs
 
 from cprbm.chain import Blocks, empty_blocks
+from cprbm.equilibrium.columns import Columns
 from cprbm.equilibrium.elimination import negative_pivots
 from cprbm.equilibrium.linear import NO_COLUMNS, Bordered, Work, add_gradient, linearise, reduced_load, restored
 from cprbm.equilibrium.system import State, System
@@ -54,7 +55,7 @@ class Factors:
     lost: int
 
     def solve(self, load: Array) -> Array:
-        """Solution (size,) of the Hessian's system; the multipliers of rows with prescribed force stay unchanged."""
+        """Solution (size,) of the Hessian's system; closed places stay closed, prescribed multipliers unchanged."""
         return self.solve_both(load, np.zeros(0))[0]
 
     def solve_both(self, load: Array, values: Array) -> tuple[Array, Array]:
@@ -88,14 +89,16 @@ def gradient_of(system: System, state: State, blocks: Blocks, springs: Springs |
     return gradient
 
 
-def factorise(system: System, state: State, springs: Springs | None = None) -> tuple[Factors, Array]:
-    """Factors at a state without contacts, and the gradient there.
+def factorise(
+    system: System, state: State, springs: Springs | None = None, columns: Columns = NO_COLUMNS
+) -> tuple[Factors, Array]:
+    """Factors at a state with the columns of closed places, and the gradient there without the contact forces.
 
     Raises:
         SingularError: no number is left to divide by.
     """
     m, work, gradient, pulled = system.numbers, new_work(system), np.zeros(system.size), pulls(system, springs)
-    bordered = linearise(state.z, m, state.driven, state.target, *pulled, work, NO_COLUMNS, gradient)
+    bordered = linearise(state.z, m, state.driven, state.target, *pulled, work, columns, gradient)
     return factors_of(system, state.driven, work, bordered), gradient
 
 

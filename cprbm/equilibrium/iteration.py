@@ -52,7 +52,7 @@ def _wanted(
     """Places that should open, places that should close, and gaps with those of sharing places added."""
     count = closed.size
     opens, closes, gap = np.zeros(count, np.bool_), np.zeros(count, np.bool_), gaps.copy()
-    beside, depth = _beside_points(curves, places, closed)
+    beside, depth = beside_points(curves, places, closed)
     for k in range(count):
         if places.shares[k] != 0:
             gap[k + places.shares[k]] += gaps[k]
@@ -67,7 +67,7 @@ def _wanted(
 
 
 @compiled
-def _beside_points(curves: CurveArrays, places: Places, closed: Flags) -> tuple[Flags, Array]:  # pragma: no cover
+def beside_points(curves: CurveArrays, places: Places, closed: Flags) -> tuple[Flags, Array]:  # pragma: no cover
     """Fixed places within a piece of a closed moving place, and the overlap of every pair's point contact.
 
     Outside of the point the other places of the pair may overlap by as much without contact.

@@ -42,13 +42,11 @@ class Bordered(NamedTuple):
     """Border after the elimination of the chains.
 
     Attributes:
-        rows: D of the rows without closed places.
         border: G, lower triangle.
         negative: number of negative pivots of all T.
         columns, reached: of the closed places, and X.
     """
 
-    rows: Array
     border: Array
     negative: int
     columns: Columns
@@ -112,16 +110,6 @@ def restored(beams: Beams, border: Border, reached: Reached, solution: Array, lo
 
 
 @compiled
-def border_of(m: Numbers, work: Work, driven: Flags, rows: Array, columns: Columns) -> Bordered:  # pragma: no cover
-    """Border from D of the rows; writes the factors of the chains."""
-    size = m.border.size
-    G = np.zeros((size + columns.diagonal.size, size + columns.diagonal.size))
-    G[:size, :size] = rows
-    negative, reached = eliminate(m.beams, work.blocks, work.pivot, work.ratio, driven, m.border, columns, G)
-    return Bordered(rows, G, negative, columns, reached)
-
-
-@compiled
 def linearise(
     z: Array,
     m: Numbers,
@@ -135,6 +123,8 @@ def linearise(
 ) -> Bordered:  # pragma: no cover
     """Border at a state with the columns of closed places; adds the gradient without contacts to ``gradient``."""
     add_gradient(z, m, driven, target, stiffness, anchor, work.blocks, gradient)
-    rows = np.zeros((m.border.size, m.border.size))
-    border_block(z, m.rows, driven, m.border, rows)
-    return border_of(m, work, driven, rows, columns)
+    size = m.border.size + columns.diagonal.size
+    G = np.zeros((size, size))
+    border_block(z, m.rows, driven, m.border, G)
+    negative, reached = eliminate(m.beams, work.blocks, work.pivot, work.ratio, driven, m.border, columns, G)
+    return Bordered(G, negative, columns, reached)

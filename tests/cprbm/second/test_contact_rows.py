@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from cprbm.contact import may_move, new_counters, settle, settle_near, taken
+from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.factors import factorise
 from cprbm.equilibrium.system import system_of
-from cprbm.equilibrium.touching import contact_terms, touching
 from tests.cprbm.contact.workshop import FINDING, all_places, mechanism, settled
 from tests.cprbm.second.systems import disturbed
 
@@ -42,8 +42,8 @@ def residual(system, geometry, state, places, closed):
     """Gradient by the unknowns and by the forces; feet and moving places follow the state."""
     gaps = np.empty(len(closed))
     settle(state.z, geometry.arrays, places, gaps, gaps.copy(), new_counters(), FINDING)
-    terms = contact_terms(geometry, state.z, places, closed)
-    return np.concatenate([factorise(system, state)[1] + terms.gradient, -terms.values])
+    columns, pressing = contact_terms(geometry, state.z, places, closed)
+    return np.concatenate([factorise(system, state)[1] + pressing, -columns.values])
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -65,10 +65,10 @@ def test_solution_and_inertia_with_contacts_are_those_of_the_dense_matrix(seed):
     matrix = np.array([(at(unit) - at(-unit)) / (2.0 * step) for unit in units])
     matrix = 0.5 * (matrix + matrix.T)
     residual(system, geometry, state, places, closed)
-    factors = touching(factorise(system, state)[0], contact_terms(geometry, state.z, places, closed))
+    factors, _ = factorise(system, state, columns=contact_terms(geometry, state.z, places, closed)[0])
     load = np.zeros(size + len(own))
     load[kept] = np.random.default_rng(seed).normal(size=len(kept))
-    found = np.concatenate(factors.solve(load[:size], load[size:]))[kept]
+    found = np.concatenate(factors.solve_both(load[:size], load[size:]))[kept]
     # round-off of the differences, 1e-16 of a force over the step, stands in all entries
     allowed = 1e-6 * (1.0 + np.abs(matrix) @ np.abs(found)) + 1e-9 * np.abs(matrix).max() * np.abs(found).max()
     assert (np.abs(matrix @ found - load[kept]) < allowed).all()
@@ -86,7 +86,8 @@ def test_the_random_states_hold_all_kinds_of_rows():
             for a, b, c in zip(places.at_point[closed], places.moves[closed], places.shares[closed] != 0, strict=True)
         }
         kinds |= {geometry.pairs[k].name for k in places.pair[closed]}
-        lost.add(touching(factorise(system, state)[0], contact_terms(geometry, state.z, places, closed)).lost)
+        columns, _ = contact_terms(geometry, state.z, places, closed)
+        lost.add(factorise(system, state, columns=columns)[0].lost)
     assert {(at_point, moves, False) for at_point in (False, True) for moves in (False, True)} < kinds
     assert (False, False, True) in kinds
     assert {"beams", "circle", "line", "plane", "graph", "ellipse", "ring"} < kinds
