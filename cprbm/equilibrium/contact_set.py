@@ -188,9 +188,12 @@ def update_set(geometry: Geometry, places: Places, closed: Flags, gaps: Array, m
     gap = gaps.copy()
     np.add.at(gap, leaders[~own], gaps[~own])
     beside, depth = beside_points(geometry, places, closed)
+    itself = places.curve == places.other
     thick = geometry.arrays.thickness[places.piece] + geometry.arrays.thickness[places.foot] > 0.0
+    # the foot on an end of the first curve is the foot of that end's own place
+    doubled = places.at_point & ((places.curve != geometry.columns[places.pair, 0]) | (itself & (places.xi == 1.0)))
     opens = closed & own & ((places.force < 0.0) | beside)
-    closes = own & ~closed & ~beside & (gap < -OVERLAP - depth) & (thick | ~places.at_point)
+    closes = own & ~closed & ~beside & (gap < -OVERLAP - depth) & (thick | ~places.at_point) & ~doubled
     if opens.sum() + closes.sum() > most:
         worst = int(np.argmin(np.where(closes, gap, 0.0))) if closes.any() else int(np.argmin(places.force * opens))
         only = np.arange(len(closed)) == worst
