@@ -129,7 +129,7 @@ def solve_set(
     last = np.inf
     for iteration in range(1, iterations + 1):
         most = 0 if iteration == 1 else len(closed) if iteration <= FREE_CHANGES else 1
-        changed, bordered, change, reduced = begin_iteration(*linear, *settling, most)
+        changed, bordered, change, reduced = begin_iteration(*linear, *settling, geometry.columns, most)
         if changed:
             seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
             if seen[closed.tobytes()] > RETURNS:
@@ -148,7 +148,7 @@ def solve_set(
         if arrived and not changed:
             room[:] = 0.0
             settle_near(z, *settling, FINDING)
-            if not change_set(curves, places, closed, gaps, len(closed)):
+            if not change_set(curves, places, closed, gaps, geometry.columns, len(closed)):
                 settled = replace(contacts, places=places, closed=closed)
                 return Touched(replace(start, z=z), settled, factors, gaps, curvatures, iteration)
     raise NotConvergedError(f"{iterations} iterations did not converge")

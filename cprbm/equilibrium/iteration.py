@@ -22,12 +22,15 @@ LONGEST_MOVE = 2.0
 
 
 @compiled
-def change_set(curves: CurveArrays, places: Places, closed: Flags, gaps: Array, most: int) -> bool:  # pragma: no cover
+def change_set(
+    curves: CurveArrays, places: Places, closed: Flags, gaps: Array, pairs: Ints, most: int
+) -> bool:  # pragma: no cover
     """Close overlapping places and open pulling places; True if the set changed.
 
     With more changes than ``most`` only the worst overlap closes, or without overlaps the largest pull opens.
+    ``pairs`` (pairs, 2) holds the numbers of both curves of every pair.
     """
-    opens, closes, gap = _wanted(curves, places, closed, gaps)
+    opens, closes, gap = _wanted(curves, places, closed, gaps, pairs)
     if np.sum(opens) + np.sum(closes) > most:
         worst, any_closes, least = -1, np.any(closes), np.inf
         for k in range(closed.size):
@@ -47,7 +50,7 @@ def change_set(curves: CurveArrays, places: Places, closed: Flags, gaps: Array, 
 
 @compiled
 def _wanted(
-    curves: CurveArrays, places: Places, closed: Flags, gaps: Array
+    curves: CurveArrays, places: Places, closed: Flags, gaps: Array, pairs: Ints
 ) -> tuple[Flags, Flags, Array]:  # pragma: no cover
     """Places that should open, places that should close, and gaps with those of sharing places added."""
     count = closed.size
@@ -62,7 +65,11 @@ def _wanted(
         thick = curves.thickness[places.piece[k]] + curves.thickness[places.foot[k]] > 0.0
         opens[k] = closed[k] and (places.force[k] < 0.0 or beside[k])
         closes[k] = not closed[k] and not beside[k] and gap[k] < -OVERLAP - depth[k]
-        closes[k] = closes[k] and (thick or not places.at_point[k])
+        # a foot on an end of the first curve is the foot of that end's own place
+        second = places.curve[k] != pairs[places.pair[k], 0]
+        last = places.curve[k] == places.other[k] and places.xi[k] == 1.0
+        doubled = places.at_point[k] and (second or last)
+        closes[k] = closes[k] and (thick or not places.at_point[k]) and not doubled
     return opens, closes, gap
 
 
@@ -105,6 +112,7 @@ def begin_iteration(
     curvatures: Array,
     room: Array,
     counters: Ints,
+    pairs: Ints,
     most: int,
 ) -> tuple[bool, Bordered, Array, Array]:  # pragma: no cover
     """Whether the set changed, the border, the chains' solution for minus the gradient, and the border's load.
@@ -112,7 +120,7 @@ def begin_iteration(
     Settles the places that may close; changes the set unless ``most`` is 0.
     """
     settle_near(z, curves, places, closed, gaps, curvatures, room, counters, 0)
-    changed = most > 0 and change_set(curves, places, closed, gaps, most)
+    changed = most > 0 and change_set(curves, places, closed, gaps, pairs, most)
     gradient = np.zeros(z.size)
     columns = contact_columns(z, curves, places, closed, gradient)
     bordered = linearise(z, m, driven, target, stiffness, anchor, work, columns, gradient)

@@ -98,7 +98,7 @@ def residual(system, geometry, state, places, closed):
 
 
 @pytest.mark.parametrize(
-    ("name", "station", "strength"), [("gripper", 8.0, 1.0), ("gripper", 8.0, -60.0), ("wrapped", 97.0, 1.0)]
+    ("name", "station", "strength"), [("gripper", 9.0, 1.0), ("gripper", 9.0, -60.0), ("wrapped", 97.0, 1.0)]
 )
 def test_solutions_and_lost_directions_are_those_of_the_dense_matrix(name, station, strength):
     """The matrix by central differences of the gradient, with ``strength`` times the equilibrium's contact forces."""
