@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.documents import Plain, plain
+from comparisons.plain import Plain, plain
 from cprbm_scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Loss, Shape, StationAnswer
 from cprbm_scene.answer import Array, BeamState, ContactState, PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict

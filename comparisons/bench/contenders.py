@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from comparisons.choices import Choices, Count
-from comparisons.converging.families import at
 from comparisons.pairing import Solver, Solvers, prepared
+from comparisons.studies.families import at
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from comparisons.figures import GREY, Picture, canvas, picture
+from comparisons.present.canvas import GREY, canvas, finished
+from comparisons.present.columns import Figure
 from comparisons.studies.calibration import Calibration
 from comparisons.verdict.calibration import LARGEST_MEDIAN, SOLVERS
 
@@ -12,7 +13,7 @@ _COLOURS = ("#1f5fa8", "#c8321e", "#2c8a4b", "#a05fb4", "#c98a12", "#3aa6a6", "#
 _TITLES = {"cprbm": "CPRBM", "fea": "FEA in bending"}
 
 
-def stated_against_true(found: Calibration) -> Picture:
+def stated_against_true(found: Calibration) -> Figure:
     """Stated against true errors of every row, a panel for each solver and a colour for each case."""
     with canvas(9.6, 5.2) as figure:
         panels = figure.subplots(1, 2, sharex=True, sharey=True)
@@ -41,7 +42,7 @@ def stated_against_true(found: Calibration) -> Picture:
             axes.set_xlabel("true error / scale")
         panels[0].set_ylabel("stated error / scale")
         figure.legend(loc="outside lower center", ncols=4, markerscale=2.0)
-        return picture(
+        return finished(
             figure,
             "calibration",
             "Each row's stated error against its true one. On the line they are equal; below it the statement is not "

@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from comparisons.documents import Plain
 from comparisons.formats import number, percent
-from comparisons.sheet import Sheet
+from comparisons.plain import Plain
+from comparisons.present.columns import Section, Table
 from comparisons.studies.calibration import Calibration, Trial, tallies
 from comparisons.studies.calibration_drawn import stated_against_true
-from comparisons.studies.result import StudyResult
 from comparisons.verdict.calibration import LARGEST_MEDIAN, SHARE_WITHIN, SOLVERS, ErrorRatio, Tally
 from comparisons.verdict.words import Word
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA in bending"}
 
 
-def result_of(found: Calibration) -> StudyResult:
+def result_of(found: Calibration) -> Section:
     """Result of the measurements so far."""
-    return StudyResult(
-        name="calibration",
-        title="Stated uncertainties beside true errors",
-        words=_words(found),
-        sheets=tuple(sheet for sheet in (_tallies(found), _worst(found)) if sheet.rows),
-        pictures=(stated_against_true(found),) if any(trial.held for trial in found.trials) else (),
-        data=_data(found),
+    return Section(
+        "Stated uncertainties beside true errors",
+        _words(found),
+        (stated_against_true(found),) if any(trial.held for trial in found.trials) else (),
+        tuple(table for table in (_tallies(found), _worst(found)) if table.rows),
+        "calibration",
+        _data(found),
     )
 
 
@@ -53,7 +52,7 @@ def _words(found: Calibration) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def _tallies(found: Calibration) -> Sheet:
+def _tallies(found: Calibration) -> Table:
     body = []
     for case in found.cases:
         trials = found.of_case(case)
@@ -61,7 +60,7 @@ def _tallies(found: Calibration) -> Sheet:
             for trial in trials:
                 body.append((case, _NAMES[solver], str(trial.size(solver)), *_figures(tallies((trial,))[place])))
             body.append((case, _NAMES[solver], "all", *_figures(tallies(trials)[place])))
-    return Sheet(
+    return Table(
         "Calibration",
         ("case", "solver", "N", "rows", "within", "share", "stated over true", "largest true over stated", "rule"),
         tuple(body),
@@ -81,7 +80,7 @@ def _figures(mine: Tally) -> tuple[str, ...]:
     )
 
 
-def _worst(found: Calibration) -> Sheet:
+def _worst(found: Calibration) -> Table:
     body = []
     for case in found.cases:
         for mine in tallies(found.of_case(case)):
@@ -100,7 +99,7 @@ def _worst(found: Calibration) -> Sheet:
                         each.word,
                     )
                 )
-    return Sheet(
+    return Table(
         "The least well stated",
         ("case", "solver", "N", "probe", "at", "true", "stated", "true over stated", ""),
         tuple(body),

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from comparisons.figures import BLUE, RED, Picture, canvas, picture
+from comparisons.present.canvas import BLUE, RED, canvas, finished
+from comparisons.present.columns import Figure
 from comparisons.studies.table1 import Table
 
 
-def run_times(table: Table) -> Picture:
+def run_times(table: Table) -> Figure:
     """Our median times with their quartiles and the paper's, a line for each cell."""
     cells = list(table.times)
     with canvas(7.2, 1.2 + 0.26 * len(cells)) as figure:
@@ -29,7 +30,7 @@ def run_times(table: Table) -> Picture:
         axes.grid(visible=True, which="major", axis="x", color="#e4e4e4", linewidth=0.6)
         axes.set_xlabel("seconds")
         figure.legend(loc="outside upper right", ncols=2)
-        return picture(
+        return finished(
             figure,
             "table1",
             "Seconds to the last load: ours as medians with the quartiles, and the paper's, on another machine.",

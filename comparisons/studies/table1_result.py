@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-from comparisons.documents import Plain, plain
 from comparisons.formats import number
-from comparisons.sheet import Sheet
+from comparisons.plain import Plain, plain
+from comparisons.present.columns import Section, Table
 from comparisons.studies.drawn import run_times
-from comparisons.studies.result import StudyResult
-from comparisons.studies.table1 import THEIR_MACHINE, Cell, Table, Times
+from comparisons.studies.table1 import THEIR_MACHINE, Cell, Times
+from comparisons.studies.table1 import Table as TimeTable
 
 
-def result_of(table: Table) -> StudyResult:
+def result_of(table: TimeTable) -> Section:
     """Result of the measurements so far."""
     measured = any(times.seconds for times in table.times.values())
-    return StudyResult(
-        name="table1",
-        title="Run times, beside Table 1 of the paper",
-        words=_words(table),
-        sheets=(_sheet(table),),
-        pictures=(run_times(table),) if measured else (),
-        data=_data(table),
+    figures = (run_times(table),) if measured else ()
+    return Section(
+        "Run times, beside Table 1 of the paper", _words(table), figures, (_table(table),), "table1", _data(table)
     )
 
 
-def _sheet(table: Table) -> Sheet:
+def _table(table: TimeTable) -> Table:
     body = tuple(
         (
             cell.case,
@@ -39,7 +35,7 @@ def _sheet(table: Table) -> Sheet:
         for cell, times in table.times.items()
     )
     machine = table.machine
-    return Sheet(
+    return Table(
         "Seconds to the last load, in one load",
         ("case", "method", "elements or links", "ours", "spread", "repeats", "theirs", "theirs / ours", "ended"),
         body,
@@ -59,7 +55,7 @@ def _ended(times: Times) -> str:
     return times.ending.name
 
 
-def _words(table: Table) -> tuple[str, ...]:
+def _words(table: TimeTable) -> tuple[str, ...]:
     return (
         "Times of different programs on different machines: the paper's CPRBM is interpreted code round a general "
         "optimiser, its finite elements are a commercial program with all that it does besides. What can be compared "
@@ -73,7 +69,7 @@ def _words(table: Table) -> tuple[str, ...]:
     )
 
 
-def _data(table: Table) -> Plain:
+def _data(table: TimeTable) -> Plain:
     return {
         "study": "table1",
         "machine": dict(table.machine),

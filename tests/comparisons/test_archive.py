@@ -5,14 +5,15 @@ import json
 import numpy as np
 import pytest
 
-from comparisons import archive, documents
+from comparisons import archive
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, paired
+from comparisons.plain import text_of
 
 
 def there_and_back(answer):
-    return archive.unpacked(json.loads(documents.text(archive.packed(answer))))
+    return archive.unpacked(json.loads(text_of(archive.packed(answer))))
 
 
 def test_an_answer_survives(hinge, right):
