@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from comparisons.choices import Choices, Count
-from comparisons.pairing import Solver, Solvers, prepared
+from comparisons.crew import Solver
+from comparisons.pairing import Solvers, prepared
 from comparisons.studies.families import at
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import Array

@@ -57,9 +57,9 @@ def command(
     from comparisons.choices import Choices
     from comparisons.cli import output
     from comparisons.cli.questions import read_questions
-    from comparisons.pairing import crew_of, solvers_of, with_solid, workers_for
+    from comparisons.pairing import solvers_of, with_solid, workers_for
     from comparisons.present.page import Chapter, convergence_page, put_page, put_section, section_chapter
-    from comparisons.resuming import resumed
+    from comparisons.store import run_into
     from comparisons.studies.convergence import convergence_section
 
     wanted = read_questions(arguments)
@@ -72,16 +72,16 @@ def command(
     finished: list[Section] = []
     chapters: tuple[Chapter, ...] = ()
     names = tuple(question.name for question in wanted)
-    with resumed(out, taking_part, names) as whole, crew_of(workers_for(planted)) as crew:
+    with run_into(out, taking_part, names, workers_for(planted)) as run:
         steps = output.progress(wanted, shown=not quiet, share=0.8)
         for place, question in enumerate(steps):
-            result = convergence_section(question, sizes, choices, whole.solvers, crew)
+            result = convergence_section(question, sizes, choices, run.solvers, run.crew)
             finished.append(result)
             if out is not None:
                 put_section(out / question.name, result)
                 chapters = (*chapters, section_chapter(question, [result]))
-            whole.tells(question.name)
-            if whole.caught_up(names[: place + 1]):
+            run.mark_shown(question.name)
+            if run.covers(names[: place + 1]):
                 if out is not None:
                     put_page(out, convergence_page(chapters))
                 if json_file is not None and printing:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from comparisons.processes import ByForceError, beside
+from comparisons.executor import WorkerDiedError, call_fresh
 from cprbm_scene.answer import Array
 from cprbm_scene.mistakes import Mistake, SceneError
 
@@ -58,8 +58,8 @@ def read(path: Path) -> Drawn:
     if not path.is_file():
         raise SceneError([Mistake("", "no such file", "a .geo, .step or .msh file", str(path))])
     try:
-        found = beside(_read, str(path))
-    except ByForceError:
+        found = call_fresh(_read, str(path))
+    except WorkerDiedError:
         found = "a file at which gmsh ends by force"
     if isinstance(found, str):
         raise SceneError([Mistake("", found, "a .geo, .step or .msh file that gmsh reads", str(path))])

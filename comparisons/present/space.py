@@ -13,11 +13,11 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 
+from comparisons.executor import WorkerDiedError, call_fresh
 from comparisons.present.figures import QUANTITIES, TINY, colour_unit, view_title
 from comparisons.present.picture import ARROW, LEAST, Bounds, View
 from comparisons.present.strips import Coloured
 from comparisons.present.vtu import Block, beam_block, obstacle_block
-from comparisons.processes import ByForceError, beside
 from cprbm_scene import Scene
 from cprbm_scene.answer import Array
 
@@ -72,8 +72,8 @@ def apart(draws: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
         DrawingError: the process was ended by force.
     """
     try:
-        return beside(_silent, draws, arguments, named)
-    except ByForceError:
+        return call_fresh(_silent, draws, arguments, named)
+    except WorkerDiedError:
         raise DrawingError("VTK ended as it began to draw") from None
 
 

@@ -10,11 +10,12 @@ from comparisons.budgets import drawn as budget_figures
 from comparisons.budgets import tables as budget_tables
 from comparisons.budgets.accounts import accounted
 from comparisons.choices import Choices
+from comparisons.crew import Crew
 from comparisons.display_units import at_station
-from comparisons.memory import Remembering
-from comparisons.pairing import Crew, Solvers
+from comparisons.pairing import Solvers
 from comparisons.present.canvas import GREY, LINES, canvas, common_legend, finished, logarithmic
 from comparisons.present.columns import Figure, Section
+from comparisons.store import AnswerMemory
 from comparisons.studies import offset_convergence
 from comparisons.studies.convergence_tables import convergence_tables, document, sentences_of, shown_size
 from comparisons.studies.families import Convergence, Family, converged
@@ -49,7 +50,7 @@ def convergence_section(
     if isinstance(question, OffsetQuestion):
         return offset_convergence.convergence_section(question, sizes, solvers.offset)
     question = at_shown(question)
-    memory = Remembering(pool=crew.pool, solvers=solvers)
+    memory = AnswerMemory(pool=crew.pool, solvers=solvers)
     found = converged(question, sizes, choices, solvers, memory)
     n = shown_size(found)
     account = accounted(question, replace(choices, links=n, elements=2 * n), memory)

@@ -10,8 +10,9 @@ from comparisons.bench import brief
 from comparisons.bench.section import bench_section
 from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
+from comparisons.crew import Crew
 from comparisons.offset_verdict import OffsetComparison, compared_offset
-from comparisons.pairing import Crew, Runs, Solvers, paired
+from comparisons.pairing import Runs, Solvers, paired
 from comparisons.present.columns import Figure, Section
 from comparisons.present.page import figures_of
 from comparisons.studies import table1, table1_result

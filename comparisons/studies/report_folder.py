@@ -11,16 +11,16 @@ import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from hashlib import sha256
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import TypeVar
 
-from pydantic import BaseModel, TypeAdapter, ValidationError
+from pydantic import TypeAdapter, ValidationError
+from pydantic_core import to_json
 
 from comparisons.plain import Plain
 from comparisons.present.columns import Section
 from comparisons.present.page import Chapter, case_chapter, light, put_case, put_page, put_section, report_page
-from comparisons.sources import program
+from comparisons.store import digest
 from comparisons.studies.report import Content
 from comparisons.writing import write
 from cprbm_scene import Question
@@ -31,38 +31,30 @@ _CHAPTER = "chapter.json"
 _TABLE = "table1-section.json"
 
 
-class _Kept(BaseModel, Generic[T]):
-    """A part of the page with the digest of its dependence."""
-
-    key: str
-    part: T
-
-
-def _kept(file: Path, key: str, kind: type[T]) -> T | None:
-    """The kept part of a file; None without a part of this key."""
+def _read_kept(file: Path, kind: type[T], key: str) -> T | None:
+    """The record of a file; None without a record of this key."""
     with suppress(FileNotFoundError, ValidationError):
-        found = TypeAdapter(_Kept[kind]).validate_json(file.read_bytes())  # type: ignore[valid-type]
-        if found.key == key:
-            return found.part
+        found, record = TypeAdapter(tuple[str, kind]).validate_json(file.read_bytes())  # type: ignore[valid-type]
+        return record if found == key else None
     return None
 
 
-def _keep(file: Path, key: str, part: object, kind: type) -> None:
-    write(file, _Kept[kind](key=key, part=part).model_dump_json().encode())  # type: ignore[valid-type]
+def _keep(file: Path, record: Chapter | Section, key: str) -> None:
+    write(file, to_json((key, record)))
 
 
 def _key(question: Question, wanted: str) -> str:
-    """The digest of the dependence of a chapter; ``wanted`` names the parts and sizes."""
-    return sha256("\n".join((question.model_dump_json(exclude={"file"}), wanted, program())).encode()).hexdigest()
+    """Digest of the dependence of a chapter; ``wanted`` names the parts and sizes."""
+    return digest(question.model_dump_json(exclude={"file"}), wanted)
 
 
 def _machine_key(made_on: Mapping[str, str | int]) -> str:
-    return sha256(f"{sorted(made_on.items())} {program()}".encode()).hexdigest()
+    return digest(str(sorted(made_on.items())))
 
 
 def kept(folder: Path, question: Question, wanted: str) -> Chapter | None:
     """A question's kept chapter; None without a chapter of the same dependence."""
-    return _kept(folder / question.name / _CHAPTER, _key(question, wanted), Chapter)
+    return _read_kept(folder / question.name / _CHAPTER, Chapter, _key(question, wanted))
 
 
 def added(folder: Path, question: Question, wanted: str, found: Content) -> Chapter:
@@ -79,13 +71,13 @@ def added(folder: Path, question: Question, wanted: str, found: Content) -> Chap
     chapter = replace(chapter, files=("scene.toml", *chapter.files))
     write(own / "scene.toml", chapter.scene)
     # the last of all files: with it all are there
-    _keep(own / _CHAPTER, _key(question, wanted), chapter, Chapter)
+    _keep(own / _CHAPTER, chapter, _key(question, wanted))
     return chapter
 
 
 def kept_table(folder: Path, made_on: Mapping[str, str | int]) -> Section | None:
     """The kept section of the paper's Table 1; None if the program or the machine is another."""
-    return _kept(folder / _TABLE, _machine_key(made_on), Section)
+    return _read_kept(folder / _TABLE, Section, _machine_key(made_on))
 
 
 def added_table(folder: Path, section: Section, made_on: Mapping[str, str | int]) -> Section:
@@ -96,7 +88,7 @@ def added_table(folder: Path, section: Section, made_on: Mapping[str, str | int]
     """
     put_section(folder, section)
     shown = light(section)
-    _keep(folder / _TABLE, _machine_key(made_on), shown, Section)
+    _keep(folder / _TABLE, shown, _machine_key(made_on))
     return shown
 
 

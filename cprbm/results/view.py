@@ -7,10 +7,11 @@ from functools import cached_property
 
 import numpy as np
 
-from cprbm.chain import BeamChain, Mechanism
+from cprbm.chain import BeamChain, Mechanism, hidden_angles
 from cprbm.continuation.path import potential
 from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.sharing import shared_multipliers
+from cprbm.equilibrium.system import hidden_forces
 from cprbm_scene import Scene
 from cprbm_scene.answer import Array
 
@@ -57,11 +58,16 @@ class View:
         return self.chain(beam).line.place(self.nodes(beam), s)
 
     def angles(self, beam: str, s: Array) -> Array:
-        """Angles of the sections (k,) at arc lengths ``s``."""
-        chain = self.chain(beam)
+        """Angles of the sections (k,) at arc lengths ``s``, with the flexibility beside loads at places of the beam."""
+        chain, system = self.chain(beam), self.solved.system
         links, weights = chain.angle_weights(s)
-        turned = self.z[self.mechanism.beam_angles(beam)] - chain.link_angle
-        return np.asarray(chain.rest_angle(s) + (weights * turned[links]).sum(axis=1))
+        turned = (weights * (self.z[self.mechanism.beam_angles(beam)] - chain.link_angle)[links]).sum(axis=1)
+        for row, mu in zip(
+            self.mechanism.rows, hidden_forces(system, self.z, self.z[system.rows.first :]), strict=True
+        ):
+            if mu != 0.0 and row.unit_load is not None and row.unit_load.beam == beam:
+                turned -= mu * hidden_angles(chain, s, row.unit_load)
+        return np.asarray(chain.rest_angle(s) + turned)
 
     def multiplier(self, row: str) -> float:
         """μ of a row; zero without such a row."""

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons import cases, geometry, machine
+from comparisons import cases, geometry, provenance
 from comparisons.bench import errors, question, section, tables
 from comparisons.bench.contenders import Contender, Outcome, Run, contenders
 from comparisons.bench.running import Plan, Session, sizes_of, trend
@@ -348,7 +348,7 @@ def test_nothing_that_counts_has_no_figure(bent):
 
 
 def test_the_machine_is_described():
-    found = machine.described()
+    found = provenance.machine()
     assert set(MACHINE) <= set(found)
     assert found["cores"] >= 1
     assert all(found.values())

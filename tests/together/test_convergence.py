@@ -14,7 +14,8 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.pairing import ALONE, Solvers
+from comparisons.crew import ALONE
+from comparisons.pairing import Solvers
 from comparisons.studies.convergence_tables import pairs_of
 from comparisons.studies.families import Convergence, Family, converged
 from comparisons.verdict.uncertainty import limit

@@ -74,7 +74,7 @@ def test_a_station_with_a_problem_is_not_reached(hinge, solver, change, problem)
     pair[solver] = altered(pair[solver], change, 0.603)
     found = compared(asked, pair["cprbm"], pair["fea"])
     assert (word_of(found), found.verdict.completed) == ("UNDECIDED RUN_ENDED", False)
-    assert found.verdict.sentence.count(f"at load 0.603 {problem}") == 1
+    assert found.verdict.sentence.count(f"at load 0.603 N·m {problem}") == 1
     assert len({row.station for row in found.rows}) == 9
 
 

@@ -9,10 +9,11 @@ from math import radians
 
 import pytest
 
-from comparisons import archive
+from comparisons import store
 from comparisons.choices import Choices
 from comparisons.claims import standings
-from comparisons.pairing import ALONE, Solvers
+from comparisons.crew import ALONE
+from comparisons.pairing import Solvers
 from comparisons.plain import text_of
 from comparisons.present import json_document
 from comparisons.present.answer_tables import answer_tables
@@ -52,7 +53,7 @@ def test_the_json_marks_every_row_and_holds_the_critical_points(crank):
 def test_a_stop_releases_nothing(crank):
     found = compared(crank, *STOPPING)
     assert json_document.comparison(found)["critical"][0]["released"] == {"cprbm": None, "fea": None}
-    assert tables_of(found)[0].title.startswith("Critical values")
+    assert any(table.title.startswith("Critical values") for table in tables_of(found))
 
 
 def test_without_critical_points_nothing_is_said_of_branches(hinge):
@@ -65,10 +66,10 @@ def test_without_critical_points_nothing_is_said_of_branches(hinge):
 
 def test_an_answer_survives_the_archive_with_its_branches(crank):
     answer = C(crank, Choices())
-    again = archive.unpacked(archive.packed(answer))
+    again = store.unpacked(store.packed(answer))
     assert again.critical == answer.critical
     assert [station.branch for station in again.stations] == [station.branch for station in answer.stations]
-    assert archive.unpacked(archive.packed(STOPPING[0](crank, Choices()))).critical[0].after is None
+    assert store.unpacked(store.packed(STOPPING[0](crank, Choices()))).critical[0].after is None
 
 
 def test_a_passed_critical_point_is_in_the_json_the_table_and_the_archive(crank):
@@ -82,12 +83,12 @@ def test_a_passed_critical_point_is_in_the_json_the_table_and_the_archive(crank)
     assert data["solvers"]["fea"]["gone_over"] == []
     assert data["critical"][0]["gone_over"]["cprbm"] == 0.29
     answer = found.runs.cprbm[0]
-    packed = json.loads(text_of(archive.packed(answer)))
-    assert archive.unpacked(packed).gone_over == answer.gone_over
+    packed = json.loads(text_of(store.packed(answer)))
+    assert store.unpacked(packed).gone_over == answer.gone_over
     (sheet,) = (one for one in answer_tables(scene, answer) if one.title.startswith("Critical values"))
     assert "0.290 rad" in sheet.rows[0][3]
     del packed["gone_over"]  # an archive of before there was such a record
-    assert archive.unpacked(packed).gone_over == ()
+    assert store.unpacked(packed).gone_over == ()
 
 
 def test_a_claim_of_a_critical_value_is_compared_with_the_cprbms(crank):
