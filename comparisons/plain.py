@@ -22,7 +22,7 @@ def text_of(data: Mapping[str, Any]) -> str:
 
 
 def plain(value: object) -> Any:  # noqa: ANN401 - all types of JSON
-    """``value`` in the types of JSON; a number that is not finite becomes None."""
+    """``value`` in the types of JSON; None for a number without a finite value."""
     match value:
         case Mapping():
             return {str(key): plain(item) for key, item in value.items()}

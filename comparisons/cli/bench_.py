@@ -213,12 +213,12 @@ def _write(found: Section, json_file: Path | None, out: Path | None, name: str) 
         OSError: a file cannot be written.
     """
     from comparisons.cli import output
-    from comparisons.present.page import put_section
+    from comparisons.present.page import own_folder, put_section
 
     if json_file is not None and str(json_file) != "-":
         output.json(json_file, dict(found.data))
     if out is not None:
-        put_section(out / name, found)
+        put_section(own_folder(out, name), found)
 
 
 def _peer(name: str) -> Contender:

@@ -58,7 +58,7 @@ def command(
     from comparisons.cli import output
     from comparisons.cli.questions import read_questions
     from comparisons.pairing import solvers_of, with_solid, workers_for
-    from comparisons.present.page import Chapter, convergence_page, put_page, put_section, section_chapter
+    from comparisons.present.page import Chapter, convergence_page, own_folder, put_page, put_section, section_chapter
     from comparisons.store import run_into
     from comparisons.studies.convergence import convergence_section
 
@@ -78,7 +78,7 @@ def command(
             result = convergence_section(question, sizes, choices, run.solvers, run.crew)
             finished.append(result)
             if out is not None:
-                put_section(out / question.name, result)
+                put_section(own_folder(out, question.name), result)
                 chapters = (*chapters, section_chapter(question, [result]))
             run.mark_shown(question.name)
             if run.covers(names[: place + 1]):

@@ -1,1 +1,1 @@
-"""What a reader sees: tables, figures, pages and files, from records that other packages computed."""
+"""Tables, figures, pages and files from records of other packages."""

@@ -21,7 +21,7 @@ from cprbm_scene import Answer, Scene
 
 Kind = Literal[".3d.png", ".3d.gif", ".3d.apng", ".png", ".svg", ".gif", ".apng", ".vtu", ".pvd"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
-"""Endings of files; an ending stands before its own ending."""
+"""Endings of files; ``.3d.png`` stands before ``.png``."""
 
 _MOVING = (".3d.gif", ".3d.apng", ".gif", ".apng", ".pvd")  # kinds with all stations
 _MOST = 120  # pictures of an animation; of more stations some are shown, evenly
@@ -31,7 +31,7 @@ _WHOLE, _SHORTEST, _LONGEST, _REST = 6000, 40, 500, 1500  # ms: all pictures, on
 
 
 def kind_of(path: Path) -> Kind | None:
-    """Kind of a file by its name; None for an unknown ending."""
+    """Kind of a file by name; None for an unknown ending."""
     return next((kind for kind in KINDS if path.name.lower().endswith(kind) and len(path.name) > len(kind)), None)
 
 
@@ -40,13 +40,13 @@ def files(scene: Scene, answer: Answer, path: Path, kind: Kind, quantity: Colour
 
     Args:
         scene: with probes for stresses, :func:`comparisons.present.strips.with_stresses`.
-        answer: with one station at least; a single picture is of the last.
-        path: path of the file.
-        kind: kind of the content.
+        answer: with one station at least; a single picture shows the last.
+        path: of the file.
+        kind: of the content.
         quantity: quantity of the colours.
 
     Raises:
-        ImportError: a library that the kind needs is not installed.
+        ImportError: a library for the kind is not installed.
         comparisons.present.space.DrawingError: VTK cannot draw here.
     """
     views = views_of(scene, answer)[0 if kind in _MOVING else -1 :]

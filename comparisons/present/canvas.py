@@ -36,6 +36,8 @@ _STYLE: dict[Any, Any] = {  # the stubs name every key of every version
     "axes.spines.right": False,
     "legend.frameon": False,
     "savefig.dpi": 150.0,
+    "figure.constrained_layout.h_pad": 0.1,  # inches; with less a title at the upper edge is cut
+    "figure.constrained_layout.w_pad": 0.1,
 }
 
 _LOOKS: dict[Kind, dict[str, Any]] = {

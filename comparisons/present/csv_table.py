@@ -1,4 +1,4 @@
-"""Answers and comparisons as tables with one number on each line: records in SI, files in the units of the scene."""
+"""Answers and comparisons as tables with a number on every line: records in SI, files in the units of the scene."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Number(TypedDict):
 
 
 class _Entry(NamedTuple):
-    """A number of a comparison: its row and word, component, place, and the values of both solvers."""
+    """A number of a comparison: row, word, component, place, and the values of both solvers."""
 
     row: Row
     word: Word | None
@@ -55,7 +55,7 @@ _MEASURED = {
     "arc_length_unit": ("arc_length",),
     "unit": ("value", "cprbm", "fea", "difference", "stated"),
 }
-"""Columns of units, and the columns of numbers in each unit."""
+"""Columns of units, and the columns of numbers in the unit."""
 
 
 def numbers(scene: Scene, answer: Answer) -> Iterator[Number]:
@@ -119,20 +119,20 @@ def comparison_records(compared: Comparison) -> list[Plain]:
 
 
 def csv_of(scene: Scene, *answers: Answer) -> str:
-    """Answers to one scene as comma-separated values in the units of the scene's file, with a line of headers."""
+    """Answers to a scene as comma-separated values in the units of the scene's file, with a line of headers."""
     rows = (_in_file_units(scene, number) for answer in answers for number in numbers(scene, answer))
     return _csv_text(list(Number.__annotations__), rows)
 
 
 def csv_of_comparisons(comparisons: Sequence[Comparison]) -> str:
-    """Comparisons as comma-separated values in the units of each scene's file, with a line of headers."""
+    """Comparisons as comma-separated values in the units of the scenes' files, with a line of headers."""
     rows = (_in_file_units(each.scene, record) for each in comparisons for record in comparison_records(each))
     headers = [column.header for each in comparisons[:1] for column in comparison_columns(each.scene)]
     return _csv_text(headers, rows)
 
 
 def _in_file_units(scene: Scene, record: Mapping[str, object]) -> Plain:
-    """A record with its numbers, to 15 digits, and its units as the scene's file states them."""
+    """A record with numbers, to 15 digits, and units as in the scene's file."""
     row: Plain = {**record, "arc_length_unit": "m"}
     for unit, columns in _MEASURED.items():
         factor, row[unit] = file_unit(scene, row[unit])

@@ -21,7 +21,7 @@ _SHOWN = 6  # columns and rows of the short table
 
 @dataclass(frozen=True, slots=True)
 class OffsetStanding:
-    """A claim beside the rows of a spacing: the row with the largest error, its largest share of t, N that miss it."""
+    """A claim beside a spacing: the row with the largest error, the largest share of t, and N above the bound."""
 
     claim: OffsetClaim
     spacing: str

@@ -1,6 +1,6 @@
-"""The page of a report, a convergence, or a study, and its folder: one template with more or fewer chapters.
+"""The page of a report, a convergence, or a study, and the folder: a single template with more or fewer chapters.
 
-In the folder: ``index.html``, which needs no network; per case ``comparison.json`` (as documented for ``compare
+In the folder: ``index.html``, complete without a network; per case ``comparison.json`` (as documented for ``compare
 --json``), ``answers.json.gz`` (all answers, compressed), the JSON files of further sections, and all figures as SVG and
 PNG.
 """
@@ -11,6 +11,7 @@ import re
 from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from errno import EPERM
 from importlib.resources import files
 from pathlib import Path
 
@@ -34,7 +35,7 @@ _SHOWN_BY_THE_STEPPER = ("shapes", "stations")
 
 @dataclass(frozen=True, slots=True)
 class Chapter:
-    """Part of the page for one question.
+    """Part of the page for a question.
 
     Attributes:
         name, title, source: of the question.
@@ -63,7 +64,7 @@ class Chapter:
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """Title and lead of a page, its chapters, further sections, and the machine that computed the page."""
+    """Title and lead of a page, its chapters, further sections, and the machine."""
 
     title: str
     lead: str
@@ -105,7 +106,7 @@ def question_of(compared: Comparison | OffsetComparison) -> Question:
 def case_chapter(
     compared: Comparison | OffsetComparison, figures: Sequence[Figure], further: Sequence[Section] = ()
 ) -> Chapter:
-    """The chapter of a case with its figures and further sections."""
+    """The chapter of a case with figures and further sections."""
     verdict, chapter = compared.verdict, section_chapter(question_of(compared), further)
     if isinstance(compared, OffsetComparison):
         first, *others = offset.offset_sections(compared)
@@ -153,7 +154,7 @@ def light(section: Section) -> Section:
 
 
 def _with_figures(sections: Sequence[Section], figures: Sequence[Figure]) -> Iterable[Section]:
-    """Curves first, and all other figures with their tables; a figure without tables has a section of its own."""
+    """Curves first, and all other figures beside tables; a figure without tables has an own section."""
     shown = [replace(each, png=b"") for each in figures if each.name not in _SHOWN_BY_THE_STEPPER]
     headings = {"path": "Curves", "reaction": "Reactions of the drives", "stress": "Stress along the beams"}
     found: dict[str, list[Figure]] = {"Curves": []}
@@ -167,7 +168,7 @@ def _with_figures(sections: Sequence[Section], figures: Sequence[Figure]) -> Ite
 
 
 def _largest(compared: Comparison) -> tuple[str, str]:
-    """The largest difference as a share of its probe's scale, and the probe."""
+    """The largest difference as a share of the probe's scale, and the probe."""
     rows = [row for row in compared.rows if row.bounds is not None and row.scale > 0.0]
     if not rows:
         return "–", "–"
@@ -231,9 +232,9 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
     environment.filters["cells"] = html_cells
     environment.filters["words"] = word_columns
     environment.filters["embedded"] = lambda svg: "data:image/svg+xml;base64," + b64encode(svg).decode("ascii")
-    # a name may break behind its points and underscores; the type of an escaped text says that it is escaped
+    # a name may break behind points and underscores; the type of an escaped text marks the escape
     environment.filters["breaking"] = lambda name: type(name)(re.sub(r"(?<=\w[._])(?=[^\W\d])", "<wbr>", name))
-    environment.filters["joined"] = lambda sentence: sentence.replace(" %", "\u00a0%")  # on one line with its number
+    environment.filters["joined"] = lambda sentence: sentence.replace(" %", "\u00a0%")  # on the line of the number
     return (
         environment.get_template(template).render({**context, "style": _beside("style.css"), "marked": STYLES}) + "\n"
     )
@@ -252,13 +253,25 @@ def put_page(folder: Path, page: Page, name: str = "index") -> None:
     write(folder / f"{name}.html", html(page))
 
 
+def own_folder(folder: Path, name: str) -> Path:
+    """The folder of a case in the folder of a report.
+
+    Raises:
+        OSError: a link leads the case's folder out of the report's.
+    """
+    own = folder / name
+    if not own.resolve().is_relative_to(folder.resolve()):
+        raise OSError(EPERM, f"this folder is a link to {own.resolve()}, outside the report's folder", str(own))
+    return own
+
+
 def put_case(folder: Path, compared: Comparison | OffsetComparison, figures: Iterable[Figure]) -> None:
-    """Write numbers, answers and figures of a case into its folder in a report.
+    """Write numbers, answers and figures of a case into a folder of a report.
 
     Raises:
         OSError: the folder cannot be written to.
     """
-    own = folder / question_of(compared).name
+    own = own_folder(folder, question_of(compared).name)
     write(own / "comparison.json", text_of({"cases": [document_of(compared)]}))
     if isinstance(compared, Comparison):
         runs = compared.runs

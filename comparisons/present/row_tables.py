@@ -42,7 +42,7 @@ def judged_rows(compared: Comparison) -> tuple[Judged, ...]:
 
 
 def shown_stations(compared: Comparison) -> tuple[tuple[Judged, ...], ...]:
-    """Rows of the stations that the scene shows and of the last station, in their order."""
+    """Rows of the shown stations and of the last station, in order."""
     by_station: dict[tuple[str, float], list[Judged]] = {}
     for judged in judged_rows(compared):
         by_station.setdefault(judged[0].where, []).append(judged)
@@ -72,7 +72,7 @@ def judgement(judged: Judged) -> str:
 
 
 def _share_column(header: str, size: object, digits: int = 3) -> Column[Judged]:
-    """Column of a size of rows: the name of an attribute of the row, or of its bounds after ``bounds.``."""
+    """Column of a size of rows: the name of an attribute of the row, or of the bounds after ``bounds.``."""
     owner, _, name = str(size).rpartition(".")
 
     def value(judged: Judged) -> str | None:
@@ -99,7 +99,7 @@ def _value_columns(units: Units) -> list[Column[Judged]]:
         Column("unit", lambda at: units[at[0].unit][1]),
         Column("CPRBM", lambda at: text(at[0], at[0].cprbm)),
         Column("FEA", lambda at: text(at[0], at[0].fea)),
-        Column("exact (bending)", lambda at: text(at[0], at[0].exact)),
+        Column("exact", lambda at: text(at[0], at[0].exact)),
     ]
 
 
@@ -122,7 +122,7 @@ def error_tables(compared: Comparison, last: Sequence[Judged]) -> tuple[Table, .
     absence = f" No exact values: {runs.exact_absence}" if runs.exact_absence else ""
     notes = (
         f"CPRBM beside the finite elements in the theory {runs.kinematics}. Errors are fractions of the FEA's value, "
-        f"or of the probe's largest value where the value may vanish.{absence}",
+        f"or of the probe's largest value where the value may vanish. Exact values are those in bending.{absence}",
         "Largest magnitudes along the beam. The error is the largest difference anywhere a thickness or more from held "
         "ends and from ends of contacts. A beam of initial radius R has a true stress at its inner edge that is larger "
         "by about t/(3R).",
@@ -132,7 +132,7 @@ def error_tables(compared: Comparison, last: Sequence[Judged]) -> tuple[Table, .
         columns = [
             *_value_columns(units),
             _share_column("error", "difference"),
-            Column("error of the largest", lambda at: share(at[0], largest_difference(at[0]))),
+            Column("error of max", lambda at: share(at[0], largest_difference(at[0]))),
             Column("t/(3R)", lambda at: _edge_factor(compared.scene, at[0])),
             Column("largest error", lambda at: share(*worst[at[0].probe.name]) if at[0].probe.name in worst else None),
             Column("at", lambda at: _where(compared.scene, worst.get(at[0].probe.name))),
@@ -145,10 +145,10 @@ def error_tables(compared: Comparison, last: Sequence[Judged]) -> tuple[Table, .
 
 
 def _largest_errors(compared: Comparison) -> dict[str, tuple[Row, float]]:
-    """Row with the largest fraction of its difference, by probe, over all stations."""
+    """Row with the largest fraction of its difference, by probe, over all rows with a word."""
     found: dict[str, tuple[Row, float]] = {}
-    for row in compared.rows:
-        size = row.fraction(row.difference)
+    for row, word, _ in judged_rows(compared):
+        size = None if word is None else row.fraction(row.difference)
         known = found.get(row.probe.name)
         if size is not None and (known is None or size > (known[0].fraction(known[1]) or 0.0)):
             found[row.probe.name] = row, row.difference

@@ -1,6 +1,6 @@
-"""The door to PyVista: stations in space, drawn without a screen, in a process of their own.
+"""The door to PyVista: stations in space, drawn without a screen, in an own process.
 
-Without a library of the system that draws, VTK may end the process.
+Without a drawing library of the system, VTK may end the process.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _WAY = (-0.55, 0.75, 1.6)  # from the middle to the eye, over the mechanism's lo
 
 
 class DrawingError(RuntimeError):
-    """VTK could not draw here; the text states the cause as far as it is known."""
+    """VTK could not draw here; the text states the cause if known."""
 
 
 class SpaceView(NamedTuple):
@@ -44,7 +44,7 @@ class SpaceView(NamedTuple):
 
 
 def space_pictures(scene: Scene, views: Sequence[View], bounds: Bounds, quantity: Coloured) -> list[bytes]:
-    """Views as PNG, from one eye.
+    """Views as PNG, from the same eye.
 
     Raises:
         ImportError: PyVista is not installed.
@@ -66,7 +66,7 @@ def pictures(views: list[SpaceView], bounds: Bounds, quantity: Coloured, factor:
 
 
 def apart(draws: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
-    """Result of a function ``draws`` in a process of its own.
+    """Result of a function ``draws`` in an own process.
 
     Raises:
         DrawingError: the process was ended by force.
@@ -78,7 +78,7 @@ def apart(draws: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
 
 
 def tried() -> str:
-    """Cause for which VTK does not draw here; empty if it draws."""
+    """Cause for which VTK does not draw here; else empty."""
     corners = np.array([[x, y, z] for z in (0.0, 1.0) for x, y in ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))])
     cube = Block("hexahedron", corners, np.arange(8)[None], {"bending_stress": corners[:, 0]})
     bounds = Bounds(np.zeros(2), np.ones(2), 0.0, 1.0, {})
@@ -107,7 +107,7 @@ def _space_view(scene: Scene, view: View, bounds: Bounds) -> SpaceView:
 
 
 def _plain(text: str) -> str:
-    """Text in the letters that VTK has."""
+    """Text in the letters of VTK."""
     return text.replace("·", " ").replace("°", " deg").replace("µ", "u")
 
 

@@ -1,6 +1,6 @@
 """A mechanism station by station on a page: shapes with colours of stress, contacts, forces and values.
 
-The picture has one SVG path for each kind of part, and a station has the data of all paths.  The finite elements' beams
+The picture has an SVG path for every kind of part, and a station has the data of all paths.  The finite elements' beams
 have their true thickness, with colours of the bending stress at the right edge; the CPRBM's are neutral lines.
 
 ======  ===========================================================================
@@ -53,17 +53,17 @@ _MARKS: tuple[Kind, ...] = ("weld", "pin", "pivot")
 
 @dataclass(frozen=True, slots=True)
 class Stepper:
-    """A picture with a slider, and its table.
+    """A picture with a slider and a table.
 
     Attributes:
         width, height: of the picture.
-        still: data of paths that do not move, by class.
-        moving: classes of the paths that move, in the order of the stations' data.
+        still: data of still paths by class.
+        moving: classes of the moving paths, in the order of the stations' data.
         points: names beside points.
         names: probes and units of the table's lines.
         stations: label, paths, places of the names, and cells of the table.
-        thick: beams that are drawn thicker than they are.
-        span: the largest stress of the colours with its unit.
+        thick: beams drawn thicker than in truth.
+        span: the largest stress of the colours with the unit.
     """
 
     width: float
@@ -78,13 +78,13 @@ class Stepper:
 
     @property
     def data(self) -> str:
-        """The stations as JSON for a page; the cells of the table stand in one list."""
+        """The stations as JSON for a page; the cells of the table stand in a list."""
         every = [(label, paths, places, sum(cells, ())) for label, paths, places, cells in self.stations]
         return json.dumps(every, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
 def stepper(compared: Comparison) -> Stepper | None:
-    """The stations that both answers have; None without a common station."""
+    """The common stations of both answers; None without a common station."""
     scene, pairs = compared.scene, list(_pairs(compared))
     if not pairs:
         return None
@@ -161,7 +161,7 @@ def _moving(view: View, cprbm: StationAnswer, bounds: Bounds, place: _Placing) -
 
 
 def _shades(strip: Strip, bounds: Bounds, place: _Placing) -> Iterator[tuple[int, str]]:
-    """Areas of a beam with one colour, with the number of the colour."""
+    """Areas of a beam by number of the colour."""
     middle, half = place(strip.line), 0.5 * np.maximum(strip.thickness * place.scale, _THINNEST)
     across = half[:, None] * strip.normal * (1.0, -1.0)
     shares = strip.bending_stress / bounds.most if bounds.most else np.zeros(len(strip.s))
@@ -184,7 +184,7 @@ def _labels(view: View, place: _Placing) -> dict[str, str]:
 def _units(
     scene: Scene, probes: Sequence[Probe], pairs: Sequence[tuple[StationAnswer, StationAnswer]]
 ) -> dict[str, tuple[float, str]]:
-    """Displayed unit of every probe, one for all probes with the same SI unit."""
+    """Displayed unit of every probe, the same for all probes with the same SI unit."""
     last = next(stage for stage in scene.stages if stage.name == pairs[-1][1].stage)
     names = {probe.name: unit_of(scene, probe, last) for probe in probes}
     sizes = (
@@ -216,12 +216,12 @@ def _title(scene: Scene, station: StationAnswer) -> str:
 
 
 def line(places: Array, *, closed: bool = False) -> str:
-    """Path through places (k, 2) of the picture, without places that a distance of ε can spare."""
+    """Path through places (k, 2) of the picture, without places within a distance of ε."""
     return "M" + "L".join(_pair(*each) for each in thinned(places)) + ("Z" if closed else "") if len(places) else ""
 
 
 def thinned(places: Array) -> Array:
-    """The places of a line that keep it within about ε: their distances are √(8 ε/κ)."""
+    """Places (m, 2) of a line within about ε: the distances of the kept places are √(8 ε/κ)."""
     way = np.diff(places, axis=0)
     size = np.hypot(*way.T)
     turn = np.abs(np.diff(np.unwrap(np.arctan2(way[:, 1], way[:, 0]))))
@@ -236,7 +236,7 @@ def dots(places: Array) -> str:
 
 
 def _arrow(arrow: Arrow, bounds: Bounds, place: _Placing) -> str:
-    """Arrow of a force with its head at the place of action, or round the place for a moment."""
+    """Arrow of a force with the head at the place of action, or round the place for a moment."""
     tip, size, most = place(arrow.place[None])[0], float(np.hypot(*arrow.force)), bounds.force[arrow.kind]
     path = ""
     if size > LEAST * most > 0.0:

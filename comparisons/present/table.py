@@ -29,15 +29,15 @@ _GAP, _EDGES = 3, 1
 """Columns of the screen beside every column of a table, and beside the table."""
 
 _LONG = 24
-"""Most characters of a text with spaces that stands in one line."""
+"""Most characters of a text with spaces without a fold."""
 
 _SENTENCE = 60
-"""Characters of a text that is longer than all numbers."""
+"""Characters of a text longer than all numbers."""
 
 _NUMBER = re.compile(r"(?P<before>[+-]?\d+)(?P<behind>(?:\.\d+)?(?:e[+-]?\d+)?(?: %|°)?)")
 _NUMERIC = re.compile(r"\(?[+-]?\d")
 _OTHERS = ("–", "open", "none", "all", "")
-"""Texts that a column of numbers may have as well."""
+"""Further texts in a column of numbers."""
 
 
 def screen_text(table: Table, *, width: int) -> str:
@@ -82,7 +82,7 @@ def _styled(cell: str) -> Text:
 
 def _printed(grid: Grid, width: int) -> str:
     page = io.StringIO()
-    # without a height a terminal that says it is "dumb" would have 80 columns whatever the width
+    # without a height a "dumb" terminal would have 80 columns whatever the width
     Console(file=page, width=width, height=25, force_terminal=True, color_system="standard").print(grid)
     return page.getvalue()
 
@@ -140,7 +140,7 @@ def html_cells(table: Table) -> list[list[Cell]]:
 
 
 def word_columns(table: Table) -> list[bool]:
-    """For each column whether it has words: no text begins with a number, or a text is a sentence."""
+    """Whether a column has words, by column: no text begins with a number, or a text is a sentence."""
     return [_has_words([row[place] for row in table.rows]) for place in range(len(table.headers))]
 
 

@@ -1,4 +1,4 @@
-"""Stations as cells in space, as VTU files by meshio, and as the PVD collection that ParaView reads.
+"""Stations as cells in space, as VTU files by meshio, and as the PVD collection for ParaView.
 
 A beam is extruded to its width along z: hexahedra between neighbouring sections, ``ACROSS`` of them through the
 thickness.  The plane of the mechanism is in the middle.  The time of a station is the value of its load or drive where
@@ -102,7 +102,7 @@ def _obstacle(number: int, obstacle: Obstacle) -> Block:
 
 
 def _joined(blocks: Sequence[Block]) -> Block:
-    """Blocks of one kind and the same values as one block."""
+    """Blocks of the same kind and values as a single block."""
     first = np.cumsum([0, *(len(block.places) for block in blocks)])[:-1]
     return Block(
         blocks[0].kind,
@@ -131,7 +131,7 @@ def series(scene: Scene, views: Sequence[View], path: Path) -> Iterator[tuple[Pa
     """The files of a series, the collection ``path`` as the last.
 
     A station has the parts 0 (beams), 1 (obstacles) and 2 (contact forces) without empty parts, in a folder beside the
-    collection with its name.
+    collection with the same name.
 
     Raises:
         ImportError: meshio is not installed.

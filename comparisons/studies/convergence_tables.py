@@ -26,7 +26,7 @@ class Pair(NamedTuple):
 
     @property
     def apart(self) -> tuple[float, float] | None:
-        """Norms of the distance of both limits and of their uncertainties, in the unit; None without a limit."""
+        """Norms of the distance of both limits and of the uncertainties, in the unit; None without a limit."""
         one, two = self.cprbm.found, self.fea.found
         if one is None or two is None or one.value.shape != two.value.shape:
             return None
@@ -34,7 +34,7 @@ class Pair(NamedTuple):
 
 
 def document(found: Convergence) -> Plain:
-    """One case of ``converge``: ``families`` has one entry per solver, probe, component, stage and station."""
+    """One case of ``converge``: ``families`` has an entry per solver, probe, component, stage and station."""
     return {
         "case": found.scene.name,
         "families": [
@@ -79,7 +79,7 @@ def _entries(found: Convergence, family: Family) -> Iterable[Plain]:
 
 
 def critical_entry(sizes: Sequence[int], family: CriticalFamily) -> Plain:
-    """One entry of ``families``; the probe is ``critical``, its component the stage's name."""
+    """Entry of ``families``; the probe is ``critical``, the component the stage's name."""
     limit = family.found
     last = family.critical[max(family.critical)]
     return {
@@ -126,12 +126,12 @@ def sentences_of(found: Convergence) -> tuple[str, ...]:
 
 
 def shown_size(found: Convergence) -> int:
-    """The size whose values the table shows: the standard size, or else the middle size."""
+    """The size in the table: the standard size, or else the middle size."""
     return STANDARD_AT if STANDARD_AT in found.sizes else found.sizes[(len(found.sizes) - 1) // 2]
 
 
 def pairs_of(found: Convergence) -> tuple[Pair, ...]:
-    """The CPRBM's families, each with the finite elements' in ``bending``."""
+    """The CPRBM's families beside the finite elements' in ``bending``."""
     other = {_question(family): family for family in found.families if family.series.variant == "bending"}
     return tuple(
         Pair(family, other[_question(family)])

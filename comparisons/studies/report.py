@@ -1,4 +1,4 @@
-"""Content of a report: the comparison of a question, its error against N, and its run times."""
+"""Content of a report: the comparison of a question, error against N, and run times."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Parts:
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """The comparison of a question, its figures, and further sections: error against N, and run times."""
+    """The comparison of a question, figures, and further sections: error against N, and run times."""
 
     compared: Comparison | OffsetComparison
     figures: tuple[Figure, ...]
@@ -58,8 +58,8 @@ def gathered(
         question: a scene or an offset question.
         pending: the runs of the comparison, if the runs began before.
         parts: the parts, and their sizes.
-        solvers: solvers, which may keep answers.
-        timed: solvers for run times, which keep none.
+        solvers: solvers, perhaps with kept answers.
+        timed: solvers for run times, without kept answers.
         crew: processes to share the runs.
 
     Raises:
@@ -103,7 +103,7 @@ def table_section(timed: Solvers, made_on: Mapping[str, str | int]) -> Section:
     """The paper's Table 1 beside our run times.
 
     Args:
-        timed: solvers, which keep no answers.
+        timed: solvers without kept answers.
         made_on: the machine and the versions.
     """
     found = table1.begun(timed, made_on)

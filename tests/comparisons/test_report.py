@@ -420,3 +420,16 @@ def test_a_file_that_cannot_be_finished_leaves_the_old_one(tmp_path):
         write(file, "new \udc80")
     assert file.read_text("utf-8") == "old"
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_link_leads_no_file_out_of_the_folder(comparison, tmp_path):
+    elsewhere, folder = tmp_path / "elsewhere", tmp_path / "out"
+    for each in (elsewhere, folder):
+        each.mkdir()
+    (folder / "hinge").symlink_to(elsewhere)
+    with pytest.raises(OSError, match="outside the report's folder"):
+        page.put_case(folder, comparison, ())
+    assert list(elsewhere.iterdir()) == []
+    (folder / "index.html").symlink_to(elsewhere / "index.html")
+    page.put_page(folder, page.report_page([]))
+    assert list(elsewhere.iterdir()) == []

@@ -90,8 +90,8 @@ def repeated(scene, choices):
 @pytest.mark.parametrize(
     ("cprbm", "problem", "stations"),
     [
-        (replace(C, until=7), "it has no station load 0.536 (and 2 more)", 7),
-        (replace(C, until=0), "it has no station load 0.067 (and 9 more)", 0),
+        (replace(C, until=7), "it has no station load 0.536 N·m (and 2 more)", 7),
+        (replace(C, until=0), "it has no station load 0.067 N·m (and 9 more)", 0),
         (ended, "it ended early: The step is too small.", 10),
         (ending(C, 4), "it ended early: It stuck.", 4),
         (repeated, "it has 11 stations where 10 were asked", 10),
