@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -18,11 +18,19 @@ from cprbm_scene.answer import Array
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A solved state; ``loads`` are the values (SI) of all loads; ``shearing`` tells the theory ``shear``."""
+    """A solved state.
+
+    Attributes:
+        solved: the state.
+        loads: values (SI) of all loads.
+        shearing: true in the theory ``shear``.
+        closing: values (SI) of loads or drives at which contacts first closed.
+    """
 
     solved: Solved
     loads: dict[str, float]
     shearing: bool
+    closing: dict[str, float] = field(default_factory=dict)
 
     @property
     def mechanism(self) -> Mechanism:
@@ -79,6 +87,10 @@ class View:
         return np.array(
             [self.mechanism.point(point, direction).value(self.z) for direction in ((1.0, 0.0), (0.0, 1.0))]
         )
+
+    def end(self, beam: str, end: str) -> tuple[float, Array]:
+        """Arc length and position of a beam's end, in units."""
+        return (0.0, self.nodes(beam)[0]) if end == "start" else (self.chain(beam).length, self.nodes(beam)[-1])
 
     @cached_property
     def potential_energy(self) -> float:

@@ -10,7 +10,7 @@ import cprbm
 import fea_reference
 from comparisons import cases
 from cprbm.equilibrium.factors import factorise
-from cprbm.equilibrium.newton import equilibrium
+from cprbm.equilibrium.solving import equilibrium
 from cprbm.equilibrium.system import rest_state
 from cprbm_scene import Loss, read, scene_from
 from tests.cprbm.second.systems import loop
