@@ -81,7 +81,9 @@ def test_convex_corners_hold_the_foot():
     for share in (0.01, 0.03):
         x = corner + share * outward
         begin = geometry.arrays.first[number]
-        piece, eta, at_point = closest_point(rest, geometry.arrays, number, x.real, x.imag, begin, 0.4, 0.0, 0.0, weights)
+        piece, eta, at_point = closest_point(
+            rest, geometry.arrays, number, x.real, x.imag, begin, 0.4, 0.0, 0.0, weights
+        )
         assert at_point
         assert (piece - begin, eta) == (1, 0.0)
 
