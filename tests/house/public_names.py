@@ -86,6 +86,7 @@ DOCUMENTED = {
     "comparisons.case": ("Comparison", "Verdict"),
     "comparisons.verdict.bounds": ("Bounds",),
     "comparisons.verdict.rows": ("Row",),
+    "comparisons.sweeps.running": ("Sweep",),
     "comparisons.reactions": ("Absence", "WorkEnergyReaction"),
     "comparisons.present.csv_table": ("Number",),
     "comparisons.audit": ("audit",),
