@@ -19,7 +19,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, shape_of, with_half_waves
 from cprbm_scene.curves import Array
-from cprbm_scene.mistakes import Mistake
+from cprbm_scene.mistakes import Mistake, written_place
 from cprbm_scene.record import Name, Of, Record
 from cprbm_scene.units import NUMBER, STRESS, Length, Number, PositiveLength
 
@@ -57,9 +57,19 @@ class PinnedEnd(Record):
 
 
 class FreeEnd(Record):
-    """End of a beam without a joint."""
+    """End of a beam without a joint; with a ``point``, a name of the end for loads and probes.
+
+    A scene has a free body of this point, welded to the end, in place of a named free end.
+    """
 
     joint: Literal["free"]
+    point: Name | None = None
+
+    def rules(self) -> Iterator[Mistake]:
+        """A name whose body is another body of the scene."""
+        if self.point is not None:
+            found = f"{self.point!r}, and another body with the name '{self.point}-body'"
+            yield Mistake("point", found, "another name of the free end")
 
 
 BeamEnd = Annotated[WeldedEnd | PinnedEnd | FreeEnd, Field(discriminator="joint")]
@@ -187,18 +197,30 @@ class Beam(Record):
         for thickness in (self.thinnest, self.thickest):
             share = thickness / shape.length
             if not THINNEST <= share <= THICKEST:
-                found = f"{thickness:g} m, which is {share:.3g} of the beam's length"
+                found = f"{thickness:g} m, which is {share:.3g} of the beam's length{mix_up(share)}"
                 allowed = f"a thickness between {THINNEST:g} and {THICKEST:g} of the beam's length"
                 yield Mistake("thickness", found, allowed)
                 return
-        thickness, curvature = self.thickest, shape.largest_curvature
-        if self.tapered and 0.5 * thickness * curvature >= MOST_CURVED:
-            u = np.union1d(np.linspace(0.0, 1.0, _SAMPLES), self.knots)
-            worst = u[[(self.thickness_at(u) * shape.curvature(u)).argmax()]]
-            thickness, curvature = float(self.thickness_at(worst)[0]), float(shape.curvature(worst)[0])
-        if 0.5 * thickness * curvature >= MOST_CURVED:
-            found = f"{thickness:g} m, half of which is {0.5 * thickness * curvature:.3g} of the radius of curvature"
+        share = 0.5 * self.thickest * shape.largest_curvature
+        if share < MOST_CURVED:
+            return
+        u = np.union1d(np.linspace(0.0, 1.0, _SAMPLES), self.knots)
+        shares = 0.5 * self.thickness_at(u) * shape.curvature(u)
+        worst = u[[shares.argmax()]]
+        if self.tapered:
+            share = float(shares.max())
+        if share >= MOST_CURVED:
+            place = written_place(shape.point(worst)[0])
+            found = (
+                f"{float(self.thickness_at(worst)[0]):g} m, half of which is {share:.3g} of the radius of curvature "
+            )
+            found += f"at {float(worst[0]):.3g} of the length, near {place} m{mix_up(share)}"
             yield Mistake("thickness", found, f"half a thickness less than {MOST_CURVED:g} of the radius of curvature")
+
+
+def mix_up(share: float) -> str:
+    """A question about the unit of a thickness, for a ``share`` that a unit 1000 times smaller would make ordinary."""
+    return " (in mm in place of m, or in um in place of mm?)" if 2.0 <= share <= 1e3 * THICKEST else ""
 
 
 @lru_cache(maxsize=512)

@@ -22,10 +22,13 @@ BeamName = Annotated[Name, Of("beam")]
 
 
 class FixedBody(Record):
-    """The ground: a rigid body with named points (m), at rest."""
+    """The ground: a rigid body with named points (m), at rest.
+
+    A scene has a point at an edge of the body, or at the first beam, in place of no points.
+    """
 
     motion: Literal["fixed"]
-    points: Points
+    points: Named[Point] = Field(default_factory=frozendict)
 
 
 class FreeBody(Record):

@@ -10,7 +10,7 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
-from cprbm_scene.curve_records import MOST_POINTS, Polynomial, Spline, graph_rules
+from cprbm_scene.curve_records import MOST_POINTS, Polynomial, Spline, SplinePoints, graph_rules
 from cprbm_scene.curves import unit_vector
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake
@@ -229,7 +229,7 @@ class SplineContact(RigidContact):
     """
 
     kind: Literal["beam-spline"]
-    points: Annotated[tuple[Point, ...], Field(min_length=3)]
+    points: SplinePoints
     start_direction: Direction | None = None
     end_direction: Direction | None = None
     side: Literal["left", "right"]

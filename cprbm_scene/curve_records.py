@@ -17,12 +17,13 @@ from math import dist, inf, isfinite
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
 
 from cprbm_scene.curves import CircularArc, Curve, Graph, SplineCurve, StraightLine
 from cprbm_scene.mistakes import Mistake, written_place
+from cprbm_scene.point_table import read_points
 from cprbm_scene.record import Record, nonzero
-from cprbm_scene.units import Coefficients, Direction, Length, Point
+from cprbm_scene.units import Coefficients, Direction, Length, Point, Reading
 
 SHORTEST = 1e-6
 STEEPEST = 1e3
@@ -33,6 +34,24 @@ OF_HALF_WAVE, MOST_HALF_WAVES = 64, 15
 """Points of an imperfect curve in a half wave, and half waves with at most 1001 points."""
 MEETING = 1e-6
 """Distance between an end and its point, of the beam's length, and difference of an arc's radii, of the radius."""
+
+
+def _of_table(value: object, info: ValidationInfo) -> object:
+    """Points of the table that a text names, in the file's units; another value unchanged."""
+    if not isinstance(value, str) or not isinstance(info.context, Reading):
+        return value
+    return read_points(info.context.folder / value, info.context.units.length)
+
+
+_NUMBER = {"anyOf": [{"type": "number"}, {"type": "string", "pattern": "^="}]}
+_POINT = {"type": "array", "prefixItems": [_NUMBER, _NUMBER], "minItems": 2, "maxItems": 2}
+SplinePoints = Annotated[
+    tuple[Point, ...],
+    Field(min_length=3),
+    BeforeValidator(_of_table),
+    WithJsonSchema({"anyOf": [{"type": "array", "items": _POINT, "minItems": 3}, {"type": "string"}]}),
+]
+"""Points of a spline, or the path of a table with the points, relative to the scene's folder."""
 
 
 class _Curve(Record):
@@ -100,11 +119,12 @@ class Spline(_Curve):
     x and y are cubic splines of t; t is zero at the first point and grows between points by their distance.  Tangent
     and curvature are continuous.  At an end with a ``start_direction`` or ``end_direction`` the derivative is the unit
     vector of the direction, in the sense of the beam.  At an end without a direction the outer two pieces are one
-    cubic.  The spline of three points without directions is the parabola through them.
+    cubic.  The spline of three points without directions is the parabola through them.  A file may name a table of
+    points in place of ``points``.
     """
 
     kind: Literal["spline"]
-    points: Annotated[tuple[Point, ...], Field(min_length=3)]
+    points: SplinePoints
     start_direction: Direction | None = None
     end_direction: Direction | None = None
 

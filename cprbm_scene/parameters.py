@@ -66,7 +66,7 @@ def register(reading: Reading, parameters: Mapping[str, Parameter]) -> Mapping[s
     """The parameters in SI with the reading's settings; the reading evaluates expressions from now on.
 
     Raises:
-        PydanticCustomError: an unknown name or unit, a cycle, or a value out of range.
+        SceneError: an unknown name or unit, a cycle, or a value out of range.
     """
     for name in reading.settings:
         if name not in parameters:

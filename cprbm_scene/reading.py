@@ -180,7 +180,7 @@ def _record(kind: type[Asked], data: dict[str, Any], file: str, settings: Mappin
         raise SceneError([replace(unknown_name("file", "file", "key here", keys_at((), kind)), file=file)])
     try:
         content = _tuples(data)
-        reading = Reading(_units(content), settings=settings)
+        reading = Reading(_units(content), settings=settings, folder=Path(file).parent)
         if "parameters" not in content:
             register(reading, {})
         record = kind.model_validate({**content, "file": file}, context=reading)

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Literal, TypeVar
 
-from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from cprbm_scene.beam_records import (
     Beam,
@@ -204,6 +204,27 @@ class Scene(Record):
                 reading.stepped.update({name: each.unit for name, each in acting.items()})
         return value
 
+    @model_validator(mode="after")
+    def _completed(self) -> Scene:
+        """The scene with a free body for each named free end, and with a point for each fixed body without points."""
+        beams, bodies = dict(self.beams), dict(self.bodies)
+        for name, beam in self.beams.items():
+            for side in ("start", "end"):
+                point = getattr(beam, side).point if isinstance(getattr(beam, side), FreeEnd) else None
+                if point is not None and f"{point}-body" not in bodies:
+                    points = frozendict({point: getattr(beam.curve, side)})
+                    bodies[f"{point}-body"] = FreeBody(motion="free", points=points)
+                    joint = WeldedEnd(joint="weld", point=point)
+                    beams[name] = beams[name].model_copy(update={side: joint})
+        for name, body in self.bodies.items():
+            if not body.points:
+                edges = (edge for edge in self.contacts.values() if getattr(edge, "body", None) == name)
+                place = next((_place(edge) for edge in edges), next(iter(beams.values())).curve.start)
+                bodies[name] = FixedBody(motion="fixed", points=frozendict({f"{name}-point": place}))
+        if (beams, bodies) != (self.beams, self.bodies):
+            self.__dict__.update(beams=frozendict(beams), bodies=frozendict(bodies))
+        return self
+
     def with_parameters(self, **values: float) -> Scene:
         """The scene with other values of its parameters, checked as a file is checked.
 
@@ -283,3 +304,15 @@ class Scene(Record):
             KeyError: no body has a point of that name.
         """
         return self.owners[point]
+
+
+def _place(contact: Contact) -> Point:
+    """A place of a rigid shape: its center, or a point of its edge, m."""
+    match contact:
+        case CircleContact(center=place) | EllipseContact(center=place) | HalfPlaneContact(point=place):
+            return place
+        case LineContact(points=points) | SplineContact(points=points):
+            return points[0]
+        case FunctionContact(curve=curve):
+            return curve.start
+    raise TypeError(type(contact))

@@ -7,7 +7,7 @@ import re
 from pydantic_core import ErrorDetails
 
 from cprbm_scene.keys import is_tag, keys_at, tags_at
-from cprbm_scene.mistakes import Mistake, hint, unknown_name
+from cprbm_scene.mistakes import Mistake, SceneError, hint, unknown_name
 from cprbm_scene.record import Record
 
 _QUOTED = re.compile(r"'([^']*)'")
@@ -38,7 +38,6 @@ _ALLOWED = {
     "too_long": "at most {max_length} of them",
     "string_too_long": "at most {max_length} characters",
     "literal_error": "one of {expected}",
-    "mistake": "{allowed}",
 }
 """Allowed values by the type of an error, with the fields of the error's context."""
 
@@ -49,6 +48,8 @@ def in_words(details: ErrorDetails, root: type[Record]) -> Mistake:
     key, context = _key_path(loc, root), details.get("ctx", {})
     found, allowed = shown(given), _ALLOWED[kind].format(**context) if kind in _ALLOWED else details["msg"]
     match kind:
+        case "tuple_type" if loc[-1] == "points" and isinstance(given, str):
+            allowed += ", or the name of a table of points in a scene file"
         case "extra_forbidden":
             return unknown_name(key, str(loc[-1]), "key here", keys_at(loc[:-1], root))
         case "string_pattern_mismatch" if "x00" in context["pattern"]:
@@ -71,8 +72,9 @@ def in_words(details: ErrorDetails, root: type[Record]) -> Mistake:
             key, allowed = f"{key}.{tag}", f"one of {', '.join(map(repr, tags))}"
         case "model_type" if loc == ("units",):
             allowed += f", as {_UNITS}"
-        case "mistake":
-            found, key = context["found"], f"{key}.{context['key']}".strip(".")
+        case "value_error" if isinstance(error := context["error"], SceneError):
+            (mistake,) = error.mistakes
+            key, found, allowed = f"{key}.{mistake.key}".strip("."), mistake.found, mistake.allowed
     return Mistake(key, found, allowed)
 
 

@@ -9,9 +9,10 @@ from pydantic import ValidationError
 
 from cprbm_scene import OffsetQuestion, Scene, SceneError, read, read_question, scene_from
 from cprbm_scene.mistakes import MOST
+from cprbm_scene.plausibility import notes
 from cprbm_scene.reading import DEEPEST, LARGEST
 from tests.cprbm_scene.conftest import HINGE as FILE
-from tests.cprbm_scene.editing import HINGE, REMOVED, edited, mistakes
+from tests.cprbm_scene.editing import HINGE, REMOVED, edited, mistakes, two_lines
 
 
 def _refusal(path):
@@ -167,3 +168,127 @@ def test_of_very_many_mistakes_the_first_are_told():
 def test_what_a_fuzzer_has_found_is_a_question_or_a_wrong_one(file):
     with suppress(SceneError):
         assert isinstance(read_question(file), Scene | OffsetQuestion)
+
+
+def through_a_table(path, text, *edits):
+    """Mistakes of a cantilever through the points of a table, and the points."""
+    path.write_bytes(text)
+    base = two_lines(0.01)
+    del base["beams"]["upper"], base["contacts"], base["bodies"]["ground"]["points"]["P"]
+    base["beams"]["lower"]["curve"] = {"kind": "spline", "points": path.name}
+    try:
+        scene = scene_from(edited(*edits, base=base), file=str(path.parent / "scene.toml"))
+    except SceneError as error:
+        (mistake,) = error.mistakes
+        return mistake
+    return scene.beams["lower"].curve.points
+
+
+PLACES = ((0.0, 0.0), (0.03, 0.008), (0.07, 0.004), (0.1, 0.0))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        b"x [mm], y [mm]\n0,0\n30,8\n70,4\n100,0\n",
+        b"# measured\r\ns;y (m);x (cm)\r\n1;0;0\r\n1;0.008;3\r\n\r\n1;0.004;7\r\n1;0;10",
+        b'\xef\xbb\xbf"x/mm"\t"Y in mm"\n0\t0\n30\t8\n70\t4\n1e2\t0',
+        b"y,x\n0,0\n.008,.03\n.004,.07\n0,.1",
+    ],
+)
+def test_points_of_a_table_have_the_units_of_the_header(tmp_path, text):
+    assert through_a_table(tmp_path / "p.csv", text) == PLACES
+
+
+def test_a_column_without_a_unit_has_the_unit_of_the_scene(tmp_path):
+    edits = [("units", {"length": "mm"}), ("bodies/block/points/Q", [100, 0]), ("beams/lower/thickness", 2)]
+    found = through_a_table(tmp_path / "p.csv", b"x,y [cm]\n0,0\n30,.8\n70,.4\n100,0\n", *edits)
+    assert found == PLACES
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (b"0,0\n1,1\n2,0\n", "'0,0' in p.csv, row 1; allowed: a header with the columns x and y"),
+        (b"x [ft],y\n0,0\n", "'x [ft],y' in p.csv, row 1"),
+        (b"", "'' in p.csv, row 1"),
+        (b"x,y\n0,0\n\n1,a\n", "'a' in p.csv, row 4, column y; allowed: a finite number with a decimal point"),
+        (b"x;y\n0;0\n1,5;2\n", "'1,5' in p.csv, row 3, column x"),
+        (b"x,y\n0,0\n1\n", "'' in p.csv, row 3, column y"),
+        (b"x,y\n0,nan\n", "'nan' in p.csv, row 2, column y"),
+        (b"x,y\n0,0\n1,1e400\n", "'1e400' in p.csv, row 3, column y"),
+        (b"x,y\n0,0\n1,1\n", "at least 3 of them"),
+        (b"\xff\xfe", "p.csv', which cannot be read (no text in UTF-8)"),
+        (b"x,y\n" + b"0,0\n" * 300_000, "'p.csv', a longer file; allowed: at most 1 MB"),
+    ],
+)
+def test_a_wrong_table_is_named_with_row_and_column(tmp_path, text, words):
+    mistake = through_a_table(tmp_path / "p.csv", text)
+    assert mistake.key == "beams.lower.curve.points"
+    assert words in str(mistake)
+    missing = through_a_table(tmp_path / "p.csv", text, ("beams/lower/curve/points", "q.csv"))
+    assert "q.csv', which is no file" in missing.found
+
+
+def test_a_named_free_end_is_a_weld_to_a_body_of_one_point():
+    by_hand = two_lines(0.01)
+    by_hand["bodies"]["T-body"] = {"motion": "free", "points": {"T": [0.1, 0.01]}}
+    by_hand["beams"]["upper"]["end"] = {"joint": "weld", "point": "T"}
+    probe = {"of": "T", "quantity": "displacement"}
+    named = edited(("beams/upper/end/point", "T"), ("probes/1", probe), base=two_lines(0.01))
+    assert scene_from(named) == scene_from(edited(("probes/1", probe), base=by_hand))
+    found = mistakes(("bodies/T-body", by_hand["bodies"]["T-body"]), base=named)
+    assert "another body with the name 'T-body'" in found["beams.upper.end.point"]
+    asked = ("probes/0", {"of": "upper", "quantity": "displacement"})
+    assert "end = { joint = 'free', point = 'NAME' }" in mistakes(asked, base=two_lines(0.01))["probes[0]"]
+
+
+def test_a_fixed_body_without_points_has_a_point_at_its_edge():
+    edge = {"kind": "beam-circle", "beam": "lower", "body": "wall", "center": [0.05, -0.02], "radius": 0.01}
+    data = edited(("bodies/wall", {"motion": "fixed"}), ("contacts/edge", edge), base=two_lines(0.01))
+    assert scene_from(data).bodies["wall"].points == {"wall-point": (0.05, -0.02)}
+    assert scene_from(edited(("contacts", {}), base=data)).bodies["wall"].points == {"wall-point": (0.0, 0.0)}
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "words"),
+    [
+        ("loads/M/kind", "gravity", "is 'distributed' meant?"),
+        ("gravity", 9.81, "is a load of kind 'distributed' meant?"),
+        ("beams/beam1/weight", 1.0, "is a load of kind 'distributed' meant?"),
+        ("contacts/contact/friction_coefficient", 0.3, "friction_coefficient is not modelled"),
+        ("materials/abs/yield_stress", 4e7, "yield_stress is not modelled"),
+        ("loads/M/kind", "temperature", "temperature is not modelled"),
+    ],
+)
+def test_a_word_of_another_program_is_answered_by_meaning(path, value, words):
+    assert any(words in sentence for sentence in mistakes((path, value)).values())
+
+
+@pytest.mark.parametrize(
+    ("edits", "words"),
+    [
+        # reference: M L/(E I) of the hinge is 4.3 with its 2.3 GPa and 0.67 N m, a million times as much with 2.1 kPa
+        ([("materials/abs/youngs_modulus", 2.1e3)], "Is a stress in MPa written as Pa?"),
+        ([("materials/abs/youngs_modulus", 2.1)], "Is a stress in GPa written as Pa?"),
+        ([("stages/0/stations", [670000.0]), ("claims", []), ("stages/0/shown", [])], "Is a force in uN written as N?"),
+    ],
+)
+def test_an_implausible_load_has_a_note_with_the_mix_up_of_units(edits, words):
+    (note,) = notes(scene_from(edited(*edits)))
+    assert note.startswith("loads.M: M L/(E I) is ")
+    assert note.endswith(words)
+    assert not list(notes(scene_from(HINGE)))
+
+
+def test_a_thickness_above_the_radius_is_refused_with_its_place():
+    bowl = {"kind": "polynomial", "axis": "x", "coefficients": [0.0, -4.0, 40.0], "range": [0.0, 0.1]}
+    found = mistakes(
+        ("beams/lower/curve", bowl), ("beams/lower/thickness", 0.0126), ("contacts", {}), base=two_lines(1.0)
+    )
+    assert (
+        "half of which is 0.504 of the radius of curvature at 0.5 of the length, near (0.05, -0.1) m"
+        in (found["beams.lower.thickness"])
+    )
+    found = mistakes(("beams/beam1/thickness", 2.0))["beams.beam1.thickness"]
+    assert "(in mm in place of m, or in um in place of mm?)" in found
