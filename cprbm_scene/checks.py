@@ -7,12 +7,11 @@ from dataclasses import replace
 from itertools import chain
 
 from cprbm_scene.actions import wrong_actions
-from cprbm_scene.check_overlaps import overlapping_beams, overlapping_themselves, repeated_contacts
-from cprbm_scene.check_rigid import overlapping_rigid_shapes
+from cprbm_scene.clearance import wrong_clearance
 from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
 from cprbm_scene.mistakes import Mistake, first_of
 from cprbm_scene.mobility import wrong_mobility
-from cprbm_scene.names import records, repeated_names, unknown_names
+from cprbm_scene.names import records, repeated_contacts, repeated_names, unknown_names
 from cprbm_scene.offset import OffsetQuestion
 from cprbm_scene.questions import wrong_claims, wrong_probes, wrong_spacings, wrong_stages
 from cprbm_scene.record import Record
@@ -30,7 +29,6 @@ def broken_rules(root: Record) -> Iterator[Mistake]:
 _CHECKS = (
     repeated_names,
     unknown_names,
-    overlapping_themselves,
     distant_ends,
     wrong_assembly,
     wrong_stops,
@@ -38,8 +36,7 @@ _CHECKS = (
     wrong_actions,
     repeated_contacts,
     wrong_spacings,
-    overlapping_beams,
-    overlapping_rigid_shapes,
+    wrong_clearance,
     wrong_stages,
     wrong_probes,
     wrong_claims,

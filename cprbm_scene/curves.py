@@ -139,7 +139,7 @@ class ParametricCurve:
     @cached_property
     def largest_curvature(self) -> float:
         """Largest absolute curvature, 1/m."""
-        return -least(lambda w: -self._bend(w), self.samples)
+        return -least(lambda w: -self._bend(w), self.samples)[0]
 
     def derivative(self, w: Array, order: int) -> Array:
         """Derivatives (n, 2) of the place by the parameter, m, at parameters ``w`` (n,)."""
@@ -247,23 +247,31 @@ def unit_vector(direction: Point) -> Array:
     return np.asarray(e / hypot(*e))
 
 
-def least(function: Callable[[Array], Array], samples: Array) -> float:
-    """Least value of a function (n,) -> (n,) between ``samples`` (n,), ascending, refined beside the lowest of them."""
+def least(
+    function: Callable[[Array], Array], samples: Array, refined_below: float = float("inf")
+) -> tuple[float, float]:
+    """Least value of a function (n,) -> (n,), and the place, between ``samples`` (n,), ascending.
+
+    The lowest sampled minima are refined if the least is below a bound.
+    """
     from scipy.optimize import minimize_scalar  # scenes of lines and arcs alone need no SciPy
 
     values = function(samples)
     fence = np.pad(values, 1, constant_values=np.inf)
     minima = np.flatnonzero((values <= fence[:-2]) & (values <= fence[2:]))
-    found = [float(np.min(values))]
+    found = [(float(np.min(values)), float(samples[np.argmin(values)]))]
+    if found[0][0] > refined_below:
+        return found[0]
     for i in minima[np.argsort(values[minima], kind="stable")[:_LOWEST]]:
-        beside = (float(samples[max(i - 1, 0)]), float(samples[min(i + 1, len(samples) - 1)]))
+        # the tolerance of the place is a share of the variable: the variable is zero at the sample
+        beside = samples[max(i - 1, 0)] - samples[i], samples[min(i + 1, len(samples) - 1)] - samples[i]
         refined = minimize_scalar(
-            lambda place: float(function(np.array([place]))[0]),
+            lambda aside, i=i: float(function(samples[[i]] + aside)[0]),
             bounds=beside,
             method="bounded",
             options={"xatol": _PLACE},
         )
-        found.append(float(refined.fun))
+        found.append((float(refined.fun), float(samples[i] + refined.x)))
     return min(found)
 
 

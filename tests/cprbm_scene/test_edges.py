@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from cprbm_scene import FunctionContact, HalfPlaneContact, LineContact, SceneError, scene_from
-from cprbm_scene.check_rigid import distance_from
+from cprbm_scene.edges import distance_from
 from cprbm_scene.statement import CircleContact, EllipseContact, SplineContact
 from tests.cprbm_scene.editing import REMOVED, edited, mistakes
 
