@@ -64,7 +64,7 @@ from cprbm_scene.contact_records import (
 )
 from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake
+from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.parameters import Parameter, Tolerance, register
 from cprbm_scene.question_records import CRITICAL, STRESSES, UNITS, Claim, Probe, Quantity, Stage
 from cprbm_scene.record import Name, Named, Of, Record, Text, Title
@@ -179,9 +179,12 @@ class Scene(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """Pairs of the same name."""
-        for i, pair in enumerate(self.may_cross):
-            if pair[0] == pair[1]:
-                yield Mistake(f"may_cross[{i}]", f"{pair[0]!r} twice", "two different names")
+        return broken(
+            *(
+                (one == other, f"may_cross[{i}]", f"{one!r} twice", "two different names")
+                for i, (one, other) in enumerate(self.may_cross)
+            )
+        )
 
     @field_validator("units", "parameters", "loads", "drives", "stages", "probes")
     @classmethod
