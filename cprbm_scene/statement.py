@@ -1,7 +1,7 @@
 """The problem statement: immutable records in SI units, angles in radians; a file may state other units.
 
 Every record refuses unknown keys, NaN and infinity, and states the rules between the fields.  Rules between records
-(a beam's end meets a body's point, a load acts on a movable body) are in :mod:`cprbm_scene.checks`.
+(a beam's end meets a body's point, a load acts on a movable body) are in :mod:`cprbm_scene.reading`.
 
 Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a new record with another ``kind`` (or
 ``joint``, or ``motion``).

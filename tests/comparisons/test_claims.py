@@ -13,7 +13,7 @@ from comparisons.pairing import paired
 from comparisons.verdict.rows import Row
 from cprbm_scene import Claim, Probe
 from cprbm_scene.answer import frozen_array
-from cprbm_scene.checks import mistakes_in
+from cprbm_scene.reading import mistakes_in
 
 
 def row(value, reference, *, station=1.0, quantity="reaction", scale=100.0):
