@@ -23,25 +23,17 @@ use the reaction.
 
 from __future__ import annotations
 
-import gc
-import logging
 import os
-import signal
-import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
-from multiprocessing import Pipe
-from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from pydantic import ValidationError
 
 from comparisons.choices import KINEMATICS, Choices, Kinematics, check
-from comparisons.listening import heard_from, listen
-from comparisons.processes import AloneError, deaf, pool
+from comparisons.crew import ALONE, Crew, Job, Solver
 from comparisons.reactions import perturbed_scene
 from cprbm_scene import Answer, Ending, Mistake, RigidContact, Scene, SceneError, Spacing
 from cprbm_scene.answer import Array
@@ -51,18 +43,11 @@ from cprbm_scene.statement import BodyLoad, Curve, Spline
 if TYPE_CHECKING:
     from comparisons.verdict.uncertainty import Error
 
-_SAYS = logging.getLogger(__name__)
-
-Solver = Callable[[Scene, Choices], Answer]
 Prepared = Callable[[], Answer]
-Job = tuple[Solver, Scene, Choices]
 Planned = str | tuple[Kinematics, bool]
 
 Uncertainties: TypeAlias = "Mapping[tuple[str, float, str], Error]"
 """Stated uncertainties by stage, station and probe."""
-
-COLLECTED = (50_000, 20, 100)
-"""Thresholds of the garbage collector of a worker: new objects, and collections of the younger generations."""
 
 PAPER_BESIDE_AUTO = 160
 """Largest number of links per beam of a run in ``paper`` beside ``auto``: the time grows with the cube of N."""
@@ -235,6 +220,12 @@ def solvers_of(planted: object, *, exact: bool | None = None) -> Solvers:
     return replace(solvers, exact=None) if exact is False else solvers
 
 
+def load_solvers() -> None:
+    """Load both solvers here, so that forked workers have both loaded."""
+    import cprbm  # noqa: F401
+    import fea_reference  # noqa: F401
+
+
 def workers_for(planted: object) -> int:
     """Number of processes for the runs; planted solvers stay in this process."""
     return 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
@@ -305,105 +296,6 @@ class Runs:
             yield "cprbm beside", self.beside
         if self.fea_beside is not None:
             yield f"fea {self.kinematics} beside", self.fea_beside
-
-
-@dataclass(frozen=True, slots=True)
-class Crew:
-    """Processes for the runs of one case after the other; without a pool all runs stay in this process."""
-
-    pool: ProcessPoolExecutor | None = None
-
-    def answers(self, jobs: list[Job]) -> list[Answer]:
-        """The answers to jobs, in the order of the jobs.
-
-        Raises:
-            SceneError: a solver refuses a job.
-        """
-        return self.begin(jobs)()
-
-    def begin(self, jobs: list[Job], decided: Decided = lambda *first: False) -> Callable[[], list[Answer]]:
-        """A function that waits for the answers to jobs, which the processes begin with now, behind earlier jobs.
-
-        The function returns and raises as :meth:`answers`.  Where the answers to the first two jobs are ``decided``, it
-        returns these two alone, and cancels the other jobs.  Without a pool the work begins with the call.
-        """
-        if self.pool is None:
-            return lambda: _one_by_one(jobs, decided)
-        # The finest runs take longest and stand last: begun right behind the first two jobs, they leave no worker idle.
-        places = [*range(len(jobs))[:2], *reversed(range(len(jobs))[2:])]
-        with deaf():  # until the workers are prepared
-            futures: dict[_Pending, int] = {self.pool.submit(_job, *jobs[place]): place for place in places}
-        return lambda: _awaited(futures, decided)
-
-
-_Pending = Future[Answer | tuple[Mistake, ...]]
-Decided = Callable[[Answer, Answer], bool]
-"""Whether the answers to the first two jobs make the other jobs useless."""
-
-
-def _one_by_one(jobs: Sequence[Job], decided: Decided) -> list[Answer]:
-    """The answers, in this process."""
-    answers: list[Answer] = []
-    for solver, scene, choices in jobs:
-        answers.append(solver(scene, choices))
-        _done(answers[-1], len(answers), len(jobs))
-        if len(answers) == 2 and decided(*answers):
-            break
-    return answers
-
-
-def _done(answer: Answer, done: int, whole: int) -> None:
-    """Log that a run is done, with the number of runs done, of ``whole``."""
-    report = answer.scene, done, whole, answer.solver, answer.ending.name, answer.seconds
-    _SAYS.info("%s: run %d of %d is done: %s, %s after %.2f s", *report, extra={"done": done, "whole": whole})
-
-
-def _awaited(futures: Mapping[_Pending, int], decided: Decided) -> list[Answer]:
-    """The answers in the order of the places; the first refusal cancels the other jobs."""
-    answers: dict[int, Answer] = {}
-    try:
-        for future in as_completed(futures):
-            result = future.result()
-            if isinstance(result, tuple):
-                raise SceneError(result)
-            answers[futures[future]] = result
-            _done(result, len(answers), len(futures))
-            if futures[future] < 2 and {0, 1} <= answers.keys() and decided(answers[0], answers[1]):
-                return [answers[0], answers[1]]
-    finally:
-        for future in futures:
-            future.cancel()
-    return [answers[place] for place in range(len(futures))]
-
-
-ALONE = Crew()
-
-
-@contextmanager
-def crew_of(workers: int) -> Iterator[Crew]:
-    """A crew of worker processes, which end with the context; a crew of one worker is this process itself.
-
-    The workers end at once, whatever they still solve.  Where the system permits no further process, this process does
-    all the work.
-    """
-    if workers <= 1:
-        yield ALONE
-        return
-    listening, held = Pipe(duplex=False)
-    try:
-        shared = pool(workers, _prepared_worker, listening, heard_from())
-    except AloneError as alone:
-        _SAYS.info("one process does all of the work: %s", alone)
-        listening.close()
-        held.close()
-        yield ALONE
-        return
-    try:
-        yield Crew(shared)
-    finally:
-        held.close()  # the workers end, whatever they still solve
-        shared.shutdown(cancel_futures=True)
-        listening.close()
 
 
 def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE, *, bare: bool = False) -> Runs:
@@ -527,34 +419,6 @@ def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
         return solvers.cprbm(scene, replace(choices, formulation="paper"))
     except SceneError:  # too few links for the polynomial; no requested value depends on the run
         return None
-
-
-def _job(solver: Solver, scene: Scene, choices: Choices) -> Answer | tuple[Mistake, ...]:
-    """The answer, or the mistakes as plain records, since pickle rebuilds an exception from the text alone."""
-    try:
-        return solver(scene, choices)
-    except SceneError as error:
-        return error.mistakes
-
-
-def _prepared_worker(listening: Connection, heard: int) -> None:
-    """Prepare a worker: interrupts end it without a message, log records reach the main process from level ``heard``.
-
-    The worker ends as soon as the main process, the only owner, closes the other end of ``listening``.  The garbage
-    collector runs less often and skips loaded modules: the records of a load path are many and make no cycles.
-    """
-    listen(heard)
-    gc.freeze()
-    gc.set_threshold(*COLLECTED)
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    threading.Thread(target=_end_with, args=(listening,), daemon=True).start()
-
-
-def _end_with(listening: Connection) -> None:
-    """End this process as soon as the main process has closed the pipe."""
-    with suppress(EOFError, OSError):
-        listening.recv_bytes()
-    os._exit(1)
 
 
 @contextmanager

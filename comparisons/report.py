@@ -6,20 +6,17 @@ In the folder: ``index.html``; and per case ``comparison.json`` (as documented f
 
 from __future__ import annotations
 
-import gzip
 from dataclasses import dataclass
 from pathlib import Path
 
-from comparisons import archive, documents, figures, offset_drawn, offset_pages, paths_drawn, reactions_drawn, sheets
+from comparisons import documents, figures, offset_drawn, offset_pages, paths_drawn, reactions_drawn, sheets
 from comparisons.case import Comparison, Verdict
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.rendering import Embedded, embedded, rendered
 from comparisons.sheet import Sheet
+from comparisons.store import packed_json
 from comparisons.writing import write
 from cprbm_scene import Question
-
-_COMPRESSION = 4
-"""Level of gzip: level 6 takes 2.5 times as long for two per cent."""
 
 _DRAWN = (figures, paths_drawn, reactions_drawn)
 """The modules that draw a comparison, in the order of the page."""
@@ -105,8 +102,7 @@ def _archive(own: Path, compared: Comparison) -> None:
     runs = compared.runs
     beside = (("cprbm paper", runs.paper), ("cprbm perturbed", runs.perturbed), ("exact", runs.exact))
     answers = {**dict(runs.everything()), **{name: answer for name, answer in beside if answer is not None}}
-    # without a time in the header the same answers give the same bytes
-    write(own / "answers.json.gz", gzip.compress(archive.text(answers).encode("utf-8"), _COMPRESSION, mtime=0))
+    write(own / "answers.json.gz", packed_json(answers))
     write(own / "comparison.json", documents.text({"cases": [documents.comparison(compared)]}))
 
 

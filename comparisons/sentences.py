@@ -108,6 +108,8 @@ def critical_sentence(scene: Scene, row: CriticalRow) -> str:
         apart, theory, own, stated, allowed = (distance_text(scene, size, row.unit) for size in sizes)
         parts += f", {apart} apart and {theory} by theory; within one theory {own} against a stated {stated}, "
         parts += f"{allowed} allowed"
+    elif row.ended_before:
+        parts += ", and the run without it ended before that load"
     elif not row.steady:
         parts += ", and runs of one solver disagree; refine both: `-n` and `--elements` twice as large"
     if row.turned:

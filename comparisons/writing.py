@@ -1,50 +1,44 @@
-"""Files that are either whole or not there, written beside their place and moved into it."""
+"""Files that are whole or absent, also after a kill or a loss of power."""
 
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterable
 from pathlib import Path
+from uuid import uuid4
 
 _PARTIAL = ".partial"
 
 
 def write(path: Path, content: str | bytes) -> None:
-    """Write a file in one step, making its folder where it is missing.
+    """Write a file in one step: beside its place, to the disk, and then into its place; a missing folder is made.
 
     Raises:
         OSError: the folder cannot be made or written to; the error names the file.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=_PARTIAL)
-        temporary = Path(name)
+        temporary = path.with_name(f".{path.name}.{uuid4().hex}{_PARTIAL}")
         try:
-            with os.fdopen(handle, "wb") as stream:
+            with os.fdopen(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666), "wb") as stream:
                 stream.write(content.encode("utf-8") if isinstance(content, str) else content)
-            temporary.chmod(0o666 & ~_umask())
+                stream.flush()
+                os.fsync(stream.fileno())
             temporary.replace(path)
         finally:
             temporary.unlink(missing_ok=True)
     except OSError as error:
-        # that of a full disk names no file, and that of the file beside it would name one nobody has asked for
+        # the error of a full disk names no file, and another error names the temporary file
         error.filename, error.filename2 = str(path), None
         raise
 
 
 def clear_partial(folders: Iterable[Path]) -> None:
-    """Remove from some folders what a process left beside its place that was killed as it wrote.
+    """Remove from ``folders`` the temporary files of killed processes.
 
     Raises:
-        OSError: one cannot be removed.
+        OSError: a file cannot be removed.
     """
     for folder in folders:
         for partial in folder.glob(f".*{_PARTIAL}"):
             partial.unlink(missing_ok=True)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -63,7 +63,8 @@ class Settings(BaseModel):
             SceneError: a beam has no number, a number has no beam, a number is too small, or the scene
                 requires more.
         """
-        refuse(scene, "the CPRBM", "overlap at rest", *(() if scene.contacts else ("theory",)))
+        of_paper = bool(scene.contacts) and self.formulation == "paper"
+        refuse(scene, "the CPRBM", "overlap at rest", *(() if of_paper else ("theory", "edge")))
         named: Mapping[str, int] = dict.fromkeys(scene.beams, self.links) if isinstance(self.links, int) else self.links
         known, fewest = " or ".join(scene.beams), f"at least {FEWEST_LINKS} elements per beam"
         wrong = [(beam, "no such beam", known) for beam in named if beam not in scene.beams]

@@ -1,7 +1,7 @@
 """From a scene to an answer.
 
-A scene without contacts is answered by the second edition (:mod:`cprbm.results.stations`), in every theory.  A scene
-with contacts is answered by the first edition (:mod:`cprbm.march`), in bending.
+The second edition (:mod:`cprbm.results.stations`) answers in every theory.  Contacts in the formulation ``paper`` are
+answered by the first edition (:mod:`cprbm.march`), in bending.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def prepared(scene: Scene, settings: Settings | None = None) -> Prepared | Run:
     began = time.perf_counter()
     settings = settings or Settings()
     settings.check(scene)
-    if not scene.contacts:
+    if not scene.contacts or settings.formulation == "auto":
         from cprbm.results.stations import Run  # Numba and its kernels take 0.4 s to load
 
         return Run(scene, settings)

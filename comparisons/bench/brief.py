@@ -5,7 +5,7 @@ Seconds are the processor's, since a report is made on machines that have other 
 
 from __future__ import annotations
 
-from comparisons import machine
+from comparisons import provenance
 from comparisons.bench import contenders, errors, question, running
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers
@@ -32,7 +32,7 @@ def measured(scene: Scene, timed: Solvers, knowing: Solvers) -> running.Benchmar
     asked = question.asked(scene)
     plan = running.Plan(frozendict(dict.fromkeys(contenders.OURS, SIZES)), repeat=REPEAT, at_most=AT_MOST, clock="cpu")
     taking_part = contenders.contenders(timed, Choices(kinematics=plan.kinematics))
-    session = running.Session(asked, plan, taking_part, machine.described(), running.CLOCKS[plan.clock])
+    session = running.Session(asked, plan, taking_part, provenance.machine(), running.CLOCKS[plan.clock])
     for job in session.jobs():
         session.do(job)
     return session.done(errors.reference(asked, knowing))

@@ -11,7 +11,8 @@ from typing import Any, Literal
 
 from comparisons.choices import Choices, Count
 from comparisons.converging.families import at
-from comparisons.pairing import Solver, Solvers, prepared
+from comparisons.crew import Solver
+from comparisons.pairing import Solvers, prepared
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.pairing import Solver
+from comparisons.crew import Solver
 from cprbm_scene import Answer, Scene
 
 Method = Literal["cprbm", "fea"]

@@ -8,7 +8,7 @@ from comparisons.budgets.parts import Budget, budgets_of
 from comparisons.budgets.poisson import ClaimedRatio, claimed_ratios, rerun, with_ratio
 from comparisons.budgets.runs import BudgetRuns, budgeted
 from comparisons.choices import Choices
-from comparisons.memory import Remembering
+from comparisons.store import AnswerMemory
 from comparisons.verdict.completeness import problems
 from cprbm_scene import Scene
 
@@ -36,7 +36,7 @@ class Account:
     silent: str = ""
 
 
-def accounted(scene: Scene, choices: Choices, memory: Remembering) -> Account:
+def accounted(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
     """Run what an error budget needs, and draw it up.
 
     Args:

@@ -19,8 +19,8 @@ from dataclasses import dataclass, replace
 from itertools import islice
 
 from comparisons.choices import KINEMATICS, Choices, Kinematics, check
-from comparisons.memory import Remembering
 from comparisons.pairing import in_paper
+from comparisons.store import AnswerMemory
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -77,7 +77,7 @@ class BudgetRuns:
                 yield f"fea {kinematics} at {times} n", answer
 
 
-def budgeted(scene: Scene, choices: Choices, memory: Remembering) -> BudgetRuns:
+def budgeted(scene: Scene, choices: Choices, memory: AnswerMemory) -> BudgetRuns:
     """Run both solvers on a scene as often as its error budget needs.
 
     Args:

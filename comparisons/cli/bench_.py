@@ -128,7 +128,7 @@ def command(
     The numbers of links and elements grow.
     Exit code 1 means an incomplete run of a solver of this project.
     """
-    from comparisons import cases, machine
+    from comparisons import cases, provenance
     from comparisons.bench import contenders, errors, question, running, tables
     from comparisons.choices import Choices, check
     from comparisons.cli import output
@@ -163,7 +163,7 @@ def command(
         whole,
         clock,
     )
-    session = running.Session(scene, plan, taking, machine.described(), running.CLOCKS[clock], absent=absent)
+    session = running.Session(scene, plan, taking, provenance.machine(), running.CLOCKS[clock], absent=absent)
     output.room_for(json_file, out)
     with output.current(shown=not quiet) as say:
         say("reference of the errors")

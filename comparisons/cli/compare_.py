@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
+from comparisons import logs
 from comparisons.choices import Kinematics
 from comparisons.cli.completion import candidates
 from comparisons.cli.options import (
@@ -24,15 +25,15 @@ from comparisons.cli.options import (
     refuse_sizes_with,
     settings,
 )
-from comparisons.listening import heard_from
 
 if TYPE_CHECKING:
     from comparisons.case import Comparison
     from comparisons.choices import Choices
     from comparisons.cli.output import Steps
+    from comparisons.crew import Crew
     from comparisons.documents import Plain
     from comparisons.offset_verdict import OffsetComparison
-    from comparisons.pairing import Crew, Runs, Solvers
+    from comparisons.pairing import Runs, Solvers
     from comparisons.tolerances.search import Tolerance
     from cprbm_scene import Question
 
@@ -75,8 +76,8 @@ def command(
     from comparisons.choices import Choices, check
     from comparisons.cli import output
     from comparisons.cli.questions import read_questions
-    from comparisons.pairing import crew_of, solvers_of, with_solid, workers_for
-    from comparisons.resuming import resumed
+    from comparisons.pairing import solvers_of, with_solid, workers_for
+    from comparisons.store import run_into
     from cprbm_scene import OffsetQuestion
 
     refuse_sizes_with(tol)
@@ -94,22 +95,22 @@ def command(
     finished: list[Comparison | OffsetComparison] = []
     chapters: tuple[report.Chapter, ...] = ()
     names = tuple(scene.name for scene in scenes)
-    with resumed(out, taking_part, names) as whole, crew_of(workers_for(planted)) as crew:
+    with run_into(out, taking_part, names, workers_for(planted)) as run:
         # with a tolerance a status line with N replaces the bar
         steps = output.progress(scenes, shown=not quiet and tol is None, noun="case")
-        for comparison in _compared(steps, choices, tol, whole.solvers, crew, shown=not quiet):
+        for comparison in _compared(steps, choices, tol, run.solvers, run.crew, shown=not quiet):
             finished.append(comparison)
             if out is not None:
                 chapters = (*chapters, report.added(out, comparison))
-            whole.tells(names[len(finished) - 1])
-            if whole.caught_up(names[: len(finished)]):
+            run.mark_shown(names[len(finished) - 1])
+            if run.covers(names[: len(finished)]):
                 if out is not None:
                     report.put_page(out, chapters)
                 if json_file is not None and printing:
                     output.json(json_file, {"cases": [_document(comparison) for comparison in finished]})
             steps.clear()
             if printing:
-                _show(comparison, scenes[len(finished) - 1], quiet=quiet, full=heard_from() != NOTSET)
+                _show(comparison, scenes[len(finished) - 1], quiet=quiet, full=logs.level() != NOTSET)
     if json_file is not None and not printing:
         output.json(json_file, {"cases": [_document(comparison) for comparison in finished]})
     _export(finished, csv_file, plot_file)

@@ -59,8 +59,8 @@ def command(
     from comparisons.cli.questions import read_questions
     from comparisons.converging import report
     from comparisons.converging.results import result_of
-    from comparisons.pairing import crew_of, solvers_of, with_solid, workers_for
-    from comparisons.resuming import resumed
+    from comparisons.pairing import solvers_of, with_solid, workers_for
+    from comparisons.store import run_into
 
     wanted = read_questions(arguments)
     if out is None and "all" in arguments:
@@ -72,15 +72,15 @@ def command(
     finished: list[ConvergenceResult] = []
     chapters: tuple[report.Chapter, ...] = ()
     names = tuple(question.name for question in wanted)
-    with resumed(out, taking_part, names) as whole, crew_of(workers_for(planted)) as crew:
+    with run_into(out, taking_part, names, workers_for(planted)) as run:
         steps = output.progress(wanted, shown=not quiet, share=0.8)
         for place, question in enumerate(steps):
-            result = result_of(question, sizes, choices, whole.solvers, crew)
+            result = result_of(question, sizes, choices, run.solvers, run.crew)
             finished.append(result)
             if out is not None:
                 chapters = (*chapters, report.added(out, result))
-            whole.tells(question.name)
-            if whole.caught_up(names[: place + 1]):
+            run.mark_shown(question.name)
+            if run.covers(names[: place + 1]):
                 if out is not None:
                     report.put_page(out, chapters)
                 if json_file is not None and printing:

@@ -19,7 +19,7 @@ def command(quiet: bool) -> int:  # noqa: FBT001 - click passes a keyword
     """
     import platform
 
-    from comparisons.processes import trouble as trouble_beside
+    from comparisons.executor import obstacle
     from comparisons.starting.present import looked_for
     from comparisons.starting.system import WHAT_DRAWS, line_for
 
@@ -45,7 +45,7 @@ def command(quiet: bool) -> int:  # noqa: FBT001 - click passes a keyword
             click.echo(f"{library.name:<14} {said}")
     if quiet:
         return 0 if whole else INCOMPLETE
-    alone = trouble_beside()
+    alone = obstacle()
     said = f"{'single':<12} process for all work: {alone}" if alone else f"{'several':<12} can share the work"
     click.echo(f"{'processes':<14} {said}")
     if drawing and not alone:

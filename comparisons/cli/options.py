@@ -206,10 +206,10 @@ def sized(command: Decorated) -> Decorated:
 def _listen(ctx: click.Context, param: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's form
     """Print the log of the solvers on standard error."""
     if value:
-        from comparisons.listening import listen, silence
+        from comparisons import logs
 
-        listen(logging.INFO)
-        ctx.call_on_close(silence)
+        logs.print_from(logging.INFO)
+        ctx.call_on_close(lambda: logs.print_from(logging.NOTSET))
 
 
 def verbose(command: Decorated) -> Decorated:

@@ -13,8 +13,9 @@ from typing import Generic, TypeVar
 
 import click
 
+from comparisons import logs
 from comparisons.documents import Plain, text
-from comparisons.listening import RUNS, SOLVERS, heard_from, steps_of
+from comparisons.logs import RUNS, SOLVERS, steps_from
 from comparisons.sheet import Sheet
 
 T = TypeVar("T")
@@ -77,7 +78,7 @@ class Steps(Generic[T]):
                 return
             self._bar = bar
             rounds = Rounds(self.share)
-            with steps_of(self.within, lambda done, whole: bar.move(rounds.at(done, whole))):
+            with steps_from(self.within, lambda done, whole: bar.move(rounds.at(done, whole))):
                 for item in self.items:
                     bar.move(rounds.next_item())
                     yield item
@@ -130,7 +131,7 @@ def stations(*, shown: bool) -> Iterator[None]:
         if bar is None:
             yield
             return
-        with steps_of(SOLVERS, lambda done, whole: bar.move(done / whole)):
+        with steps_from(SOLVERS, lambda done, whole: bar.move(done / whole)):
             yield
 
 
@@ -156,7 +157,7 @@ def _bar(whole: int, noun: str = "", *, shown: bool) -> Iterator[Bar | None]:
     There is no bar outside a terminal, with ``--verbose``, and with ``--quiet``.  The bar has no thread, so that the
     program may still fork processes.
     """
-    if not shown or not sys.stderr.isatty() or heard_from() != NOTSET:
+    if not shown or not sys.stderr.isatty() or logs.level() != NOTSET:
         yield None
         return
     from rich.console import Console
@@ -197,7 +198,7 @@ def _bar(whole: int, noun: str = "", *, shown: bool) -> Iterator[Bar | None]:
 @contextmanager
 def current(*, shown: bool) -> Iterator[Callable[[str], None]]:
     """Context with a status line on standard error on a terminal, if ``shown``; call the value with the text."""
-    if not shown or not sys.stderr.isatty() or heard_from() != NOTSET:
+    if not shown or not sys.stderr.isatty() or logs.level() != NOTSET:
         yield lambda text: None
         return
     from rich.console import Console

@@ -52,14 +52,14 @@ def command(
     The page opens without a network. Without a scene the report covers all built-in cases. Finished parts are taken
     from the folder, and an interrupted run goes on. Exit code 0 means a written report, with any verdict.
     """
-    from comparisons import machine
+    from comparisons import provenance
     from comparisons.choices import Choices, check
     from comparisons.cli import output
     from comparisons.cli.questions import read_questions
-    from comparisons.pairing import begin, crew_of, solvers_of, workers_for
+    from comparisons.pairing import begin, solvers_of, workers_for
     from comparisons.reporting import folder as put
     from comparisons.reporting.gathering import Wanted, gathered, has_table, table
-    from comparisons.resuming import resumed
+    from comparisons.store import run_into
     from cprbm_scene import OffsetQuestion
 
     wanted = read_questions(arguments or ("all",))
@@ -70,7 +70,7 @@ def command(
     out = out or Path("full-report")
     output.room_for(json_file, out)
     parts = Wanted(choices, () if "convergence" in without else sizes, times="times" not in without)
-    made_on = machine.made_on()
+    made_on = provenance.page_origin()
     made_of = f"{parts!r}, exact={exact}"  # chapters with other parts are written anew
     chapters: dict[str, Chapter] = {}
     for question in wanted:
@@ -87,17 +87,17 @@ def command(
         return [chapters[name] for name in ordered if name in chapters]
 
     solvers = solvers_of(planted, exact=exact)
-    with resumed(out, solvers, ordered) as whole, crew_of(workers_for(planted)) as crew:
+    with run_into(out, solvers, ordered, workers_for(planted)) as run:
 
         def begun(place: int) -> Callable[[], Runs] | None:
             question = missing[place] if place < len(missing) else None
             if question is None or isinstance(question, OffsetQuestion):
                 return None
-            return begin(question, choices, whole.solvers, crew)
+            return begin(question, choices, run.solvers, run.crew)
 
         pending = begun(0)
         for place, question in enumerate(output.progress(missing, shown=not quiet)):
-            found = gathered(question, pending, parts, whole.solvers, solvers, crew)
+            found = gathered(question, pending, parts, run.solvers, solvers, run.crew)
             # solve the next case during the drawings, but not during the measurement of run times
             pending = begun(place + 1)
             chapters[question.name] = put.added(out, question, made_of, found)

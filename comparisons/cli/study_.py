@@ -55,8 +55,8 @@ def calibration(
 ) -> int:
     """Compare stated and true errors on every case with an exact answer."""
     from comparisons.cli import output
-    from comparisons.pairing import crew_of, solvers_of, workers_for
-    from comparisons.resuming import resumed
+    from comparisons.pairing import solvers_of, workers_for
+    from comparisons.store import run_into
     from comparisons.studies import calibration as study
     from comparisons.studies.calibration_result import result_of
     from comparisons.verdict.words import Word
@@ -64,11 +64,11 @@ def calibration(
     output.room_for(json_file, out)
     show = StudyOutput(json_file, out, quiet)
     pieces = output.progress(study.pieces(), shown=not quiet)
-    with resumed(out, solvers_of(planted), ()) as whole, crew_of(workers_for(planted)) as crew:
+    with run_into(out, solvers_of(planted), processes=workers_for(planted)) as run:
         found = run_steps(
             study.Calibration(),
             pieces,
-            lambda found, piece: study.with_piece(found, piece, whole.solvers, crew),
+            lambda found, piece: study.with_piece(found, piece, run.solvers, run.crew),
             result_of,
             show,
         )
@@ -89,7 +89,7 @@ def table1(
     out: Path | None,
 ) -> int:
     """Time both solvers at the paper's discretisations, beside the paper's Table 1."""
-    from comparisons import machine
+    from comparisons import provenance
     from comparisons.cli import output
     from comparisons.pairing import solvers_of
     from comparisons.studies import table1 as study
@@ -99,7 +99,7 @@ def table1(
     solvers = solvers_of(planted)
     show = StudyOutput(json_file, out, quiet)
     runs = output.progress(study.runs(repeat), shown=not quiet)
-    begun = study.begun(solvers, machine.described())
+    begun = study.begun(solvers, provenance.machine())
     found = run_steps(begun, runs, lambda found, run: study.solved(found, run, solvers, at_most), result_of, show)
     return 1 if found.unfinished else 0
 

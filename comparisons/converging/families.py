@@ -26,7 +26,8 @@ from typing import Literal
 import numpy as np
 
 from comparisons.choices import Choices, Kinematics
-from comparisons.pairing import Crew, Job, Solvers, exact_or_why
+from comparisons.crew import Crew, Job
+from comparisons.pairing import Solvers, exact_or_why
 from comparisons.quantities import COMPONENTS, OPEN_AT_ZERO, arc_lengths, norm, unit_of
 from comparisons.stations import station_of
 from comparisons.verdict.completeness import problems

@@ -12,8 +12,9 @@ from comparisons.converging import drawn, offset
 from comparisons.converging import tables as numbers
 from comparisons.converging.families import converged
 from comparisons.converging.report import ConvergenceResult
-from comparisons.memory import Remembering
-from comparisons.pairing import Crew, Solvers
+from comparisons.crew import Crew
+from comparisons.pairing import Solvers
+from comparisons.store import AnswerMemory
 from comparisons.thinning import at_shown
 from cprbm_scene import OffsetQuestion, Question
 
@@ -36,7 +37,7 @@ def result_of(
     if isinstance(question, OffsetQuestion):
         return offset.result_of(question, sizes, solvers.offset)
     question = at_shown(question)
-    memory = Remembering(pool=crew.pool, solvers=solvers)
+    memory = AnswerMemory(pool=crew.pool, solvers=solvers)
     found = converged(question, sizes, choices, solvers, memory)
     n = numbers.shown_size(found)
     account = accounted(question, replace(choices, links=n, elements=2 * n), memory)

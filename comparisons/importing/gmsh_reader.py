@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from comparisons.executor import WorkerDiedError, call_fresh
 from comparisons.importing.drawing import Drawing, DrawnCurve
-from comparisons.processes import ByForceError, beside
 from cprbm_scene.answer import Array
 from cprbm_scene.mistakes import Mistake, SceneError
 
@@ -28,8 +28,8 @@ def read(path: Path) -> Drawing:
         SceneError: gmsh refuses the file.
     """
     try:
-        found = beside(_read, str(path))
-    except ByForceError:
+        found = call_fresh(_read, str(path))
+    except WorkerDiedError:
         found = "a file that ends gmsh by force"
     if isinstance(found, str):
         raise SceneError([Mistake("", found, "a .geo, .step or .msh file that gmsh reads", str(path))])

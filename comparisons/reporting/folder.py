@@ -10,11 +10,11 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
-from hashlib import sha256
 from pathlib import Path
+from typing import TypeVar
 
 from pydantic import TypeAdapter, ValidationError
+from pydantic_core import to_json
 
 from comparisons import documents, report
 from comparisons.bench import drawn as bench_drawn
@@ -24,36 +24,25 @@ from comparisons.documents import Plain
 from comparisons.rendering import rendered, script
 from comparisons.reporting.chapters import Chapter, Found, Section, chapter, section_of
 from comparisons.reporting.inlined import letters_of
-from comparisons.sources import program
+from comparisons.store import digest
 from comparisons.studies.result import StudyResult
 from comparisons.writing import write
 from cprbm_scene import Question
+
+T = TypeVar("T")
 
 _CHAPTER = "chapter.json"
 _TABLE = "table1-section.json"
 
 
-@dataclass(frozen=True, slots=True)
-class _Kept:
-    """A chapter, and the digest of all that it hangs on."""
-
-    key: str
-    chapter: Chapter
-
-
 def key(question: Question, wanted: str) -> str:
-    """The digest of what a chapter hangs on; ``wanted`` says which parts, and how finely."""
-    asked = (question.model_dump_json(exclude={"file"}), wanted, program())
-    return sha256("\n".join(asked).encode()).hexdigest()
+    """Digest of all that a chapter depends on; ``wanted`` states which parts, and how finely."""
+    return digest(question.model_dump_json(exclude={"file"}), wanted)
 
 
 def kept(folder: Path, question: Question, wanted: str) -> Chapter | None:
-    """A question's chapter, if the folder has it and all that it hangs on is the same."""
-    with suppress(FileNotFoundError, ValidationError):
-        found = TypeAdapter(_Kept).validate_json((folder / question.name / _CHAPTER).read_bytes())
-        if found.key == key(question, wanted):
-            return found.chapter
-    return None
+    """The chapter of a question, if the folder has the chapter and its key is the same."""
+    return _read_kept(folder / question.name / _CHAPTER, Chapter, key(question, wanted))
 
 
 def added(folder: Path, question: Question, wanted: str, found: Found) -> Chapter:
@@ -73,25 +62,13 @@ def added(folder: Path, question: Question, wanted: str, found: Found) -> Chapte
     made = chapter(found)
     write(own / "scene.toml", made.scene)
     # the last of all files, for where it is, all are
-    write(own / _CHAPTER, TypeAdapter(_Kept).dump_json(_Kept(key(question, wanted), made)))
+    _keep(own / _CHAPTER, made, key(question, wanted))
     return made
-
-
-@dataclass(frozen=True, slots=True)
-class _KeptTable:
-    """Section of the paper's Table 1, with the digest of its sources."""
-
-    key: str
-    section: Section
 
 
 def kept_table(folder: Path, made_on: Mapping[str, str | int]) -> Section | None:
     """The paper's Table 1 beside ours, if the folder has it and the program and the machine are the same."""
-    with suppress(FileNotFoundError, ValidationError):
-        found = TypeAdapter(_KeptTable).validate_json((folder / _TABLE).read_bytes())
-        if found.key == _of_machine(made_on):
-            return found.section
-    return None
+    return _read_kept(folder / _TABLE, Section, _of_machine(made_on))
 
 
 def added_table(folder: Path, result: StudyResult, made_on: Mapping[str, str | int]) -> Section:
@@ -104,12 +81,24 @@ def added_table(folder: Path, result: StudyResult, made_on: Mapping[str, str | i
     for picture in result.pictures:
         report.put_picture(folder, picture)
     made = section_of(result)
-    write(folder / _TABLE, TypeAdapter(_KeptTable).dump_json(_KeptTable(_of_machine(made_on), made)))
+    _keep(folder / _TABLE, made, _of_machine(made_on))
     return made
 
 
 def _of_machine(made_on: Mapping[str, str | int]) -> str:
-    return sha256(f"{sorted(made_on.items())} {program()}".encode()).hexdigest()
+    return digest(str(sorted(made_on.items())))
+
+
+def _read_kept(path: Path, kind: type[T], key: str) -> T | None:
+    """The record in a file, if the key of the record is the same."""
+    with suppress(FileNotFoundError, ValidationError):
+        found, record = TypeAdapter(tuple[str, kind]).validate_json(path.read_bytes())  # type: ignore[valid-type]
+        return record if found == key else None
+    return None
+
+
+def _keep(path: Path, record: Chapter | Section, key: str) -> None:
+    write(path, to_json((key, record)))
 
 
 def put_page(

@@ -12,9 +12,10 @@ from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
 from comparisons.converging.report import ConvergenceResult
 from comparisons.converging.results import result_of
+from comparisons.crew import Crew
 from comparisons.figures import Picture
 from comparisons.offset_verdict import OffsetComparison, compared_offset
-from comparisons.pairing import Crew, Runs, Solvers, paired
+from comparisons.pairing import Runs, Solvers, paired
 from comparisons.reporting.chapters import Found
 from comparisons.studies import table1, table1_result
 from comparisons.studies.result import StudyResult

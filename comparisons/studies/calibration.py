@@ -11,7 +11,8 @@ from dataclasses import dataclass, field, replace
 from comparisons import cases
 from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
-from comparisons.pairing import ALONE, Crew, Solvers, exact_answer, paired
+from comparisons.crew import ALONE, Crew
+from comparisons.pairing import Solvers, exact_answer, paired
 from comparisons.verdict.calibration import SOLVERS, ErrorRatio, Solver, Tally, error_ratios, tally
 from comparisons.verdict.completeness import complete_part
 from cprbm_scene import Answer, Scene

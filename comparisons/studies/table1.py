@@ -15,7 +15,8 @@ from typing import Literal
 from comparisons import cases
 from comparisons.bench.timing import Method, middle, quartiles_apart, timed
 from comparisons.choices import Choices, Count
-from comparisons.pairing import Solver, Solvers
+from comparisons.crew import Solver
+from comparisons.pairing import Solvers
 from comparisons.studies.last_loads import at_last_loads
 from cprbm_scene import Answer, Ending, Scene, SceneError
 from cprbm_scene.frozendict import frozendict

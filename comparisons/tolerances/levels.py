@@ -11,8 +11,9 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 from comparisons.choices import Choices, Kinematics
-from comparisons.memory import Remembering
-from comparisons.pairing import Runs, Solver, may_be_uneven
+from comparisons.crew import Solver
+from comparisons.pairing import Runs, may_be_uneven
+from comparisons.store import AnswerMemory
 from comparisons.tolerances.search import FIRST, Estimate, Stated
 from comparisons.tolerances.settled import Settled, settled
 from comparisons.verdict.completeness import problems
@@ -41,7 +42,7 @@ class SceneLevels:
     solver: Solver
     base: Choices
     theories: tuple[Kinematics, ...]
-    memory: Remembering
+    memory: AnswerMemory
     beside: bool
     reference: Answer | None = None
 

@@ -26,11 +26,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.memory import Remembering
-from comparisons.pairing import Runs, Solver
+from comparisons.crew import Solver
+from comparisons.pairing import Runs
 from comparisons.quantities import norm
 from comparisons.solid_limits import solid_limit
 from comparisons.stations import station_of
+from comparisons.store import AnswerMemory
 from comparisons.tolerances.search import Estimate, Stated, Tolerance
 from comparisons.tolerances.settled import extrapolation_note
 from comparisons.verdict.completeness import problems
@@ -61,7 +62,7 @@ def meshed(
     solver: Solver,
     choices: Choices,
     tolerance: float,
-    memory: Remembering,
+    memory: AnswerMemory,
     rows: Sequence[Row] | None = None,
 ) -> Meshed:
     """Refine until every row's stated uncertainty is within a tolerance, or no finer mesh is allowed.

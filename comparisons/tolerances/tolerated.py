@@ -13,9 +13,10 @@ from typing import Literal
 
 from comparisons.bench.timing import LARGEST, Method
 from comparisons.choices import KINEMATICS, Choices, Kinematics
-from comparisons.memory import Remembering
-from comparisons.pairing import Crew, Runs, Solvers, Uncertainties, known_exactly, paired, with_solid
+from comparisons.crew import Crew
+from comparisons.pairing import Runs, Solvers, Uncertainties, known_exactly, paired, with_solid
 from comparisons.reactions import perturbed_scene
+from comparisons.store import AnswerMemory
 from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.search import Found, Tolerance, search
 from comparisons.tolerances.settled import Settled
@@ -69,9 +70,9 @@ def solved(
     if solver == "solid":
         solvers = with_solid(solvers)
         assert solvers.solid is not None
-        found = meshed(scene, solvers.solid, choices, tolerance, Remembering(solvers=solvers, say=say))
+        found = meshed(scene, solvers.solid, choices, tolerance, AnswerMemory(solvers=solvers, say=say))
         return settled(scene, found.answers), found.reached
-    memory = Remembering(solvers=solvers, say=say)
+    memory = AnswerMemory(solvers=solvers, say=say)
     theory: Kinematics = choices.kinematics if solver == "fea" else "bending"
     reached = _reached(scene, solver, choices, (theory,), tolerance, memory, None)
     return reached.value(theory), _tolerance(reached, solver, tolerance)
@@ -87,7 +88,7 @@ def paired_within(
     Raises:
         SceneError: a solver refuses the question.
     """
-    memory = Remembering(pool=crew.pool, solvers=solvers, say=say)
+    memory = AnswerMemory(pool=crew.pool, solvers=solvers, say=say)
     runs, reached = _both_within(scene, choices, tolerance, replace(solvers, solid=None), memory)
     if solvers.solid is None:
         return runs, reached
@@ -98,7 +99,7 @@ def paired_within(
 
 
 def _both_within(
-    scene: Scene, choices: Choices, tolerance: float, solvers: Solvers, memory: Remembering
+    scene: Scene, choices: Choices, tolerance: float, solvers: Solvers, memory: AnswerMemory
 ) -> tuple[Runs, tuple[Tolerance, Tolerance]]:
     theories: tuple[Kinematics, ...] = tuple(dict.fromkeys(("bending", choices.kinematics)))
     fea = _reached(scene, "fea", choices, theories, tolerance, memory, None)
@@ -133,7 +134,7 @@ def _reached(
     choices: Choices,
     theories: tuple[Kinematics, ...],
     tolerance: float,
-    memory: Remembering,
+    memory: AnswerMemory,
     reference: Answer | None,
 ) -> _Reached:
     is_cprbm = solver == "cprbm"

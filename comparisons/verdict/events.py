@@ -12,7 +12,8 @@ W       ``verdict_limit`` of the scene times the span of the stage
 
 A critical point
 
-* differs if a solver lacks it, if the mechanisms differ, or if |λ_c − λ_b| > max(T, U_b);
+* is undecided if a solver lacks it, since the run ended early before the load;
+* differs if a solver lacks it otherwise, if the mechanisms differ, or if |λ_c − λ_b| > max(T, U_b);
 * is undecided if runs of one solver disagree, or max(U − θ, U_b) > T, or U > max(T, W);
 * agrees otherwise.
 
@@ -47,6 +48,7 @@ class CriticalRow:
         cprbm, fea: the solvers' critical points; None where a solver has none.
         span: of the stage; allowed: T; largest: W.
         steady: whether all runs of each solver have it by one mechanism, or none has.
+        ended_before: whether a run without the critical point ended early before the load.
         difference, same_theory: distances of λ_c from λ_f and from λ_b; NaN where a run lacks it.
         bounds: U and U_b; None where a run lacks it.
         turned: rotation of the state that a run went on to, rad, by name of the run that passed the point.
@@ -61,6 +63,7 @@ class CriticalRow:
     allowed: float
     largest: float
     steady: bool
+    ended_before: bool = False
     difference: float = math.nan
     same_theory: float = math.nan
     bounds: Bounds | None = None
@@ -71,6 +74,8 @@ class CriticalRow:
         """Word and reason of the critical point."""
         if not self.steady:
             return Word.UNDECIDED, Reason.BRANCH
+        if self.ended_before:
+            return Word.UNDECIDED, Reason.RUN_ENDED
         if self.cprbm is None or self.fea is None or mechanism(self.cprbm) != mechanism(self.fea):
             return Word.DIFFER, Reason.EVENTS
         if self.bounds is None:
@@ -193,6 +198,7 @@ def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str,
         allowed=event_tolerance(table.scene, stage),
         largest=table.scene.verdict_limit * span,
         steady=not disagree_within_a_solver(mechanisms),
+        ended_before=_ended_before(table, here[first], here[second]),
     )
     present = {name: one for name, one in here.items() if one is not None}
     if len(present) < len(here):
@@ -203,6 +209,18 @@ def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str,
     )
     difference, same_theory, bounds = _on_load_axis(table, {name: one.value for name, one in present.items()}, located)
     return replace(row, difference=difference, same_theory=same_theory, bounds=bounds)
+
+
+def _ended_before(table: RunsTable, cprbm: Critical | None, fea: Critical | None) -> bool:
+    """Whether the compared run without the critical point ended early, and has no station behind the point."""
+    known = cprbm or fea
+    if known is None or None not in (cprbm, fea):
+        return False
+    name, answer = (table.compared[1], table.pair[0]) if fea is None else (table.compared[0], table.pair[1])
+    if name in table.following or known not in answer.critical:
+        return False
+    before = sum(station.branch <= answer.critical.index(known) for station in answer.stations)
+    return len(table.stations[name]) <= before
 
 
 def closing_rows(table: RunsTable) -> tuple[ClosingRow, ...]:

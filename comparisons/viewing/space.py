@@ -13,7 +13,7 @@ from typing import ParamSpec, TypeVar
 
 import numpy as np
 
-from comparisons.processes import ByForceError, beside
+from comparisons.executor import WorkerDiedError, call_fresh
 from comparisons.viewing.frames import COLOURS, TINY, Bounds, Coloured
 from comparisons.viewing.solids import Block
 from cprbm_scene.answer import Array
@@ -61,8 +61,8 @@ def apart(draws: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
         DrawingError: the process was ended by force.
     """
     try:
-        return beside(_silent, draws, arguments, named)
-    except ByForceError:
+        return call_fresh(_silent, draws, arguments, named)
+    except WorkerDiedError:
         raise DrawingError("VTK ended as it began to draw") from None
 
 

@@ -32,6 +32,9 @@ from cprbm_scene.statement import BeamForce, BeamMoment, Force, Load, Moment
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(2)
 """Exact for the cubic weights of one link."""
 
+HIDDEN_REACH = 4.0
+"""Distance of two places, in links, from which the chain has all of the flexibility: weights reach two links."""
+
 
 def load_row(m: Mechanism, name: str, load: Load) -> Row:
     """Row of a load."""
@@ -115,6 +118,16 @@ def hidden_flexibility(m: Mechanism) -> Array:
         for j, other in loads:
             if one.beam == other.beam:
                 hidden[i, j] = _exact(m.chains[one.beam], one, other) - _shown(m.chains[one.beam], one, other)
+    return hidden
+
+
+def hidden_angles(chain: BeamChain, s: Array, load: UnitLoad) -> Array:
+    """Angles (k,) of the sections at arc lengths ``s`` under a unit load, less the angles of the chain."""
+    hidden = np.zeros(len(s))
+    near = np.flatnonzero(np.abs(s - load.at) < HIDDEN_REACH * chain.link_length.max())
+    for k, links, weights in zip(near, *chain.angle_weights(s[near]), strict=True):
+        turned = _unit_moment(chain, float(s[k]), links, weights)
+        hidden[k] = _exact(chain, turned, load) - _shown(chain, turned, load)
     return hidden
 
 

@@ -1,12 +1,11 @@
 """Contact of curves: geometry, gaps with derivatives, places, pairs of a scene.
 
-The solver does not call the package yet; :mod:`cprbm.equilibrium.contact_points` and tests do.
-
 * :mod:`cprbm.contact.curve`: pieces, linear in the positions of nodes;
 * :mod:`cprbm.contact.compliance`: compliance lost by a chain under a point force;
 * :mod:`cprbm.contact.closest`: points, closest points, boxes; :mod:`cprbm.contact.gap`: gap and derivatives;
 * :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
 * :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.own_pin`, :mod:`cprbm.contact.candidates`: contacts of a scene.
+* :mod:`cprbm.contact.contacts`: places and closed set of a state.
 """
 
 from cprbm.contact.candidates import (
@@ -18,8 +17,22 @@ from cprbm.contact.candidates import (
     sides_at_rest,
     taken,
 )
+from cprbm.contact.closest import curve_point, lost_at
+from cprbm.contact.contacts import TOUCHING, Contacts, open_contacts, touching_as_drawn
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
-from cprbm.contact.gap import COUPLING, GRADIENT, LOCAL, SHIFT, TANGENT, TURN, Places, Row, gap_row, local_indices
+from cprbm.contact.gap import (
+    COUPLING,
+    GRADIENT,
+    LOCAL,
+    SHIFT,
+    TANGENT,
+    TURN,
+    Places,
+    Row,
+    gap_frame,
+    gap_row,
+    local_indices,
+)
 from cprbm.contact.pairs import Pair
 from cprbm.contact.settling import (
     BOX_TESTS,
@@ -44,7 +57,9 @@ __all__ = [
     "SHIFT",
     "STENCIL",
     "TANGENT",
+    "TOUCHING",
     "TURN",
+    "Contacts",
     "Curve",
     "CurveArrays",
     "Frames",
@@ -56,17 +71,22 @@ __all__ = [
     "choose_sides",
     "contact_geometry",
     "curve_arrays",
+    "curve_point",
     "find_feet",
     "fixed_places",
+    "gap_frame",
     "gap_row",
     "joined",
     "local_indices",
+    "lost_at",
     "may_move",
     "move_places",
     "near_pairs",
     "new_counters",
+    "open_contacts",
     "separations",
     "settle",
     "sides_at_rest",
     "taken",
+    "touching_as_drawn",
 ]

@@ -8,7 +8,7 @@ Fixed places are the joints and ends of the first curve, and the ends of a secon
 * A place may move everywhere but in an end link held by the body of the foot.
 
 The side of two beams is the side at the least distance as drawn.  In self-contact a place lies before the foot, so
-that no gap counts twice.
+that no gap counts twice; only the beam's end is a place as well.
 """
 
 from __future__ import annotations
@@ -86,7 +86,9 @@ def joined(places: Places, others: Places) -> Places:
     return Places._make(np.concatenate(columns) for columns in zip(places, others, strict=True))
 
 
-def fixed_places(geometry: Geometry, z: Array, sides: Array, near: Flags, counters: Ints) -> Places:
+def fixed_places(
+    geometry: Geometry, z: Array, sides: Array, near: Flags, counters: Ints, *, welds: bool = False
+) -> Places:
     """Fixed places of the pairs marked ``near`` (pairs,), at the nearest feet.
 
     Args:
@@ -95,6 +97,7 @@ def fixed_places(geometry: Geometry, z: Array, sides: Array, near: Flags, counte
         sides: side of the first curve over the second and of the second over the first (pairs, 2); 0 for a beam itself.
         near: pairs that may touch.
         counters: count the searches.
+        welds: whether ends at a weld on the rigid body of the foot are places.
     """
     mine = near[geometry.possible.pair]
     places, node, arrays = taken(geometry.possible, mine), geometry.node[mine], geometry.arrays
@@ -105,9 +108,10 @@ def fixed_places(geometry: Geometry, z: Array, sides: Array, near: Flags, counte
     start, end = _on_end_bodies(geometry, places)
     before, behind = node, arrays.last[places.curve] - arrays.first[places.curve] + 1 - node
     itself = places.curve == places.other
-    kept = ~(start & (before == 0)) & ~(end & (behind == 0))
-    kept &= np.isfinite(distance) & ~(itself & (places.foot < places.piece))
     welded = geometry.ends.welded[places.curve]
+    kept_welds = welded & (welds & geometry.ends.rigid[places.other])[:, None]
+    held = (start & (before == 0) & ~kept_welds[:, 0]) | (end & (behind == 0) & ~kept_welds[:, 1])
+    kept = ~held & np.isfinite(distance) & ~(itself & (places.foot < places.piece) & (behind > 0))
     places.shares[(before == 1) & start & welded[:, 0]] = 1
     places.shares[(behind == 1) & end & welded[:, 1]] = -1
     return taken(places, kept)

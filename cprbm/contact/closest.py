@@ -5,7 +5,7 @@ symbol     meaning
 =========  =====================================================================================
 C(η)       point of a curve, with local parameter η on a piece; C', C'' by η
 x          point whose closest point is sought
-R          distance |x − C|
+R          distance |x − C|, negative beyond the curve
 T(η)       half thickness; a point contact with the force F on a beam counts as T − F c/2, :mod:`cprbm.contact.gap`
 =========  =====================================================================================
 
@@ -126,11 +126,21 @@ def is_corner(
 
 @compiled
 def closest_point(
-    z: Array, curves: CurveArrays, curve: int, x: float, y: float, piece: int, eta: float, force: float, weights: Array
+    z: Array,
+    curves: CurveArrays,
+    curve: int,
+    x: float,
+    y: float,
+    piece: int,
+    eta: float,
+    force: float,
+    side: float,
+    weights: Array,
 ) -> tuple[int, float, bool]:  # pragma: no cover
     """Closest point on a curve near a first guess: piece, parameter, True at an end, a corner or a circle's centre.
 
-    ``force`` is F of a point contact, 0 otherwise; ``weights`` (2, STENCIL) is scratch space.
+    ``force`` is F of a point contact, 0 otherwise; ``weights`` (2, STENCIL) is scratch space.  R is negative for a
+    point beyond the curve, seen from ``side``.
     """
     rests = curves.is_point[curve]
     if rests:
@@ -141,6 +151,8 @@ def closest_point(
         kx, ky = curve_point(z, curves, piece, eta, 2, weights)
         px, py = px - x, py - y
         R, square = hypot(px, py), tx * tx + ty * ty
+        if side * (ty * px - tx * py) < 0.0:
+            R = -R
         slope = px * tx + py * ty - R * (curves.thickening[piece] - 0.5 * force * lost_at(curves, piece, eta, 1))
         curvature = square + px * kx + py * ky + 0.5 * R * force * lost_at(curves, piece, eta, 2)
         step = -slope / (curvature if curvature > LEAST_CURVATURE * square else square)

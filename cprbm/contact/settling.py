@@ -87,8 +87,9 @@ def settle(
         for _ in range(max(steps, 1)):
             x, y = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights[0])
             force = places.force[k] if places.moves[k] else 0.0
+            foot, eta, side = places.foot[k], places.eta[k], places.side[k]
             places.foot[k], places.eta[k], places.at_point[k] = closest_point(
-                z, curves, places.other[k], x, y, places.foot[k], places.eta[k], force, weights[0]
+                z, curves, places.other[k], x, y, foot, eta, force, side, weights[0]
             )
             if is_unturned(z, curves, places, k):
                 break

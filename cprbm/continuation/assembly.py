@@ -13,10 +13,12 @@ from dataclasses import replace
 import numpy as np
 
 from cprbm.chain import apart_ends, stop_angle
+from cprbm.continuation.closing import drawn_names, pressing_names
 from cprbm.continuation.driver import Driver, StepError
 from cprbm.continuation.path import Way
-from cprbm.equilibrium.newton import NotConvergedError, equilibrium
+from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.rank import repeated_rows
+from cprbm.equilibrium.solving import equilibrium
 from cprbm.equilibrium.system import State, System, rest_state
 from cprbm.settings import Settings
 from cprbm_scene import Ending, Mistake, SceneError
@@ -40,11 +42,11 @@ def assembled(system: System, settings: Settings) -> Driver:
         first = equilibrium(system, state, settings.iterations)
     except NotConvergedError as failure:
         raise StepError(Ending.STEP_TOO_SMALL, f"no equilibrium as drawn: {failure}") from failure
-    driver = Driver(system, settings, first, np.zeros(len(loose), dtype=bool))
+    driver = Driver(system, settings, first, np.zeros(len(loose), dtype=bool), drawn=drawn_names(system, state))
     scene = system.mechanism.scene
     if scene.assembly is not None:
         _assemble(system, driver, loose, scene.assembly.moments)
-    driver.acting = system.limits
+    driver.acting, driver.touching = system.limits, driver.drawn | pressing_names(driver.solved)
     return driver
 
 

@@ -9,8 +9,8 @@ t_c      fraction of the way at the critical point
 =======  ====================================================================================
 
 At a fold the branch turns back: τ grows along φ, and κ² is linear in t_c − t.  At a bifurcation another branch
-crosses: τ has no part in φ, and κ is linear in t_c − t.  After the opening of a stop the state may be no minimum: κ is
-positive just before, and the moment of the stop vanishes.
+crosses: τ has no part in φ, and κ is linear in t_c − t.  After the opening of a stop or a contact the state may be no
+minimum: κ is positive just before, and the moment or the force vanishes.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm.continuation.closing import pair_force, pressing, without
 from cprbm.continuation.path import Reached, tangent
 from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.stability import Mode, softest
@@ -44,10 +45,11 @@ class CriticalPoint:
 
     Attributes:
         t, width: fraction of the way, and the width of its bracket.
-        loss, what: how stability is lost, and of which stop.
+        loss, what: how stability is lost, and of which stop or contact.
         last: the last minimum.
         mode: smallest curvature there, and the mode in which stability is lost.
-        left: smallest curvature once a stop holds no more; of a fold or a bifurcation the curvature itself.
+        start: the state from which the energy falls: the last minimum, or the state after an opening.
+        left: smallest curvature once a stop or contact holds no more; of a fold or a bifurcation the curvature itself.
     """
 
     t: float
@@ -55,6 +57,7 @@ class CriticalPoint:
     loss: Loss
     what: str
     last: Solved
+    start: Solved
     mode: Mode
     left: float
 
@@ -64,11 +67,38 @@ class CriticalPoint:
         return f"{self.loss.value} ('{self.what}')" if self.what else self.loss.value
 
 
-def opened_stop(before: Solved, after: Solved, t: float, what: str) -> CriticalPoint:
-    """Critical point at an opening stop, with the states before and after."""
-    mode = softest(after.factors)
-    kept = softest(before.factors).curvature
-    return CriticalPoint(t, 0.0, Loss.STOP, what, before, Mode(kept, mode.change), mode.curvature)
+def opened(before: Solved, after: Solved, t: float, loss: Loss, what: str, width: float = 0.0) -> CriticalPoint:
+    """Critical point at an opening stop or contact, with the states before and after."""
+    mode = softest(after)
+    kept = softest(before).curvature
+    return CriticalPoint(t, width, loss, what, before, after, Mode(kept, mode.change), mode.curvature)
+
+
+def contact_opens(trail: list[Reached], beyond: float) -> CriticalPoint | None:
+    """The opening of a contact without which the last minimum is none, from the decrease of the force; or None.
+
+    Args:
+        trail: last minima on the branch in order.
+        beyond: fraction of the way at which no minimum was found that continues the branch.
+    """
+    last, width = trail[-1], beyond - trail[-1].t
+    geometry, earlier = last.solved.system.geometry, _earlier(trail, width)
+    if geometry is None or earlier is None:
+        return None
+    for pair in sorted(pressing(last.solved)):
+        now, before = pair_force(last.solved, pair), pair_force(earlier.solved, pair)
+        zero = last.t + now * (last.t - earlier.t) / (before - now) if now < before else np.inf
+        if zero - last.t <= NEAR * width:
+            after = without(last.solved, pair)
+            if after.lost:
+                return opened(last.solved, after, zero, Loss.CONTACT, geometry.pairs[pair].name, width)
+    return None
+
+
+def _earlier(trail: list[Reached], width: float) -> Reached | None:
+    """An earlier minimum some widths of the bracket away, else the first; None without any."""
+    earlier = next((one for one in reversed(trail) if trail[-1].t - one.t >= APART * width), None)
+    return earlier or (trail[0] if len(trail) > 1 else None)
 
 
 def critical_point(trail: list[Reached], beyond: float, change: Array) -> CriticalPoint | None:
@@ -80,21 +110,20 @@ def critical_point(trail: list[Reached], beyond: float, change: Array) -> Critic
         change: of the targets on the whole way.
     """
     last, width = trail[-1], beyond - trail[-1].t
-    mode = softest(last.solved.factors)
-    earlier = next((one for one in reversed(trail) if last.t - one.t >= APART * width), None)
-    earlier = earlier or (trail[0] if len(trail) > 1 else None)
+    mode = softest(last.solved)
+    earlier = _earlier(trail, width)
     fold = _along(last.solved, mode, change) > FOLDING
     if earlier is None:
         return None
     power = 2.0 if fold else 1.0
-    now, before = mode.curvature**power, softest(earlier.solved.factors).curvature ** power
+    now, before = mode.curvature**power, softest(earlier.solved).curvature ** power
     if not now < before < np.inf:
         return None
     zero = last.t + now * (last.t - earlier.t) / (before - now)
     if not zero - last.t <= NEAR * width:
         return None
     loss = Loss.FOLD if fold else Loss.BIFURCATION
-    return CriticalPoint(zero, width, loss, "", last.solved, mode, mode.curvature)
+    return CriticalPoint(zero, width, loss, "", last.solved, last.solved, mode, mode.curvature)
 
 
 def _along(solved: Solved, mode: Mode, change: Array) -> float:

@@ -78,11 +78,11 @@ def descend(system: System, saddle: Solved, mode: Mode, target: Array, acting: F
         if (moved < NEAR and moved <= last) or moved < STILL:
             found = _step(system, state, 0.0, acting, iterations)
             near = found is not None and _moved(system, state, found.state) < LONGEST
-            if found is not None and near and found.factors.lost == 0:
+            if found is not None and near and found.lost == 0:
                 return found
             if found is not None and near and kicks < KICKS:
                 kicks += 1
-                state, strength = _kicked(system, found.state, softest(found.factors), acting, iterations)
+                state, strength = _kicked(system, found.state, softest(found), acting, iterations)
                 energy, last = potential(system, state), 0.0
                 continue
             if moved < STILL:

@@ -21,18 +21,27 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from cprbm.continuation.critical import CriticalPoint, critical_point, opened_stop
+from cprbm.continuation.closing import (
+    ContactChange,
+    first_change,
+    kept_open,
+    may_close,
+    pair_name,
+    pressing_names,
+)
+from cprbm.continuation.critical import CriticalPoint, contact_opens, critical_point, opened
 from cprbm.continuation.descent import descend
 from cprbm.continuation.jumps import jumped
-from cprbm.continuation.limits import changed, first_event
+from cprbm.continuation.limits import StopChange, changed, first_event
 from cprbm.continuation.locking import ASKED, elongation, locked_beam, taut_value
 from cprbm.continuation.path import Reached, Way, turned, under
 from cprbm.equilibrium.certificate import certify
-from cprbm.equilibrium.newton import NotConvergedError, Solved, equilibrium
+from cprbm.equilibrium.newton import NotConvergedError, Solved
+from cprbm.equilibrium.solving import equilibrium
 from cprbm.equilibrium.stability import softest
 from cprbm.equilibrium.system import State, System
 from cprbm.settings import Settings
@@ -51,10 +60,14 @@ AHEAD = (0.01, 0.03, 0.1)
 ENDS = 10
 """Branches that may end between two stations."""
 
+ENDLESS = 4
+"""Changes of a stop or a contact without a step, per stop, after which the search ends."""
+
 TRAIL = 30
 """Minima that are kept."""
 
 Beyond = Literal["stop", "jump"] | None
+Change = StopChange | ContactChange | None
 
 
 class StepError(Exception):
@@ -75,6 +88,14 @@ class Passed:
     landed: Solved | None
 
 
+class ContactEvent(NamedTuple):
+    """Closing or opening of the contact ``name`` at a ``value`` (SI) of the stepped load or drive."""
+
+    name: str
+    value: float
+    closes: bool
+
+
 @dataclass(eq=False)
 class Driver:
     """Load stepping of a system.
@@ -86,6 +107,9 @@ class Driver:
         reached: fraction of the way to the present station.
         spent: Newton iterations since the last station.
         passed: critical points on the way to the present station.
+        events: closings and openings of contacts on the way to the present station.
+        drawn: names of the contacts that touch as drawn.
+        touching: names of the contacts that press, and of those that touch as drawn.
     """
 
     system: System
@@ -95,6 +119,9 @@ class Driver:
     reached: float = 0.0
     spent: int = 0
     passed: list[Passed] = field(default_factory=list)
+    events: list[ContactEvent] = field(default_factory=list)
+    drawn: frozenset[str] = frozenset()
+    touching: frozenset[str] = frozenset()
 
     def follow(self, way: Way, beyond: Beyond = None) -> None:
         """Follow the equilibria along a way.
@@ -102,7 +129,7 @@ class Driver:
         Raises:
             StepError: no step leads to the end of the way.
         """
-        self.passed, self.reached = [], 0.0
+        self.passed, self.events, self.reached = [], [], 0.0
         trail = [Reached(0.0, self.solved)]
         step, events = 1.0, 0
         while self.reached < 1.0:
@@ -116,33 +143,31 @@ class Driver:
                     trail = self._ended(way, trail, t, beyond, trial)
                     step = max(step, AHEAD[0])
                 continue
-            at, solved, row = trial
+            at, solved, change = trial
             events = 0 if at > self.reached else events + 1
-            if events > 2 * len(self.acting):
-                raise StepError(Ending.STEP_TOO_SMALL, "stops close and open again without a step")
+            if events > ENDLESS * (1 + len(self.acting)):
+                raise StepError(Ending.STEP_TOO_SMALL, "stops or contacts close and open again without a step")
             step = 2.0 * (t - self.reached)
-            self._accept(at, solved, trail)
-            if row is not None:
-                trail = self._at_stop(way, at, row, trail, beyond)
+            self._accept(way, at, solved, trail)
+            if change is not None:
+                trail = self._changed(way, at, change, beyond)
 
-    def _trial(self, way: Way, t: float, *, careful: bool) -> tuple[float, Solved, int | None] | StepError:
-        """Fraction, state and stop's row at the end of the next step, or why there is none."""
+    def _trial(self, way: Way, t: float, *, careful: bool) -> tuple[float, Solved, Change] | StepError:
+        """Fraction and state at the end of the next step, and the change there, or why there is no step."""
         begin = self.reached
-        state = under(self.solved.state, way.target(t))
         largest = min(CAREFUL_TURN, self.settings.largest_turn) if careful else self.settings.largest_turn
 
-        def solve(share: float) -> Solved:
-            target = way.target(begin + share * (t - begin))
-            return self._equilibrium(replace(state, target=self._held(target)))
+        def solve(share: float, pairs: frozenset[int] = frozenset()) -> Solved:
+            target = self._held(way.target(begin + share * (t - begin)))
+            return self._equilibrium(kept_open(under(self.solved.state, target), pairs))
 
         try:
             solved = solve(1.0)
-            event = first_event(self.solved, solved, self.acting, solve)
-            row, at = None, t
-            if event is not None:
-                share, row = event
-                at = begin + share * (t - begin)
-                solved = solve(share) if share else self.solved
+            change, at = self._first_event(solved, solve), t
+            if change is not None:
+                at = begin + change.share * (t - begin)
+                opened = change.pairs if isinstance(change, ContactChange) and change.closes else frozenset()
+                solved = solve(change.share, opened) if change.share else self.solved
         except (NotConvergedError, ValueError) as failure:
             return StepError(Ending.STEP_TOO_SMALL, str(failure))
         turn = turned(self.solved, solved)
@@ -153,7 +178,14 @@ class Driver:
             return StepError(ending, certificate.failures[0])
         if jumped(self.solved, solved, (at - begin) * self._moving(way)):
             return StepError(Ending.STEP_TOO_SMALL, "the links went another way than the path's tangents")
-        return at, solved, row
+        return at, solved, change
+
+    def _first_event(self, solved: Solved, solve: Callable[..., Solved]) -> Change:
+        """The first stop or contact that changes in a step; None without any."""
+        stop = first_event(self.solved, solved, self.acting, solve)
+        contact = first_change(self.solved, solved, solve)
+        found = [change for change in (stop, contact) if change is not None]
+        return min(found, key=lambda change: change.share, default=None)
 
     def _equilibrium(self, state: State) -> Solved:
         solved = equilibrium(self.system, state, self.settings.iterations)
@@ -167,25 +199,43 @@ class Driver:
     def _moving(self, way: Way) -> Array:
         return np.where(self.system.limits, 0.0, way.change)
 
-    def _accept(self, t: float, solved: Solved, trail: list[Reached]) -> None:
+    def _accept(self, way: Way, t: float, solved: Solved, trail: list[Reached]) -> None:
+        self._note(way, t, pressing_names(solved))
         self.reached, self.solved = t, solved
         trail.append(Reached(t, solved))
         del trail[:-TRAIL]
 
-    def _at_stop(self, way: Way, t: float, row: int, trail: list[Reached], beyond: Beyond) -> list[Reached]:
-        """Close or open a stop; the trail from there on.
+    def _note(self, way: Way, t: float, names: frozenset[str], *, opens: bool = True) -> None:
+        """Add the contacts that have closed or opened since the last state to the events."""
+        before, self.touching = self.touching, names | self.drawn
+        names = self.touching
+        self.events += [ContactEvent(name, way.value(t), closes=True) for name in sorted(names - before)]
+        if opens:
+            self.events += [ContactEvent(name, way.value(t), closes=False) for name in sorted(before - names)]
+
+    def _changed(self, way: Way, t: float, change: StopChange | ContactChange, beyond: Beyond) -> list[Reached]:
+        """Close or open a stop or contacts at the present state; the trail from there on.
 
         Raises:
             StepError: the branch ends there.
         """
-        before = self.solved
+        before, rows = self.solved, self.system.mechanism.rows
+        if isinstance(change, StopChange):
+            state = changed(before.state, change.row, self.system)
+            name = rows[change.row].name.rpartition(".")[0]
+        else:
+            state = kept_open(before.state, frozenset() if change.closes else change.pairs)
+            name = pair_name(self.system, min(change.pairs))
         try:
-            after = self._equilibrium(changed(before.state, row, self.system))
+            after = self._equilibrium(state)
         except NotConvergedError as failure:
-            raise StepError(Ending.STEP_TOO_SMALL, f"a stop changes and {failure}") from failure
-        if after.factors.lost:
-            stop = self.system.mechanism.rows[row].name.rpartition(".")[0]
-            return self._leave(way, opened_stop(before, after, t, stop), after, beyond)
+            raise StepError(Ending.STEP_TOO_SMALL, f"'{name}' closes or opens and {failure}") from failure
+        after = replace(after, state=may_close(after.state))
+        if after.lost:
+            loss = Loss.CONTACT if name in self.system.mechanism.scene.contacts else Loss.STOP
+            return self._leave(way, opened(before, after, t, loss, name), beyond)
+        names = pressing_names(after)
+        self._note(way, t, names | {name} if isinstance(change, ContactChange) and change.closes else names)
         self.solved = after
         return [Reached(t, after)]
 
@@ -195,10 +245,10 @@ class Driver:
         Raises:
             StepError: the solve ends.
         """
-        point = critical_point(trail, t, self._moving(way))
+        point = contact_opens(trail, t) or critical_point(trail, t, self._moving(way))
         if point is None:
             point = self._locked(way, t, trail, refused)
-        return self._leave(way, point, point.last, beyond)
+        return self._leave(way, point, beyond)
 
     def _locked(self, way: Way, t: float, trail: list[Reached], refused: StepError) -> CriticalPoint:
         """The bifurcation of a straight beam under shortening.
@@ -222,10 +272,10 @@ class Driver:
         if longer > 0.0:
             straight = f"beam '{beam}' is straight between its ends, and cannot become longer by bending"
             raise StepError(Ending.STEP_TOO_SMALL, straight)
-        mode = softest(solved.factors)
-        return CriticalPoint(self.reached, 0.0, Loss.BIFURCATION, "", solved, mode, mode.curvature)
+        mode = softest(solved)
+        return CriticalPoint(self.reached, 0.0, Loss.BIFURCATION, "", solved, solved, mode, mode.curvature)
 
-    def _leave(self, way: Way, point: CriticalPoint, start: Solved, beyond: Beyond) -> list[Reached]:
+    def _leave(self, way: Way, point: CriticalPoint, beyond: Beyond) -> list[Reached]:
         """Go down from a critical point to a minimum, if the stage goes on; the trail from there on.
 
         Raises:
@@ -239,10 +289,11 @@ class Driver:
         for ahead in AHEAD:
             t = min(1.0, furthest + ahead * max(0.0, 1.0 - furthest))
             target = self._held(way.target(t))
-            descent = partial(descend, self.system, start, point.mode, target, self.acting)
+            descent = partial(descend, self.system, point.start, point.mode, target, self.acting)
             landed = self._landed(descent, point, beside=beyond is None)
             if landed is not None:
                 self.passed.append(passed(landed))
+                self._note(way, t, pressing_names(landed), opens=False)
                 self.solved, self.reached = landed, t
                 return [Reached(t, landed)]
         self.passed.append(passed(None))

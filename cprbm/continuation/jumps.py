@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm.continuation.closing import touches
 from cprbm.continuation.path import potential, power, power_rate, tangent
 from cprbm.equilibrium.newton import Solved
 from cprbm_scene.answer import Array
@@ -27,6 +28,9 @@ BENT = 0.5
 MISSED = 0.25
 """Largest error of the quadrature, over half the change of the power in the step."""
 
+OUTSIDE = 1.1
+"""Largest distance of the mean power of a step from the mean of both ends, over half the change, with one tangent."""
+
 SMALLEST_TURN = 1e-4
 """Turn in a step, rad, below which tangents are not compared: such a step cannot lead to another branch."""
 
@@ -35,14 +39,22 @@ SMALLEST_WORK = 1e-9
 
 
 def jumped(before: Solved, after: Solved, change: Array) -> bool:
-    """True if a step between two minima, with a ``change`` of the targets, left the branch."""
+    """True if a step between two minima, with a ``change`` of the targets, left the branch.
+
+    Where open places touch at the first state, the tangent there is one-sided.  Then only the energy tells.
+    """
     system = before.system
     rates = tangent(before, change), tangent(after, change)
     angles = system.angles
     turn = after.state.z[angles] - before.state.z[angles]
     largest = float(np.abs(turn).max())
     mean = 0.5 * (rates[0][angles] + rates[1][angles])
-    if max(largest, float(np.abs(mean).max())) > SMALLEST_TURN and float(np.abs(turn - mean).max()) > BENT * largest:
+    one_sided = touches(before)
+    if (
+        not one_sided
+        and max(largest, float(np.abs(mean).max())) > SMALLEST_TURN
+        and float(np.abs(turn - mean).max()) > BENT * largest
+    ):
         return True
     powers = power(before, change), power(after, change)
     scale, spread = max(abs(powers[0]), abs(powers[1])), abs(powers[1] - powers[0])
@@ -50,4 +62,5 @@ def jumped(before: Solved, after: Solved, change: Array) -> bool:
         return False
     curved = power_rate(before, change, rates[0]) - power_rate(after, change, rates[1])
     gained = potential(system, after.state) - potential(system, before.state)
-    return abs(gained - 0.5 * (powers[0] + powers[1]) - curved / 12.0) > MISSED * 0.5 * spread
+    missed = gained - 0.5 * (powers[0] + powers[1])
+    return abs(missed) > OUTSIDE * 0.5 * spread if one_sided else abs(missed - curved / 12.0) > MISSED * 0.5 * spread

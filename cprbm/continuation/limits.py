@@ -14,11 +14,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from cprbm.equilibrium.factors import Springs
-from cprbm.equilibrium.newton import NotConvergedError, Solved, equilibrium
+from cprbm.equilibrium.newton import NotConvergedError, Solved
+from cprbm.equilibrium.solving import equilibrium
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
 
@@ -32,6 +34,13 @@ CHANGES = 20
 """Changes of the stops after which their search ends."""
 
 
+class StopChange(NamedTuple):
+    """A stop's ``row`` closes or opens at a fraction ``share`` of a step."""
+
+    share: float
+    row: int
+
+
 def event_values(solved: Solved, acting: Flags) -> Array:
     """e of all rows; infinite for all rows but acting stops."""
     state = solved.state
@@ -39,10 +48,8 @@ def event_values(solved: Solved, acting: Flags) -> Array:
     return np.where(solved.system.limits & acting, values, np.inf)
 
 
-def first_event(
-    before: Solved, after: Solved, acting: Flags, solve: Callable[[float], Solved]
-) -> tuple[float, int] | None:
-    """Fraction of a step at the first event, and the number of the row; None without an event.
+def first_event(before: Solved, after: Solved, acting: Flags, solve: Callable[[float], Solved]) -> StopChange | None:
+    """The first stop that closes or opens in a step; None without any.
 
     Args:
         before, after: the step.
@@ -58,9 +65,9 @@ def first_event(
     found = []
     for row in happened:
         if begin[row] <= TOUCHING:
-            return 0.0, int(row)
+            return StopChange(0.0, int(row))
         share = brentq(lambda share, row=row: float(event_values(solve(share), acting)[row]), 0.0, 1.0, xtol=LOCATED)
-        found.append((float(share), int(row)))
+        found.append(StopChange(float(share), int(row)))
     return min(found)
 
 

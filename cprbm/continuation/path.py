@@ -5,7 +5,7 @@ symbol   meaning
 =======  ====================================================================================
 t        fraction of the way, from 0 to 1
 f*, μ*   targets of the rows, linear in t
-Π        potential energy: strain energy and energy of the rows with prescribed force
+Π        potential energy: strain energy, energy of the rows with prescribed force, energy of point contacts
 Π′       dΠ/dt of equilibria: Σ −μ df*/dt of prescribed values, Σ f dμ*/dt of prescribed forces,
          less the part of the flexibility that the chain does not show
 =======  ====================================================================================
@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm.chain import add_row_gradient, row_values, strain_energy
+from cprbm.contact import lost_at
 from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.system import State, System, hidden_forces
 from cprbm_scene.answer import Array
@@ -59,7 +60,19 @@ def potential(system: System, state: State) -> float:
     mu = np.where(state.driven | state.repeated, 0.0, state.multipliers(system))
     hidden = hidden_forces(system, state.z, mu)
     acting = mu @ row_values(state.z, system.rows) - 0.5 * hidden @ system.hidden @ hidden
-    return float(strain_energy(state.z, system.links, system.joints) + acting)
+    return float(strain_energy(state.z, system.links, system.joints) + acting) + _point_energy(system, state)
+
+
+def _point_energy(system: System, state: State) -> float:
+    """Energy Σ c F²/2 of the compliance c that the chain lacks under point contacts."""
+    contacts = state.contacts
+    if system.geometry is None or contacts is None:
+        return 0.0
+    arrays, places, energy = system.geometry.arrays, contacts.places, 0.0
+    for k in np.flatnonzero(contacts.closed & places.moves).tolist():
+        lost = lost_at(arrays, places.piece[k], places.xi[k], 0) + lost_at(arrays, places.foot[k], places.eta[k], 0)
+        energy += 0.5 * lost * float(places.force[k]) ** 2
+    return energy
 
 
 def tangent(solved: Solved, change: Array) -> Array:
@@ -68,7 +81,7 @@ def tangent(solved: Solved, change: Array) -> Array:
     load = np.zeros(system.size)
     add_row_gradient(state.z, system.rows, np.where(state.driven, 0.0, -change), load)
     load[system.rows.first :] = np.where(state.driven, change, 0.0)
-    rate = solved.factors.solve(load)
+    rate = solved.response(load)
     rate[system.rows.first :][~state.driven] = change[~state.driven]
     return rate
 

@@ -83,7 +83,7 @@ def certify(
     balance = _balance(solved, scale)
     strain = float(np.abs(system.lean * _pull(solved)).max())
     bend = float(np.abs(_turns(solved)).max(initial=0.0))
-    curvature = softest(solved.factors).curvature if with_curvature else float("nan")
+    curvature = softest(solved).curvature if with_curvature else float("nan")
     balance_limit = max(BALANCE, 100.0 * floor)
     checks = (
         (residual, max(tolerance, floor), Ending.NOT_CERTIFIED, "the residual is {:.1e}, allowed {:.1e}"),
@@ -93,7 +93,7 @@ def certify(
         (strain, LARGEST_STRAIN, Ending.TURNED_TOO_FAR, STRAINED),
         (balance.force, balance_limit, Ending.NOT_CERTIFIED, "ΣF is {:.1e} of the largest force, allowed {:.1e}"),
         (balance.moment, balance_limit, Ending.NOT_CERTIFIED, "ΣM is {:.1e} of the largest moment, allowed {:.1e}"),
-        (float(solved.factors.lost), 0.0, Ending.NOT_A_MINIMUM, "the energy falls in {:.0f} independent directions"),
+        (float(solved.lost), 0.0, Ending.NOT_A_MINIMUM, "the energy falls in {:.0f} independent directions"),
     )
     failures = [(ending, text.format(found, most)) for found, most, ending, text in checks if not found <= most]
     certificate = Certificate(
@@ -160,10 +160,11 @@ def _balance(solved: Solved, scale: float) -> Balance:
     m = system.mechanism
     bodies = np.array(list(m.bodies.values()), dtype=np.int64)
     references = np.array([m.reference(name) for name in m.bodies]).reshape(-1, 2)
-    x = np.concatenate([z[system.nodes[:, 0]], references[:, 0] + z[bodies]])
-    y = np.concatenate([z[system.nodes[:, 1]], references[:, 1] + z[bodies + 1]])
-    fx = np.concatenate([acting[system.nodes[:, 0]], acting[bodies]])
-    fy = np.concatenate([acting[system.nodes[:, 1]], acting[bodies + 1]])
+    nodes = np.concatenate([system.nodes[:, 0], system.carried])
+    x = np.concatenate([z[nodes], references[:, 0] + z[bodies]])
+    y = np.concatenate([z[nodes + 1], references[:, 1] + z[bodies + 1]])
+    fx = np.concatenate([acting[nodes], acting[bodies]])
+    fy = np.concatenate([acting[nodes + 1], acting[bodies + 1]])
     couples = np.concatenate([acting[system.angles], acting[bodies + 2]])
     moments = np.concatenate([x * fy - y * fx, couples])
     return Balance(float(np.hypot(fx.sum(), fy.sum())) / scale, abs(float(moments.sum())) / scale)

@@ -17,16 +17,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from cprbm.contact import Geometry, Places, joined, may_move, settle, taken
+from cprbm.contact import Contacts, Geometry, Places, joined, may_move, settle, taken
+from cprbm.equilibrium.contact_gaps import as_point, joints_of, minima
 from cprbm.equilibrium.contact_set import (
     FINDING,
-    Contacts,
+    OVERLAP,
     Touched,
     arc_of,
+    beside_points,
     passed_through,
     solve_set,
     with_fixed_places,
 )
+from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
@@ -37,9 +40,6 @@ ROUNDS = 12
 ISOLATED = 4
 """Pieces around a moving place without other closed places of the pair."""
 
-NEIGHBOURS = 1.6
-"""Pieces between neighbouring joints: half links at a beam's end are neighbours too."""
-
 LONGEST_RUN = 2
 """Longest run of closed neighbours for a point."""
 
@@ -48,7 +48,12 @@ LIGHT = 0.02
 
 
 def touched_equilibrium(
-    system: System, geometry: Geometry, start: State, contacts: Contacts, iterations: int
+    system: System,
+    geometry: Geometry,
+    start: State,
+    contacts: Contacts,
+    iterations: int,
+    springs: Springs | None = None,
 ) -> Touched:
     """Equilibrium near a state under the state's targets, with settled places of contact.
 
@@ -59,7 +64,7 @@ def touched_equilibrium(
     joints_tried, before, old = False, start.z, contacts.places
     for _ in range(ROUNDS):
         try:
-            solved = solve_set(system, geometry, start, contacts, iterations)
+            solved = solve_set(system, geometry, start, contacts, iterations, springs)
         except NotConvergedError:
             moves = contacts.places.moves
             if not moves.any():
@@ -73,10 +78,12 @@ def touched_equilibrium(
             continue
         revised = _revised(geometry, solved)
         if revised is None:
-            new = with_fixed_places(geometry, solved.state.z, solved.contacts).places
-            if passed_through(geometry, before, old, solved.state.z, new):
+            new = with_fixed_places(geometry, solved.state.z, solved.contacts)
+            if passed_through(geometry, before, old, solved.state.z, new.places):
                 raise NotConvergedError("a beam passed through itself")
-            return solved
+            if not _come_near(geometry, solved, new):
+                return solved
+            revised = new
         start, contacts = solved.state, with_fixed_places(geometry, solved.state.z, revised)
     raise NotConvergedError("the places of contact do not settle")
 
@@ -106,6 +113,12 @@ def _revised(geometry: Geometry, solved: Touched) -> Contacts | None:
     return replace(contacts, places=joined(taken(places, ~replaced), created), closed=closed)
 
 
+def _come_near(geometry: Geometry, solved: Touched, contacts: Contacts) -> bool:
+    """True if pairs without places at the start overlap at the end."""
+    late = ~np.isin(contacts.places.pair, solved.contacts.places.pair)
+    return bool(late.any() and contacts.gaps(geometry, solved.state.z)[late].min() < -OVERLAP)
+
+
 def _same(places: Places, k: int) -> Flags:
     """Places of the same pair on the same curve."""
     return np.asarray((places.pair == places.pair[k]) & (places.curve == places.curve[k]))
@@ -133,22 +146,20 @@ def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
 
 
 def _points(geometry: Geometry, solved: Touched) -> tuple[Places, Flags]:
-    """Moving places for lonely closed joints, and the replaced joints."""
-    contacts, places = solved.contacts, solved.contacts.places
+    """Moving places for lonely closed joints and for minima that overlap between open joints; the replaced joints."""
+    contacts, places, z = solved.contacts, solved.contacts.places, solved.state.z
     replaced = np.zeros(len(contacts.closed), dtype=bool)
     created = taken(places, replaced)
     arcs, span = arc_of(geometry, places), geometry.arrays.span[places.piece]
+    depth = beside_points(geometry, places, contacts.closed)[1]
     for run in _runs(geometry, solved):
         given_up = any((int(places.pair[k]), int(places.piece[k])) in contacts.given_up for k in run)
         if len(run) > LONGEST_RUN or given_up:
             continue
         best = run[int(np.argmax(places.force[run]))]
-        trial = taken(places, np.array([best]))
-        trial.moves[:] = True
-        trial.force[:] = places.force[run].sum()
-        gaps, curvatures = np.empty(1), np.empty(1)
-        settle(solved.state.z, geometry.arrays, trial, gaps, curvatures, contacts.counters, FINDING)
-        if curvatures[0] <= 0.0 or not may_move(geometry, trial)[0]:
+        trial, gap, curvature = as_point(geometry, z, contacts, best, places.force[run].sum())
+        overlaps = contacts.closed[best] or gap < -OVERLAP - depth[best]
+        if not overlaps or curvature <= 0.0 or not may_move(geometry, trial)[0]:
             continue
         at = arc_of(geometry, trial)[0]
         others = _same(places, best) & contacts.closed
@@ -156,18 +167,17 @@ def _points(geometry: Geometry, solved: Touched) -> tuple[Places, Flags]:
         around = np.concatenate([arcs[others], arc_of(geometry, created)[created.pair == places.pair[best]]])
         lonely = not np.any(np.abs(around - at) < ISOLATED * span[best])
         if lonely and np.any(np.abs(arcs[run] - at) < span[best]):
-            replaced[run] = True
+            replaced[run] = contacts.closed[run]
             created = joined(created, trial)
     return created, replaced
 
 
 def _runs(geometry: Geometry, solved: Touched) -> Iterator[Ints]:
-    """Runs of neighbouring closed joints on the first curves of all pairs, without places of a shared force."""
-    places, closed = solved.contacts.places, solved.contacts.closed
-    arcs, span = arc_of(geometry, places), geometry.arrays.span[places.piece]
-    for number, pair in enumerate(geometry.pairs):
-        mine = (places.pair == number) & (places.curve == pair.first) & ~places.moves & (places.shares == 0) & closed
-        own = np.flatnonzero(mine & (places.xi < 1.0))
-        own = own[np.argsort(arcs[own])]
-        breaks = np.flatnonzero(np.diff(arcs[own]) >= NEIGHBOURS * span[own[:-1]]) + 1
-        yield from (run for run in np.split(own, breaks) if len(run))
+    """Runs of neighbouring closed joints on the first curves of all pairs, and open joints at minima of the gap."""
+    contacts = solved.contacts
+    for pair in range(len(geometry.pairs)):
+        joints, beside = joints_of(geometry, contacts.places, pair)
+        closed = contacts.closed[joints]
+        ends = np.flatnonzero(~(beside & closed[1:] & closed[:-1])) + 1
+        yield from (run for run in np.split(joints, ends) if len(run) and contacts.closed[run[0]])
+        yield from minima(geometry, contacts, solved.gaps, pair)[:, None]

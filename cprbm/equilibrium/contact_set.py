@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm.contact import (
+    Contacts,
     Geometry,
     Places,
     choose_sides,
@@ -23,11 +24,11 @@ from cprbm.contact import (
     settle,
     taken,
 )
-from cprbm.equilibrium.factors import Factors, SingularError, factorise
+from cprbm.equilibrium.factors import Factors, SingularError, Springs, factorise
 from cprbm.equilibrium.newton import NotConvergedError, correction, has_converged
 from cprbm.equilibrium.system import State, System
 from cprbm.equilibrium.touching import Touching, contact_terms, touching
-from cprbm_scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Flags
 
 OVERLAP = 1e-12
 """Overlap, over the longest beam, from which an open place closes: round-off."""
@@ -52,20 +53,6 @@ REACH = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Contacts:
-    """Possible places of contact, marks of the closed places, sides of the pairs, counters.
-
-    ``given_up`` holds pairs and pieces at which a moving place failed.
-    """
-
-    places: Places
-    closed: Flags
-    sides: Array
-    counters: Ints
-    given_up: frozenset[tuple[int, int]] = frozenset()
-
-
-@dataclass(frozen=True, eq=False)
 class Touched:
     """An equilibrium with contacts: state, contacts, factors, gaps and curvatures of the places, iterations."""
 
@@ -85,6 +72,7 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     old = contacts.places
     near = near_pairs(z, geometry.arrays, geometry.columns, np.full(len(geometry.pairs), REACH), contacts.counters)
     near[old.pair[contacts.closed]] = True
+    near[list(contacts.kept_open)] = False
     fixed = fixed_places(geometry, z, contacts.sides, near, contacts.counters)
     known = {_identity(old, k): k for k in range(len(old.pair)) if not old.moves[k]}
     closed = np.zeros(len(fixed.pair), dtype=bool)
@@ -116,7 +104,14 @@ def _identity(places: Places, k: int) -> tuple[int, int, int, float]:
     return int(places.pair[k]), int(places.curve[k]), int(places.piece[k]), float(places.xi[k])
 
 
-def solve_set(system: System, geometry: Geometry, start: State, contacts: Contacts, iterations: int) -> Touched:
+def solve_set(
+    system: System,
+    geometry: Geometry,
+    start: State,
+    contacts: Contacts,
+    iterations: int,
+    springs: Springs | None = None,
+) -> Touched:
     """Equilibrium near a state under the state's targets, and the set of closed places.
 
     Args:
@@ -124,6 +119,7 @@ def solve_set(system: System, geometry: Geometry, start: State, contacts: Contac
         start: state with targets.
         contacts: places at the start; not changed.
         iterations: largest number of Newton iterations.
+        springs: springs on the links' angles, of a descent.
 
     Raises:
         NotConvergedError: no equilibrium was found, or the set of closed places returns.
@@ -145,7 +141,7 @@ def solve_set(system: System, geometry: Geometry, start: State, contacts: Contac
             seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
             if seen[closed.tobytes()] > RETURNS:
                 raise NotConvergedError("the set of closed places returns")
-        factors, size = _iterate(system, geometry, state, places, closed)
+        factors, size = _iterate(system, geometry, state, places, closed, springs)
         arrived = has_converged(size, last)
         last = size
         if arrived and not changed:
@@ -157,12 +153,12 @@ def solve_set(system: System, geometry: Geometry, start: State, contacts: Contac
 
 
 def _iterate(
-    system: System, geometry: Geometry, state: State, places: Places, closed: Flags
+    system: System, geometry: Geometry, state: State, places: Places, closed: Flags, springs: Springs | None
 ) -> tuple[Factors | Touching, float]:
     """One Newton iteration in place: factors before the change, and the size of the change."""
     z, force = state.z, np.zeros(len(closed))
     try:
-        free, gradient = factorise(system, state)
+        free, gradient = factorise(system, state, springs)
         factors: Factors | Touching = free
         if closed.any():
             terms = contact_terms(geometry, z, places, closed)
@@ -191,7 +187,7 @@ def update_set(geometry: Geometry, places: Places, closed: Flags, gaps: Array, m
     leaders = np.arange(len(closed)) + places.shares
     gap = gaps.copy()
     np.add.at(gap, leaders[~own], gaps[~own])
-    beside, depth = _beside_points(geometry, places, closed)
+    beside, depth = beside_points(geometry, places, closed)
     thick = geometry.arrays.thickness[places.piece] + geometry.arrays.thickness[places.foot] > 0.0
     opens = closed & own & ((places.force < 0.0) | beside)
     closes = own & ~closed & ~beside & (gap < -OVERLAP - depth) & (thick | ~places.at_point)
@@ -210,7 +206,7 @@ def arc_of(geometry: Geometry, places: Places) -> Array:
     return np.asarray(geometry.arrays.arc[places.piece] + places.xi * geometry.arrays.span[places.piece])
 
 
-def _beside_points(geometry: Geometry, places: Places, closed: Flags) -> tuple[Flags, Array]:
+def beside_points(geometry: Geometry, places: Places, closed: Flags) -> tuple[Flags, Array]:
     """Fixed places within a piece of a closed moving place, and the overlap of every pair's point contact.
 
     Outside of the point the other places of the pair may overlap by as much without contact.

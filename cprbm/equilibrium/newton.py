@@ -1,4 +1,4 @@
-"""Newton's method for an equilibrium with fixed rows.
+"""Newton's method for an equilibrium with fixed rows, and a solved equilibrium.
 
 The first iteration starts from the last state under new targets and so makes the prediction along the path's tangent.
 Later iterations converge quadratically; at the level of round-off the last correction stays small.
@@ -6,15 +6,15 @@ Later iterations converge quadratically; at the level of round-off the last corr
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from cprbm.chain import row_values
 from cprbm.equilibrium.factors import Factors, SingularError, Springs, factorise
-from cprbm.equilibrium.rank import repeated_rows
 from cprbm.equilibrium.system import State, System
+from cprbm.equilibrium.touching import Touching
 from cprbm_scene.answer import Array
 
 CLOSE = 1e-9
@@ -29,9 +29,6 @@ SHRINKING = 0.25
 LARGEST_TURN = 0.5
 """Largest turn of a link in one iteration, rad."""
 
-REPEATED = 1e-9
-"""Largest violation of a row that repeats others, in units of length or rad."""
-
 
 class NotConvergedError(Exception):
     """Newton's method found no equilibrium; ``locked`` names the contradicted row."""
@@ -43,13 +40,34 @@ class NotConvergedError(Exception):
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """An equilibrium, the Hessian's factors and the gradient there, and the number of Newton iterations."""
+    """An equilibrium, the Hessian's factors and the gradient there, and the number of Newton iterations.
+
+    The gradient belongs to the unknowns; ``contact_values`` are the values of the closed places' rows.
+    """
 
     system: System
     state: State
-    factors: Factors
+    factors: Factors | Touching
     gradient: Array
     iterations: int
+    contact_values: Array = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def lost(self) -> int:
+        """Number of independent directions with falling energy."""
+        return self.factors.lost
+
+    @cached_property
+    def gaps(self) -> Array:
+        """Gaps of all places of contact."""
+        geometry, contacts = self.system.geometry, self.state.contacts
+        return np.zeros(0) if geometry is None or contacts is None else contacts.gaps(geometry, self.state.z)
+
+    def response(self, load: Array) -> Array:
+        """Change (size,) of the unknowns under a ``load`` (size,), the closed places kept closed."""
+        if isinstance(self.factors, Touching):
+            return self.factors.solve(load, np.zeros(0))[0]
+        return self.factors.solve(load)
 
     @cached_property
     def values(self) -> Array:
@@ -57,33 +75,14 @@ class Solved:
         return np.asarray(row_values(self.state.z, self.system.rows))
 
 
-def equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Solved:
-    """Equilibrium near a state under the state's targets.
+def newton(system: System, start: State, iterations: int, springs: Springs | None) -> Solved:
+    """Equilibrium near a state under the state's targets, without contacts.
 
     Args:
         system: the mechanism.
         start: state with targets.
         iterations: largest number of Newton iterations.
         springs: springs on the links' angles, of a descent.
-
-    Raises:
-        NotConvergedError: no equilibrium was found.
-    """
-    solved = _iterated(system, start, iterations, springs)
-    while (missed := _contradicted(solved)) is not None:
-        # a repeated row of a straight beam may be independent once the beam is bent
-        state = solved.state
-        repeated = repeated_rows(system, state)
-        if repeated.sum() >= state.repeated.sum():
-            name = system.mechanism.rows[missed].name
-            raise NotConvergedError(f"row {name} contradicts the others", locked=name)
-        counting = replace(state, driven=(state.driven | state.repeated) & ~repeated, repeated=repeated)
-        solved = _iterated(system, counting, iterations, springs)
-    return solved
-
-
-def _iterated(system: System, start: State, iterations: int, springs: Springs | None) -> Solved:
-    """Equilibrium with the prescribed rows of a state.
 
     Raises:
         NotConvergedError: no equilibrium was found.
@@ -123,13 +122,3 @@ def correction(system: System, change: Array) -> tuple[float, float]:
 def has_converged(size: float, last: float) -> bool:
     """Whether a correction of this size after the ``last`` is as small as it gets."""
     return size < CLOSE or SHRINKING * last < size < ROUNDED
-
-
-def _contradicted(solved: Solved) -> int | None:
-    """Number of a violated repeated row, or None."""
-    state = solved.state
-    if not state.repeated.any():
-        return None
-    missed = np.where(state.repeated, np.abs(solved.values - state.target), 0.0)
-    worst = int(np.argmax(missed))
-    return worst if missed[worst] > REPEATED else None

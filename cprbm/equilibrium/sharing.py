@@ -20,7 +20,7 @@ def balanced_forces(solved: Solved, row: int) -> Array:
     load, weight = np.zeros(system.size), np.zeros(len(system.rows.constant))
     weight[row] = 1.0
     add_row_gradient(solved.state.z, system.rows, weight, load)
-    balanced = -solved.factors.solve(load)
+    balanced = -solved.response(load)
     balanced[system.rows.first + row] = 1.0
     return balanced
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
-from cprbm.equilibrium.factors import Factors
+from cprbm.equilibrium.newton import Solved
 from cprbm_scene.answer import Array
 
 ACCURACY = 1e-6
@@ -40,24 +40,24 @@ class Mode:
     change: Array
 
 
-def softest(factors: Factors) -> Mode:
+def softest(solved: Solved) -> Mode:
     """Smallest curvature and mode at a state; infinite if no direction is free."""
-    system = factors.system
+    system = solved.system
     root, count = np.sqrt(system.metric), len(system.metric)
 
     def response(x: Array) -> Array:
         load = np.zeros(system.size)
         load[system.angles] = root * x.ravel()
-        return factors.solve(load)
+        return solved.response(load)
 
     def compliance(x: Array) -> Array:
         return np.asarray(root * response(x)[system.angles])
 
-    which = "SA" if factors.lost else "LA"
+    which = "SA" if solved.lost else "LA"
     if count <= DENSE:
         matrix = np.array([compliance(column) for column in np.eye(count)])
         values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
-        place = 0 if factors.lost else -1
+        place = 0 if solved.lost else -1
         value, vector = float(values[place]), vectors[:, place]
     else:
         operator = LinearOperator((count, count), matvec=compliance, dtype=np.float64)

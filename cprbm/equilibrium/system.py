@@ -13,6 +13,7 @@ import numpy as np
 
 from cprbm.chain import Joints, Links, Mechanism, RowArrays, hidden_flexibility, link_arrays, row_arrays
 from cprbm.chain.mechanism import PER_LINK
+from cprbm.contact import Contacts, Geometry, open_contacts
 from cprbm.equilibrium.elimination import Beams, Border
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -25,12 +26,14 @@ class System:
         mechanism: the numbering and the rows.
         links, joints, rows, beams, border: arrays of the kernels.
         angles, nodes: indices of all links' angles, and of the x and y of all nodes.
+        carried: indices of the x of the nodes carried by bodies.
         turns, motions: indices of all angles, and of all angles and displacements, bodies included.
         metric: lengths of the links, the weights of their angles in a mode.
         limits: which rows are stops.
         hidden: flexibility (rows, rows) of loads at places of beams without the chain's share.
         lean: shear compliance β of the links, for the odd moment of their elements.
         lengthening: whether links have an axial compliance.
+        geometry: curves and pairs of the contacts, None without contacts.
     """
 
     mechanism: Mechanism
@@ -41,6 +44,7 @@ class System:
     border: Border
     angles: Ints
     nodes: Ints
+    carried: Ints
     turns: Ints
     motions: Ints
     metric: Array
@@ -48,6 +52,7 @@ class System:
     hidden: Array
     lean: Array
     lengthening: bool
+    geometry: Geometry | None = None
 
     @property
     def size(self) -> int:
@@ -57,20 +62,21 @@ class System:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Unknowns z, rows with a prescribed value, targets of all rows, and repeated rows."""
+    """Unknowns z, rows with a prescribed value, targets of all rows, repeated rows, and contacts."""
 
     z: Array
     driven: Flags
     target: Array
     repeated: Flags
+    contacts: Contacts | None = None
 
     def multipliers(self, system: System) -> Array:
         """μ of all rows."""
         return self.z[system.rows.first :]
 
 
-def system_of(mechanism: Mechanism) -> System:
-    """Number a mechanism with all rows."""
+def system_of(mechanism: Mechanism, geometry: Geometry | None = None) -> System:
+    """Number a mechanism with all rows, those of the contacts included."""
     links, joints = link_arrays(mechanism)
     rows = row_arrays(mechanism)
     beams = _beams(mechanism)
@@ -87,6 +93,7 @@ def system_of(mechanism: Mechanism) -> System:
         border=border,
         angles=angles,
         nodes=np.stack([nodes, nodes + 1], axis=1),
+        carried=np.arange(border.first + 3 * len(mechanism.bodies), rows.first, 2, dtype=np.int64),
         turns=np.concatenate([angles, rotations]).astype(np.int64),
         motions=np.concatenate([nodes, nodes + 1, angles, np.arange(border.first, rows.first)]).astype(np.int64),
         metric=links.length,
@@ -94,6 +101,7 @@ def system_of(mechanism: Mechanism) -> System:
         hidden=hidden_flexibility(mechanism),
         lean=np.concatenate([chain.lean for chain in mechanism.chains.values()]),
         lengthening=bool(np.any(links.stretch)),
+        geometry=geometry,
     )
 
 
@@ -116,7 +124,8 @@ def rest_state(system: System) -> State:
     rows = system.mechanism.rows
     z = np.concatenate([system.mechanism.rest, np.zeros(len(rows))])
     driven = np.array([row.driven for row in rows], dtype=bool)
-    return State(z, driven, np.zeros(len(rows)), np.zeros(len(rows), dtype=bool))
+    contacts = None if system.geometry is None else open_contacts(system.geometry, z)
+    return State(z, driven, np.zeros(len(rows)), np.zeros(len(rows), dtype=bool), contacts)
 
 
 def _beams(m: Mechanism) -> Beams:

@@ -1,4 +1,4 @@
-"""Forces of joints, slides, pivots, drives, pins and stops, from the multipliers of their rows.
+"""Forces of joints, slides, pivots, drives, pins, stops and contacts, from the multipliers of their rows.
 
 A row of the form f exerts −μ ∂f/∂z.  All forces are in the mechanism's units here.
 """
@@ -11,12 +11,11 @@ from math import nan
 import numpy as np
 
 from cprbm.chain.rows import END, ends_of, unit_direction
+from cprbm.results.contacts import NO_FORCE, forces_of_contacts
 from cprbm.results.view import View
-from cprbm_scene import FreeEnd, Stop
+from cprbm_scene import FreeEnd
 from cprbm_scene.answer import Array, PointForce
 from cprbm_scene.statement import DisplacementDrive, SlidingBody, TurningBody
-
-NO_FORCE = np.zeros(2)
 
 
 def point_forces(view: View) -> Iterator[PointForce]:
@@ -32,6 +31,7 @@ def all_forces(view: View) -> Iterator[PointForce]:
     yield from _drives(view)
     yield from _pins(view)
     yield from _stops(view)
+    yield from forces_of_contacts(view)
 
 
 def end_force(view: View, beam: str, end: str) -> tuple[Array, float]:
@@ -86,7 +86,7 @@ def _stops(view: View) -> Iterator[PointForce]:
         if moment != 0.0:
             joint = ends_of(view.scene, stop.beam)[END.index(stop.end)]
             assert not isinstance(joint, FreeEnd)
-            s, place = _pinned(view, stop)
+            s, place = view.end(stop.beam, stop.end)
             yield PointForce(name, stop.beam, s, place, NO_FORCE, moment)
             yield PointForce(name, view.scene.body_of(joint.point), nan, place, NO_FORCE, -moment)
 
@@ -94,9 +94,3 @@ def _stops(view: View) -> Iterator[PointForce]:
 def stop_moment(view: View, name: str) -> float:
     """Moment of a stop on its beam."""
     return view.multiplier(f"{name}.most") - view.multiplier(f"{name}.least")
-
-
-def _pinned(view: View, stop: Stop) -> tuple[float, Array]:
-    """Arc length and place of the end at a stop's pin."""
-    at_start = stop.end == "start"
-    return (0.0 if at_start else view.chain(stop.beam).length), view.nodes(stop.beam)[0 if at_start else -1]

@@ -8,9 +8,11 @@ import numpy as np
 
 from cprbm.chain import stop_angle
 from cprbm.chain.form import X_AXIS, Y_AXIS
+from cprbm.results.contacts import contact_centre, contact_force, contact_moment
 from cprbm.results.forces import all_forces, stop_moment
 from cprbm.results.statics import bending_stress, combined_stress
 from cprbm.results.view import View
+from cprbm.results.zones import contact_ends
 from cprbm_scene import Probe
 from cprbm_scene.answer import Array, frozen_array
 from cprbm_scene.statement import DisplacementDrive
@@ -50,9 +52,17 @@ def _value(view: View, probe: Probe) -> Array | float:
         case "angle":
             return stop_angle(view.mechanism, of).value(view.z)
         case "moment":
-            return abs(stop_moment(view, of)) * units.moment
-        case "force" | "centre" | "ends" | "closing_load":
-            raise NotImplementedError(f"{probe.name}: contacts come with the next part of this engine")
+            moment = contact_moment(view, of) if of in view.scene.contacts else stop_moment(view, of)
+            return abs(moment) * units.moment
+        case "force":
+            return contact_force(view, of) * units.force
+        case "centre":
+            return np.array(contact_centre(view, of)) * units.length
+        case "ends":
+            return np.array(contact_ends(view, of)) * units.length
+        case "closing_load":
+            closed = of in view.closing and contact_force(view, of) > 0.0
+            return np.array([view.closing[of]] if closed else [])
         case _:
             assert_never(probe.quantity)
 

@@ -22,9 +22,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm.results.contacts import forces_of_contacts
 from cprbm.results.forces import end_force, stop_moment
 from cprbm.results.view import View
-from cprbm_scene.answer import Array, BeamState, frozen_array
+from cprbm_scene.answer import Array, BeamState, PointForce, frozen_array
 from cprbm_scene.statement import BeamForce, BeamMoment, DistributedLoad
 
 
@@ -70,6 +71,10 @@ def cuts_of(view: View, beam: str, s: Array) -> Cuts:
             assert isinstance(load, BeamForce | BeamMoment)
             more = _at_place(view, load, value, s, places)
         n, M = n - more[0], M - more[1]
+    for each in forces_of_contacts(view):
+        if each.target == beam:
+            more = _point(chain.length, each, s, places)
+            n, M = n - more[0], M - more[1]
     section = view.angles(beam, s)
     angle = section
     if view.shearing:
@@ -120,13 +125,19 @@ def _at_place(view: View, load: BeamForce | BeamMoment, value: float, s: Array, 
     """Force (k, 2) and moment (k,) about the cuts of a load at one place."""
     length, units = view.chain(load.beam).length, view.mechanism.units
     at = load.at * length
-    before = (s >= at) & ((s < length) | (at < length))
+    force, moment = np.zeros(2), 0.0
     if isinstance(load, BeamMoment):
-        return np.zeros((len(s), 2)), np.asarray(before * (value / units.moment))
-    direction = np.array(load.direction) / np.hypot(*load.direction)
-    force = value / units.force * direction
-    arms = view.line(load.beam, np.array([at])) - places
-    return before[:, None] * force, np.asarray(before * _cross(arms, force))
+        moment = value / units.moment
+    else:
+        force = value / units.force * np.array(load.direction) / np.hypot(*load.direction)
+    place = view.line(load.beam, np.array([at]))[0]
+    return _point(length, PointForce("", load.beam, at, place, force, moment), s, places)
+
+
+def _point(length: float, acting: PointForce, s: Array, places: Array) -> tuple[Array, Array]:
+    """Force (k, 2) and moment (k,) about the cuts of a force and a moment at one place of a beam."""
+    before = (s >= acting.s) & ((s < length) | (acting.s < length))
+    return before[:, None] * acting.force, before * (_cross(acting.place - places, acting.force) + acting.moment)
 
 
 def _distributed(view: View, load: DistributedLoad, value: float, s: Array, places: Array) -> tuple[Array, Array]:

@@ -10,17 +10,19 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cprbm.chain import add_rows, mechanism_of
+from cprbm.contact import contact_geometry
 from cprbm.continuation.assembly import assembled
-from cprbm.continuation.driver import Driver, Passed, StepError
+from cprbm.continuation.driver import ContactEvent, Driver, Passed, StepError
 from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.system import System, system_of
+from cprbm.results.contacts import states_of_contacts, touching_places
 from cprbm.results.forces import point_forces
 from cprbm.results.probes import displacement, probe_values
 from cprbm.results.statics import beam_state
 from cprbm.results.view import View
 from cprbm.settings import Settings
-from cprbm_scene import Answer, Certificate, Critical, Ending, GoneOver, Scene, Shape, Stage, StationAnswer
+from cprbm_scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Scene, Shape, Stage, StationAnswer
 from cprbm_scene.answer import Array, PointForces, frozen_array
 from cprbm_scene.progress import station_reached
 from cprbm_scene.threads import one_thread
@@ -44,15 +46,18 @@ class Run:
     Attributes:
         scene, settings: the question.
         driver: at the first state once the run has begun.
-        loads: present values (SI) of loads and drives.
-        stations, critical, gone_over, notes: of the answer.
+        values: present values (SI) of loads and drives.
+        closing: values (SI) at which contacts first closed.
+        stations, events, critical, gone_over, notes: of the answer.
     """
 
     scene: Scene
     settings: Settings
     driver: Driver | None = None
     values: dict[str, float] = field(default_factory=dict)
+    closing: dict[str, float] = field(default_factory=dict)
     stations: list[StationAnswer] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
     critical: list[Critical] = field(default_factory=list)
     gone_over: list[GoneOver] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -67,7 +72,7 @@ class Run:
         links = {beam: self.settings.links_of(beam) for beam in self.scene.beams}
         mechanism = mechanism_of(self.scene, links, self.scene.theory, corrected=corrected)
         add_rows(mechanism)
-        return system_of(mechanism)
+        return system_of(mechanism, contact_geometry(mechanism))
 
     def answer(self) -> Answer:
         """Solve the scene."""
@@ -77,7 +82,8 @@ class Run:
             if ending is Ending.TURNED_TOO_FAR and self.settings.formulation == "auto":
                 # elements longer than the bends have no corrections
                 self.system = self._system(corrected=False)
-                self.stations, self.critical, self.gone_over, self.values = [], [], [], {}
+                self.stations, self.events, self.critical, self.gone_over = [], [], [], []
+                self.values, self.closing = {}, {}
                 self.notes = [PLAIN]
                 ending, sentence = self._solve()
         return Answer(
@@ -87,6 +93,7 @@ class Run:
             ending=ending,
             sentence=sentence,
             stations=tuple(self.stations),
+            events=tuple(self.events),
             critical=tuple(self.critical),
             gone_over=tuple(self.gone_over),
             seconds=self.seconds + time.perf_counter() - began,
@@ -98,6 +105,8 @@ class Run:
             self.driver = assembled(self.system, self.settings)
         except StepError as failure:
             return failure.ending, str(failure)
+        first = self.scene.stages[0].name
+        self._note_contacts(first, [ContactEvent(name, 0.0, closes=True) for name in sorted(self.driver.touching)])
         for stage in self.scene.stages:
             for station in stage.stations:
                 try:
@@ -125,6 +134,7 @@ class Run:
             driver.follow(Way(begin, end, (before, station), stage.steps), stage.beyond)
         finally:
             self._note(stage, driver.passed)
+            self._note_contacts(stage.name, driver.events)
         self.values[stage.steps] = station
         certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent, driver.acting)
         if ending is not Ending.COMPLETED:
@@ -164,22 +174,32 @@ class Run:
             else:
                 self.critical.append(critical)
 
+    def _note_contacts(self, stage: str, events: list[ContactEvent]) -> None:
+        """Add closings and openings on the way to a station to the answer."""
+        for event in events:
+            if event.closes:
+                self.closing.setdefault(event.name, event.value)
+            self.events.append(Event(stage, event.name, "closes" if event.closes else "opens", event.value))
+
     def _station(self, driver: Driver, stage: Stage, station: float, certificate: Certificate) -> StationAnswer:
         """Answer at a station."""
-        view = View(driver.solved, dict(self.values), self.scene.theory == "shear")
+        view = View(driver.solved, dict(self.values), self.scene.theory == "shear", self.closing)
         units = self.system.mechanism.units
+        touching = touching_places(view)
+        forces = PointForces.collected(
+            point_forces(view), units.length, units.force, (float(units.origin[0]), float(units.origin[1]))
+        )
         return StationAnswer(
             stage=stage.name,
             value=station,
             values=probe_values(view, stage.name),
             shapes=_shapes(view),
-            touching={},
+            touching=touching,
             certificate=certificate,
             branch=len(self.critical),
             beams={beam: beam_state(view, beam) for beam in self.scene.beams},
-            forces=PointForces.collected(
-                point_forces(view), units.length, units.force, (float(units.origin[0]), float(units.origin[1]))
-            ),
+            forces=forces,
+            contacts=states_of_contacts(view, forces, touching),
             bodies=_motions(view),
         )
 

@@ -2,26 +2,35 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from cprbm.chain import BeamChain, Mechanism
+from cprbm.chain import BeamChain, Mechanism, hidden_angles
 from cprbm.continuation.path import potential
 from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.sharing import shared_multipliers
+from cprbm.equilibrium.system import hidden_forces
 from cprbm_scene import Scene
 from cprbm_scene.answer import Array
 
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A solved state; ``loads`` are the values (SI) of all loads; ``shearing`` tells the theory ``shear``."""
+    """A solved state.
+
+    Attributes:
+        solved: the state.
+        loads: values (SI) of all loads.
+        shearing: true in the theory ``shear``.
+        closing: values (SI) of loads or drives at which contacts first closed.
+    """
 
     solved: Solved
     loads: dict[str, float]
     shearing: bool
+    closing: dict[str, float] = field(default_factory=dict)
 
     @property
     def mechanism(self) -> Mechanism:
@@ -57,11 +66,16 @@ class View:
         return self.chain(beam).line.place(self.nodes(beam), s)
 
     def angles(self, beam: str, s: Array) -> Array:
-        """Angles of the sections (k,) at arc lengths ``s``."""
-        chain = self.chain(beam)
+        """Angles of the sections (k,) at arc lengths ``s``, with the flexibility beside loads at places of the beam."""
+        chain, system = self.chain(beam), self.solved.system
         links, weights = chain.angle_weights(s)
-        turned = self.z[self.mechanism.beam_angles(beam)] - chain.link_angle
-        return np.asarray(chain.rest_angle(s) + (weights * turned[links]).sum(axis=1))
+        turned = (weights * (self.z[self.mechanism.beam_angles(beam)] - chain.link_angle)[links]).sum(axis=1)
+        for row, mu in zip(
+            self.mechanism.rows, hidden_forces(system, self.z, self.z[system.rows.first :]), strict=True
+        ):
+            if mu != 0.0 and row.unit_load is not None and row.unit_load.beam == beam:
+                turned -= mu * hidden_angles(chain, s, row.unit_load)
+        return np.asarray(chain.rest_angle(s) + turned)
 
     def multiplier(self, row: str) -> float:
         """μ of a row; zero without such a row."""
@@ -73,6 +87,10 @@ class View:
         return np.array(
             [self.mechanism.point(point, direction).value(self.z) for direction in ((1.0, 0.0), (0.0, 1.0))]
         )
+
+    def end(self, beam: str, end: str) -> tuple[float, Array]:
+        """Arc length and position of a beam's end, in units."""
+        return (0.0, self.nodes(beam)[0]) if end == "start" else (self.chain(beam).length, self.nodes(beam)[-1])
 
     @cached_property
     def potential_energy(self) -> float:

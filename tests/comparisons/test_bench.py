@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons import cases, documents, geometry, machine
+from comparisons import cases, documents, geometry, provenance
 from comparisons.bench import drawn, errors, question, tables
 from comparisons.bench.contenders import Contender, Outcome, Run, contenders
 from comparisons.bench.running import Plan, Session, sizes_of, trend
@@ -345,7 +345,7 @@ def test_nothing_that_counts_has_no_figure(bent):
 
 
 def test_the_machine_is_described():
-    found = machine.described()
+    found = provenance.machine()
     assert set(MACHINE) <= set(found)
     assert found["cores"] >= 1
     assert all(found.values())

@@ -13,8 +13,8 @@ from comparisons.budgets.runs import budgeted
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.documents import text
-from comparisons.memory import Remembering
 from comparisons.pairing import Solvers
+from comparisons.store import AnswerMemory
 from cprbm_scene import Ending, Material, Stage
 from cprbm_scene.frozendict import frozendict
 from tests.verdict.made_up import THEORY, MadeUp
@@ -26,7 +26,7 @@ LOAD = 0.067
 def budget_at(scene, solvers, choices=None, probe="BD.rotation") -> Budget:
     """The budget at the load before contact, as ``paper`` may be run there."""
     before = scene.model_copy(update={"stages": (Stage(name="load", steps="M", stations=(LOAD,)),), "claims": ()})
-    runs = budgeted(before, choices or Choices(), Remembering(solvers=solvers))
+    runs = budgeted(before, choices or Choices(), AnswerMemory(solvers=solvers))
     (found,) = [each for each in budgets_of(before, runs) if each.row.probe.name == probe]
     return found
 
@@ -64,7 +64,7 @@ def test_where_paper_was_chosen_the_contact_is_a_part(hinge):
 @pytest.mark.parametrize("formulation", ["auto", "paper"])
 def test_the_parts_sum_to_the_difference(hinge, formulation):
     solvers = Solvers(MadeUp("cprbm", 2e-3, paper=1e-3), MadeUp("fea", -5e-4, penalty=2e-4))
-    budgets = budgets_of(hinge, budgeted(hinge, Choices(formulation=formulation), Remembering(solvers=solvers)))
+    budgets = budgets_of(hinge, budgeted(hinge, Choices(formulation=formulation), AnswerMemory(solvers=solvers)))
     assert len(budgets) > 100
     for each in budgets:
         assert sum(each.parts.by_name().values()) == pytest.approx(each.row.difference, rel=1e-9, abs=1e-18)
@@ -95,7 +95,7 @@ def test_parts_that_cancel_are_told_along_the_value(hinge):
 
 
 def test_an_open_contact_has_no_budget(hinge, right):
-    budgets = budgets_of(hinge, budgeted(hinge, Choices(), Remembering(solvers=right)))
+    budgets = budgets_of(hinge, budgeted(hinge, Choices(), AnswerMemory(solvers=right)))
     of_contact = {(each.row.probe.name, each.row.station) for each in budgets if each.row.probe.of == "contact"}
     names = {name for name, station in of_contact if station == 0.67}
     assert names == {"contact.force", "contact.centre", "contact.closing_load"}
@@ -141,7 +141,7 @@ def test_what_the_beam_theories_miss_is_told_beside_the_sum(hinge):
     assert found.missed_uncertainty == pytest.approx(found.elements_uncertainty, rel=1e-9)  # both meshes say the same
     without = budget_at(hinge, beams)
     assert (without.missed, without.parts) == (None, found.parts)
-    account = accounted(hinge, Choices(), Remembering(solvers=replace(beams, solid=a_solid(1.0072))))
+    account = accounted(hinge, Choices(), AnswerMemory(solvers=replace(beams, solid=a_solid(1.0072))))
     (sheet,) = (one for one in tables.sheets_of(account) if "Error budget" in one.title)
     assert sheet.headers[-2:] == ("missed", "±")
     row = next(each for each in tables.data_of(account)["budget"] if each["probe"] == "BD.rotation")
@@ -152,7 +152,7 @@ def test_what_the_beam_theories_miss_is_told_beside_the_sum(hinge):
 
 
 def test_a_solid_that_did_not_arrive_says_why_and_leaves_the_budget(hinge, right):
-    account = accounted(hinge, Choices(), Remembering(solvers=replace(right, solid=ended_early)))
+    account = accounted(hinge, Choices(), AnswerMemory(solvers=replace(right, solid=ended_early)))
     assert account.budgets
     assert all(each.missed is None for each in account.budgets)
     assert "det F" in tables.sentences_of(account)[-1]
@@ -174,7 +174,7 @@ def test_what_is_known_is_not_run_again(hinge, right):
 
         return answer
 
-    memory = Remembering(solvers=Solvers(counting(right.cprbm, "cprbm"), counting(right.fea, "fea")))
+    memory = AnswerMemory(solvers=Solvers(counting(right.cprbm, "cprbm"), counting(right.fea, "fea")))
     choices = Choices(links=30)
     first = budgeted(hinge, choices, memory)
     every = [each for each in calls if each[1].formulation == "auto"]
@@ -203,12 +203,12 @@ def test_a_solver_does_not_heed_the_others_choices(hinge, right, solver, own, ca
         return getattr(right, solver)(scene, choices)
 
     solvers = replace(right, **{solver: counting})
-    Remembering(solvers=solvers).answers([(counting, hinge, Choices()), (counting, hinge, own)])
+    AnswerMemory(solvers=solvers).answers([(counting, hinge, Choices()), (counting, hinge, own)])
     assert len(found) == calls
 
 
 def test_an_answer_that_is_not_whole_leaves_no_budget_and_says_so(hinge, right):
-    account = accounted(hinge, Choices(), Remembering(solvers=Solvers(right.cprbm, MadeUp("fea", 0.0, until=3))))
+    account = accounted(hinge, Choices(), AnswerMemory(solvers=Solvers(right.cprbm, MadeUp("fea", 0.0, until=3))))
     assert account.budgets == account.claims == ()
     assert any("fea bending" in why for why in account.missing)
     assert tables.sheets_of(account) == ()
@@ -231,7 +231,7 @@ def test_the_ratio_at_which_a_claim_would_be_ours(hinge):
     probes = tuple(probe for probe in hinge.probes if probe.quantity == "displacement")
     asked_for = hinge.model_copy(update={"claims": claims, "probes": probes})
     account = accounted(
-        asked_for, Choices(), Remembering(solvers=Solvers(MadeUp("cprbm", 0.0, contact=False), without_contact))
+        asked_for, Choices(), AnswerMemory(solvers=Solvers(MadeUp("cprbm", 0.0, contact=False), without_contact))
     )
     assert [found.claim.probe for found in account.claims] == ["B.displacement", "D.displacement"]
     ratio = (1.0 / (1.0 - 0.0025) - 1.002) * 1.35 / 0.003 - 1.0
@@ -244,23 +244,25 @@ def test_the_ratio_at_which_a_claim_would_be_ours(hinge):
 
 
 def test_a_claim_beyond_every_ratio_has_none(hinge, right):
-    account = accounted(hinge, Choices(), Remembering(solvers=right))
+    account = accounted(hinge, Choices(), AnswerMemory(solvers=right))
     # 0.35 % at ν = 0.35, of which 0.3 % is shear; claims of 0.62 and 0.81 %
     assert [found.ratios for found in account.claims] == [(), ()]
     assert "at no Poisson's ratio" in tables.sentences_of(account)[0]
 
 
 def test_materials_of_two_ratios_or_a_theory_without_shear_have_no_such_ratio(hinge, right):
-    assert accounted(hinge, Choices(kinematics="stretch"), Remembering(solvers=right)).claims == ()
+    assert accounted(hinge, Choices(kinematics="stretch"), AnswerMemory(solvers=right)).claims == ()
     two = {**hinge.materials, "steel": Material(youngs_modulus=2e11, poisson_ratio=0.3)}
     assert (
-        accounted(hinge.model_copy(update={"materials": frozendict(two)}), Choices(), Remembering(solvers=right)).claims
+        accounted(
+            hinge.model_copy(update={"materials": frozendict(two)}), Choices(), AnswerMemory(solvers=right)
+        ).claims
         == ()
     )
 
 
 def test_the_table_has_every_probe_with_a_value_at_the_last_station(hinge, right):
-    account = accounted(hinge, Choices(), Remembering(solvers=right))
+    account = accounted(hinge, Choices(), AnswerMemory(solvers=right))
     budgets, claims = tables.sheets_of(account)
     assert [row[0] for row in budgets.rows] == [probe.name for probe in hinge.probes]
     for sheet in (budgets, claims):
@@ -271,7 +273,7 @@ def test_the_table_has_every_probe_with_a_value_at_the_last_station(hinge, right
 
 
 def test_json_has_every_station_and_sums(hinge, right):
-    account = accounted(hinge, Choices(), Remembering(solvers=right))
+    account = accounted(hinge, Choices(), AnswerMemory(solvers=right))
     data = json.loads(text(tables.data_of(account)))
     assert len({row["station"] for row in data["budget"]}) == 10
     for row in data["budget"]:
@@ -283,7 +285,7 @@ def test_json_has_every_station_and_sums(hinge, right):
 
 
 def test_the_picture_shows_every_part_that_there_is(hinge, right):
-    account = accounted(hinge, Choices(), Remembering(solvers=right))
+    account = accounted(hinge, Choices(), AnswerMemory(solvers=right))
     (picture,) = drawn.of_account(account)
     assert picture.name == "budget"
     (again,) = drawn.of_account(account)
@@ -296,7 +298,7 @@ def test_the_picture_shows_every_part_that_there_is(hinge, right):
 
 def test_a_case_without_differences_has_no_picture(hinge):
     same = Solvers(MadeUp("cprbm", 0.0), MadeUp("fea", 0.0))
-    assert drawn.of_account(accounted(hinge, Choices(kinematics="bending"), Remembering(solvers=same))) == ()
+    assert drawn.of_account(accounted(hinge, Choices(kinematics="bending"), AnswerMemory(solvers=same))) == ()
 
 
 def test_converge_tells_the_budget_and_spares_its_own_runs(hinge, right, capsys):

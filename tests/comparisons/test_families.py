@@ -11,7 +11,8 @@ from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.converging import drawn, tables
 from comparisons.converging.families import at, converged
-from comparisons.pairing import ALONE, Solvers
+from comparisons.crew import ALONE
+from comparisons.pairing import Solvers
 from cprbm_scene import Ending
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict

@@ -12,13 +12,12 @@ import pytest
 from comparisons import cases, sheets
 from comparisons.case import compare
 from comparisons.choices import Choices
+from comparisons.crew import ALONE, crew_of
 from comparisons.pairing import (
-    ALONE,
     EXACT_LIMIT,
     Solvers,
     begin,
     cprbm_answer,
-    crew_of,
     exact_answer,
     exact_by_rule,
     exact_pieces,

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from comparisons.cli.main import run
 from comparisons.cli.output import Rounds, progress
-from comparisons.listening import RUNS, SPEAKERS, heard_from, steps_of
+from comparisons.logs import PACKAGES, RUNS, level, steps_from
 
 ROOT = Path(__file__).parents[2]
 
@@ -91,8 +91,8 @@ def test_a_comparison_says_which_of_its_runs_are_done_and_then_nobody_listens(ri
     whole = len(done)
     assert whole > 3
     assert done == [(str(number), str(whole)) for number in range(1, whole + 1)]
-    assert heard_from() == logging.NOTSET
-    assert not any(logging.getLogger(name).handlers for name in SPEAKERS)
+    assert level() == logging.NOTSET
+    assert not any(logging.getLogger(name).handlers for name in PACKAGES)
 
 
 def test_who_does_not_listen_costs_no_sentence(right, monkeypatch):
@@ -109,7 +109,7 @@ def test_who_does_not_listen_costs_no_sentence(right, monkeypatch):
 
 def test_steps_are_heard_from_those_alone_who_are_listened_to():
     heard = []
-    with steps_of((RUNS,), lambda done, whole: heard.append((done, whole))):
+    with steps_from((RUNS,), lambda done, whole: heard.append((done, whole))):
         logging.getLogger(RUNS).info("x", extra={"done": 3, "whole": 7})
         logging.getLogger(RUNS).info("no steps")
         logging.getLogger("cprbm.march").info("x", extra={"done": 5, "whole": 7})

@@ -9,7 +9,8 @@ import pytest
 
 from comparisons.choices import Choices
 from comparisons.cli.main import run
-from comparisons.pairing import ALONE, Runs, Solvers, solid_answer
+from comparisons.crew import ALONE
+from comparisons.pairing import Runs, Solvers, solid_answer
 from comparisons.solid_limits import solid_limit
 from comparisons.tolerances.solids import LARGEST
 from comparisons.tolerances.tolerated import paired_within, solved

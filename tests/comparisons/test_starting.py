@@ -15,7 +15,7 @@ import pytest
 import cprbm
 from comparisons import cases
 from comparisons.cli.main import run
-from comparisons.pairing import ALONE, crew_of
+from comparisons.crew import ALONE, crew_of
 from comparisons.starting import present
 from comparisons.starting.begun import SCHEMA, text
 from cprbm_scene import read

@@ -16,7 +16,8 @@ from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.cli.options import tolerance
 from comparisons.cli.solve_ import command
-from comparisons.pairing import ALONE, Runs, Solvers, solvers_of
+from comparisons.crew import ALONE
+from comparisons.pairing import Runs, Solvers, solvers_of
 from comparisons.tolerances.search import FIRST, Estimate, Stated, search
 from comparisons.tolerances.settled import settled
 from comparisons.tolerances.tolerated import paired_within, solved

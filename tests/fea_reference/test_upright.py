@@ -20,8 +20,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from comparisons.archive import packed, unpacked
 from comparisons.audit import audit
+from comparisons.store import packed, unpacked
 from cprbm_scene import Ending, Scene
 from fea_reference import Settings, answer
 from fea_reference.upright import upright

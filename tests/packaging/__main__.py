@@ -30,7 +30,7 @@ QUICK = (
     "tests/fea_reference/test_contact.py",
     "tests/elastica_reference/test_pieces.py",
     "tests/comparisons/test_starting.py",
-    "tests/comparisons/test_archive.py",
+    "tests/comparisons/test_store.py",
     "tests/comparisons/test_documents.py",
     "tests/comparisons/test_pairing.py",
     "tests/comparisons/test_report.py",

@@ -33,13 +33,13 @@ def command(
     from comparisons.choices import Choices
     from comparisons.cli import output
     from comparisons.pairing import solvers_of
-    from comparisons.resuming import resumed
+    from comparisons.store import run_into
     from tests.relations import study
     from tests.relations.result import result_of
 
     output.room_for(json_file, out)
     show = StudyOutput(json_file, out, quiet)
-    with resumed(out, solvers_of(planted), ()) as whole:
-        asked = study.pieces(scenes, Choices(links=links, elements=elements), whole.solvers)
+    with run_into(out, solvers_of(planted)) as run:
+        asked = study.pieces(scenes, Choices(links=links, elements=elements), run.solvers)
         found = run_steps(study.Relations(), output.progress(asked, shown=not quiet), study.with_piece, result_of, show)
     return 1 if found.broken else 0

@@ -8,7 +8,8 @@ from itertools import chain
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.pairing import Solver, Solvers
+from comparisons.crew import Solver
+from comparisons.pairing import Solvers
 from cprbm_scene import SceneError
 from tests.relations.image import Data
 from tests.relations.measured import Violation, violations

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from comparisons.audit import Audit, audit
-from comparisons.memory import Remembering
+from comparisons.store import AnswerMemory
 from cprbm_scene import Answer, Scene
 
 
 @dataclass(frozen=True, slots=True)
-class Auditing(Remembering):
+class Auditing(AnswerMemory):
     """A crew with a memory of answers and of audits.
 
     Attributes:

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.pairing import Solver, Solvers
+from comparisons.crew import Solver
+from comparisons.pairing import Solvers
 from cprbm_scene import Answer, Ending, Mistake, Scene, SceneError
 from tests.cprbm.scenes import cantilever_data, force
 from tests.robustness.drawing import Drawn

@@ -18,9 +18,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
 
-from comparisons.pairing import COLLECTED
-from comparisons.processes import deaf
-from comparisons.threads import ONE_THREAD
+from comparisons.executor import COLLECTED, ONE_THREAD, interrupts_ignored
 from tests.robustness.apart import Crashed, End, Limits, apart
 
 A = TypeVar("A")
@@ -110,7 +108,7 @@ def _started(prepare: Callable[[], None]) -> _Host[Any]:
     before = {name: os.environ.get(name) for name in ONE_THREAD}
     os.environ.update(ONE_THREAD)
     try:
-        with deaf():
+        with interrupts_ignored():
             process.start()
     finally:
         for name, value in before.items():

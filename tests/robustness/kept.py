@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from comparisons.documents import Plain
-from comparisons.sources import program
+from comparisons.provenance import program
 from tests.robustness.outcomes import Outcome, packed, unpacked
 
 

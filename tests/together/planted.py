@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from comparisons.choices import Choices
-from comparisons.pairing import Runs, Solver, Solvers
+from comparisons.crew import Solver
+from comparisons.pairing import Runs, Solvers
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict

@@ -8,7 +8,7 @@ from comparisons.budgets.accounts import Account, accounted
 from comparisons.budgets.parts import Budget, budgets_of
 from comparisons.budgets.runs import budgeted
 from comparisons.choices import Choices
-from comparisons.memory import Remembering
+from comparisons.store import AnswerMemory
 from comparisons.studies.last_loads import at_last_loads
 from tests.fea_reference.cantilever import LENGTH, POISSON, WIDTH, YOUNG, cantilever, force
 from tests.references import hinge as reference
@@ -19,7 +19,7 @@ from tests.references.small import cantilever_deflection, rectangle_second_momen
 def hinge() -> Account:
     scene = at_last_loads(cases.opened("hinge"))
     probes = tuple(probe for probe in scene.probes if probe.name in ("B.displacement", "D.displacement", "BD.rotation"))
-    return accounted(scene.model_copy(update={"probes": probes}), Choices(), Remembering())
+    return accounted(scene.model_copy(update={"probes": probes}), Choices(), AnswerMemory())
 
 
 def test_the_hinges_links_and_rest_are_those_of_the_exact_answer(hinge):
@@ -74,5 +74,5 @@ def test_a_straight_cantilevers_shear_and_links_are_closed_forms():
 
 
 def _of(scene, probe, choices) -> Budget:
-    budgets = budgets_of(scene, budgeted(scene, choices, Remembering()))
+    budgets = budgets_of(scene, budgeted(scene, choices, AnswerMemory()))
     return next(each for each in budgets if each.row.probe.name == probe)

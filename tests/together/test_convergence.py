@@ -16,7 +16,8 @@ from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.converging.families import Convergence, Family, converged
 from comparisons.converging.tables import beside, between
-from comparisons.pairing import ALONE, Solvers
+from comparisons.crew import ALONE
+from comparisons.pairing import Solvers
 from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Scene
 from tests.references import hinge as exact

@@ -12,7 +12,8 @@ import cprbm
 from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.pairing import Solvers, cprbm_answer, crew_of, fea_answer, paired
+from comparisons.crew import crew_of
+from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
 from comparisons.verdict.words import Word
 from cprbm_scene import Scene
 from tests.together.planted import COARSE, without_contact

@@ -14,10 +14,10 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.memory import Remembering
 from comparisons.pairing import Solvers
 from comparisons.quantities import arc_lengths, norm
 from comparisons.stations import station_of
+from comparisons.store import AnswerMemory
 from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.tolerated import solved
 from comparisons.verdict.point_forces import away_from_point_forces
@@ -142,7 +142,7 @@ def test_nothing_finer_is_solved_than_the_cheapest_n_needs_for_its_own_estimate(
     scene, _ = QUESTIONS[case]
     _, found = solved(scene, solver, BENDING, tolerance, SOLVERS, silent)
     answers = SOLVERS.cprbm if solver == "cprbm" else SOLVERS.fea
-    levels = SceneLevels(scene, answers, BENDING, ("bending",), Remembering(solvers=SOLVERS), beside=solver == "cprbm")
+    levels = SceneLevels(scene, answers, BENDING, ("bending",), AnswerMemory(solvers=SOLVERS), beside=solver == "cprbm")
     n = smallest(levels, tolerance, 100)
     assert levels.checked(n).fraction <= tolerance
     if found.n < max(found.solved):  # else it is settled there, and nothing finer was needed

@@ -9,13 +9,14 @@ from math import radians
 
 import pytest
 
-from comparisons import archive, documents, sheets
+from comparisons import documents, sheets, store
 from comparisons.choices import Choices
 from comparisons.claims import standings
 from comparisons.converging import tables
 from comparisons.converging.critical import critical_families
 from comparisons.converging.families import converged
-from comparisons.pairing import ALONE, Solvers
+from comparisons.crew import ALONE
+from comparisons.pairing import Solvers
 from cprbm_scene import Claim, Loss
 from tests.verdict.comparing import compared
 from tests.verdict.jumping import BACK, FORWARD, Jumping
@@ -61,10 +62,10 @@ def test_without_critical_points_nothing_is_said_of_branches(hinge):
 
 def test_an_answer_survives_the_archive_with_its_branches(crank):
     answer = C(crank, Choices())
-    again = archive.unpacked(archive.packed(answer))
+    again = store.unpacked(store.packed(answer))
     assert again.critical == answer.critical
     assert [station.branch for station in again.stations] == [station.branch for station in answer.stations]
-    assert archive.unpacked(archive.packed(STOPPING[0](crank, Choices()))).critical[0].after is None
+    assert store.unpacked(store.packed(STOPPING[0](crank, Choices()))).critical[0].after is None
 
 
 def test_a_passed_critical_point_is_in_the_json_the_table_and_the_archive(crank):
@@ -78,12 +79,12 @@ def test_a_passed_critical_point_is_in_the_json_the_table_and_the_archive(crank)
     assert data["solvers"]["fea"]["gone_over"] == []
     assert data["critical"][0]["gone_over"]["cprbm"] == 0.29
     answer = found.runs.cprbm[0]
-    packed = json.loads(documents.text(archive.packed(answer)))
-    assert archive.unpacked(packed).gone_over == answer.gone_over
+    packed = json.loads(documents.text(store.packed(answer)))
+    assert store.unpacked(packed).gone_over == answer.gone_over
     (sheet,) = (one for one in sheets.of_answer(scene, answer) if one.title.startswith("Critical values"))
     assert "0.290 rad" in sheet.rows[0][3]
     del packed["gone_over"]  # an archive of before there was such a record
-    assert archive.unpacked(packed).gone_over == ()
+    assert store.unpacked(packed).gone_over == ()
 
 
 def test_a_claim_of_a_critical_value_is_compared_with_the_cprbms(crank):

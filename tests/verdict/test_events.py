@@ -18,7 +18,7 @@ from comparisons.verdict.station_events import Place
 from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Critical, Ending, Loss, Stage
 from cprbm_scene.frozendict import frozendict
-from tests.verdict.comparing import altered, compared, counted, only, opened, said_of, word_of
+from tests.verdict.comparing import altered, compared, counted, ending, only, opened, said_of, word_of
 from tests.verdict.jumping import FORWARD, Jumping
 from tests.verdict.made_up import MadeUp
 
@@ -116,6 +116,17 @@ def test_the_word_of_a_critical_point(crank, cprbm, fea, word):
     said = {" ".join(each.value for each in row.judged if each is not None) for row in found.criticals}
     assert said == {word}
     assert set(counted(found)) == {"AGREE"}
+
+
+@pytest.mark.parametrize(("beyond", "word"), [(0, "UNDECIDED RUN_ENDED"), (1, "DIFFER EVENTS")])
+@pytest.mark.parametrize("solver", ["cprbm", "fea"])
+def test_a_run_that_ends_before_a_critical_point_says_nothing_of_it(forward, solver, beyond, word):
+    """The run without the critical point has ``beyond`` stations behind 70.4°."""
+    reached = beyond + sum(station < FORWARD for station in forward.stages[0].stations)
+    runs = {"cprbm": C, "fea": F}
+    runs[solver] = ending(replace(runs[solver], jumps=False), reached)
+    (row,) = criticals(forward, *runs.values())
+    assert " ".join(each.value for each in row.judged) == word
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import cprbm
 import fea_reference
 from comparisons import cases
 from cprbm.equilibrium.factors import factorise
-from cprbm.equilibrium.newton import equilibrium
+from cprbm.equilibrium.solving import equilibrium
 from cprbm.equilibrium.system import rest_state
 from cprbm_scene import Loss, read, scene_from
 from tests.cprbm.second.systems import loop
@@ -191,3 +191,30 @@ def test_a_step_and_its_inertia_do_not_grow_faster_than_the_mesh():
         factors, _ = factorise(system, rest_state(system))
         sizes.append(factors.columns.size + factors.border.size)
     assert sizes[1] < 4.2 * sizes[0]
+
+
+def test_sections_beside_a_moment_inside_an_element_turn_as_the_elastica_does():
+    # reference: dφ/ds = M/EI before the moment, 0 behind it; EI = 2.1e11 · 0.01 · 1e-9/12 = 0.175 N·m²
+    at, moment, bending_stiffness = 0.1 * 0.78, 0.5, 0.175
+    data = {
+        "name": "moment",
+        "materials": {"steel": STEEL},
+        "bodies": {"ground": {"motion": "fixed", "points": {"A": [0.0, 0.0]}}},
+        "beams": {
+            "beam": {
+                "curve": {"kind": "line", "start": [0.0, 0.0], "end": [0.1, 0.0]},
+                "thickness": 1e-3,
+                "width": 0.01,
+                "material": "steel",
+                "start": {"joint": "weld", "point": "A"},
+                "end": {"joint": "free"},
+            }
+        },
+        "loads": {"M": {"kind": "beam_moment", "beam": "beam", "at": 0.78}},
+        "stages": [{"name": "turn", "steps": "M", "stations": [moment]}],
+        "probes": [{"of": "A", "quantity": "reaction_moment"}],
+    }
+    (station,) = solved(scene_from(data)).stations
+    state = station.beams["beam"]
+    expected = moment / bending_stiffness * np.minimum(state.s, at)
+    assert state.section_angle == pytest.approx(expected, abs=1e-11)

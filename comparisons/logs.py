@@ -1,0 +1,61 @@
+"""Log records of solvers and harness: printed on standard error on request, and counted for progress bars."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+PACKAGES = ("cprbm", "fea_reference", "elastica_reference", "comparisons")
+"""Packages with log records; a logger below has the level of its package."""
+
+SOLVERS = PACKAGES[:3]
+RUNS = "comparisons.crew"
+"""Logger of the finished runs of a comparison."""
+
+
+def level() -> int:
+    """The level from which on records are printed; NOTSET if no record is printed."""
+    return logging.getLogger(PACKAGES[0]).level
+
+
+def print_from(least: int) -> None:
+    """Print records from the level ``least`` on; with NOTSET print no further record."""
+    handler = logging.StreamHandler()
+    handler.setFormatter(logging.Formatter("cprbm: %(message)s"))
+    for name in PACKAGES:
+        logger = logging.getLogger(name)
+        logger.setLevel(least)
+        logger.handlers = [handler] if least else []
+        logger.propagate = not least
+
+
+class _StepHandler(logging.Handler):
+    """Handler that passes on the numbers of finished and of all steps."""
+
+    def __init__(self, call: Callable[[int, int], None]) -> None:
+        super().__init__(logging.INFO)
+        self._call = call
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Pass the numbers on, if the record has both."""
+        done, whole = getattr(record, "done", None), getattr(record, "whole", None)
+        if done is not None and whole is not None:
+            self._call(done, whole)
+
+
+@contextmanager
+def steps_from(names: tuple[str, ...], call: Callable[[int, int], None]) -> Iterator[None]:
+    """Context in which ``call`` gets the numbers of finished and of all steps from the loggers ``names``."""
+    handler = _StepHandler(call)
+    loggers = [logging.getLogger(name) for name in names]
+    before = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.addHandler(handler)
+        logger.setLevel(logging.INFO)
+    try:
+        yield
+    finally:
+        for logger, old in zip(loggers, before, strict=True):
+            logger.removeHandler(handler)
+            logger.setLevel(old)

@@ -1,0 +1,61 @@
+"""Origin of a number besides its question: sources, libraries, Python and machine."""
+
+from __future__ import annotations
+
+import os
+import platform
+import sys
+from functools import cache
+from hashlib import sha256
+from importlib.metadata import PackageNotFoundError, version
+from importlib.resources import files
+from importlib.util import find_spec
+from pathlib import Path
+
+_PACKAGES = ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons")
+_LIBRARIES = ("numpy", "scipy", "scikit-fem")
+_OPTIONAL = ("casadi",)
+_PROCESSORS = Path("/proc/cpuinfo")
+
+
+@cache
+def program(*further: str) -> str:
+    """Digest of Python, of the libraries that compute and of all sources, with the sources of ``further`` packages."""
+    digest = sha256(sys.version.encode())
+    for library in _LIBRARIES:
+        digest.update(f"{library} {version(library)}\n".encode())
+    sources = [file for package in (*_PACKAGES, *further) for file in Path(str(files(package))).rglob("*.py")]
+    for source in sorted(file.name.encode() + b"\0" + file.read_bytes() for file in sources):
+        digest.update(source)
+    return digest.hexdigest()
+
+
+def machine() -> dict[str, str | int]:
+    """Processor, number of cores, system, and the versions of Python and of the libraries that compute."""
+    return {
+        "cpu": _processor(),
+        "cores": os.cpu_count() or 1,
+        "system": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+        **{name: version(name) for name in _LIBRARIES},
+        **{name: version(name) for name in _OPTIONAL if find_spec(name) is not None},
+    }
+
+
+def page_origin() -> dict[str, str | int]:
+    """The machine, with the versions of this program and of the library that draws, for a page."""
+    try:
+        own = version("cprbm")
+    except PackageNotFoundError:
+        own = "from its sources"
+    return {"cprbm": own, **machine(), "matplotlib": version("matplotlib")}
+
+
+def _processor() -> str:
+    """Name of the processor as the system states the name."""
+    if _PROCESSORS.is_file():
+        for line in _PROCESSORS.read_text(encoding="utf-8", errors="replace").splitlines():
+            key, _, value = line.partition(":")
+            if key.strip() == "model name":
+                return value.strip()
+    return platform.processor() or "unknown"

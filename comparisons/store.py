@@ -1,0 +1,311 @@
+"""Answers that no run solves twice: in memory, and as compressed files that outlive a killed run.
+
+A file has the name of its key, a digest of the question (:func:`key`) and of the program.  The process that solves also
+writes, at once, into ``.unfinished`` of the folder of a run.  A run that comes to its end removes ``.unfinished``.  A
+damaged file is ignored with a note.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import logging
+import math
+import shutil
+import zlib
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field, fields, is_dataclass, replace
+from enum import Enum
+from functools import cache, partial
+from hashlib import sha256
+from pathlib import Path
+from types import NoneType
+from typing import Any, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from comparisons.choices import Choices
+from comparisons.crew import Crew, Decided, Job, Solver, crew_of
+from comparisons.pairing import Solvers, load_solvers
+from comparisons.provenance import program
+from comparisons.writing import clear_partial, write
+from cprbm_scene import Answer, Scene
+from cprbm_scene.answer import frozen_array
+from cprbm_scene.frozendict import frozendict
+
+_LOG = logging.getLogger(__name__)
+
+_FOLDER, _ENDED = ".unfinished", ".ended"
+"""Folder of kept answers, and its name during the removal: a part of the answers is never taken for the whole."""
+
+_COMPRESSION = 4
+"""Level of gzip: level 6 takes 2.5 times as long for two per cent."""
+
+_PAIRS = ("touching", "places", "place", "force")
+"""Fields with arrays (k, 2): a list of no pairs does not show its second size."""
+
+_CHOSEN: Mapping[str, tuple[str, ...]] = {
+    "cprbm": ("links", "formulation"),
+    "fea": ("elements", "kinematics", "penetration"),
+    "solid": ("elements", "across"),
+    "exact": (),
+}
+"""Choices that an answer depends on, by solver."""
+
+
+_DESCRIPTION = {
+    "cprbm": "CPRBM {0.formulation}, N = {0.links}",
+    "fea": "FEA {0.kinematics}, {0.elements} elements",
+    "solid": "solid, {0.elements} × {0.across} elements",
+    "exact": "exact",
+}
+"""Solve of a solver at its choices."""
+
+
+def packed_json(answers: Mapping[str, Answer]) -> bytes:
+    """Answers by name as compressed JSON; without a time in the header equal answers give equal bytes.
+
+    A number that is not finite becomes null, a member of an enumeration its name.
+    """
+    text = json.dumps({name: packed(answer) for name, answer in answers.items()}, ensure_ascii=False, allow_nan=False)
+    return gzip.compress(text.encode("utf-8"), _COMPRESSION, mtime=0)
+
+
+def packed(answer: Answer) -> dict[str, Any]:
+    """An answer as plain data."""
+    return {each.name: _plain(getattr(answer, each.name)) for each in fields(answer)}
+
+
+def unpacked(data: dict[str, Any]) -> Answer:
+    """The answer of :func:`packed`; fields that the data lack have their defaults.
+
+    Raises:
+        KeyError, TypeError, ValueError: ``data`` is no answer.
+    """
+    answer: Answer = _value(Answer, data)
+    return answer
+
+
+def _plain(value: Any) -> Any:  # noqa: ANN401 - a field of a record, and JSON
+    match value:
+        case Enum():
+            return value.name
+        case Mapping():
+            return {name: _plain(each) for name, each in value.items()}
+        case np.ndarray():
+            return value.tolist() if np.isfinite(value).all() else _plain(value.tolist())
+        case tuple() | list():
+            return [_plain(each) for each in value]
+        case float():
+            return float(value) if math.isfinite(value) else None
+        case _ if is_dataclass(value):
+            return {each.name: _plain(getattr(value, each.name)) for each in fields(value)}
+    return value
+
+
+_hints = cache(get_type_hints)
+
+
+def _value(kind: Any, data: Any, name: str = "") -> Any:  # noqa: ANN401 - a type of an annotation, and JSON
+    """The value of plain ``data`` for a field ``name`` that is annotated with ``kind``."""
+    parts = get_args(kind)
+    if NoneType in parts:
+        return None if data is None else _value(parts[0], data, name)
+    origin = get_origin(kind)
+    if origin is np.ndarray:
+        array = frozen_array(data)
+        return np.reshape(array, (-1, 2)) if name in _PAIRS else array
+    if origin is tuple:
+        return tuple(_value(parts[0], each) for each in data)
+    if origin is not None:
+        return frozendict({key: _value(parts[1], each, name) for key, each in data.items()})
+    if isinstance(kind, type) and is_dataclass(kind):
+        hints = _hints(kind)
+        return kind(**{key: _value(hints[key], each, key) for key, each in data.items()})
+    if isinstance(kind, type) and issubclass(kind, Enum):
+        return kind[data]
+    return math.nan if kind is float and data is None else data
+
+
+def relevant(solver: str, choices: Choices) -> Choices:
+    """The choices that a ``solver`` looks at, and the standard values of all others."""
+    chosen: dict[str, Any] = {name: getattr(choices, name) for name in _CHOSEN[solver]}
+    counts = {name: frozendict(each) for name, each in chosen.items() if isinstance(each, Mapping)}
+    return replace(Choices(), **chosen | counts)
+
+
+def digest(*parts: str) -> str:
+    """Digest of texts and of the program."""
+    return sha256("\n".join((*parts, program())).encode()).hexdigest()
+
+
+def key(solver: str, scene: Scene, choices: Choices, own: str = "") -> str:
+    """Digest of all that an answer depends on; the file of the scene is no part.
+
+    Args:
+        solver: name of the solver.
+        scene: the question, with all values of its parameters.
+        choices: how finely, and by which variants.
+        own: name of the function that answers.
+    """
+    return digest(solver, own, scene.model_dump_json(exclude={"file"}), repr(relevant(solver, choices)))
+
+
+def read(path: Path) -> Answer | None:
+    """The answer in a file; None without a file, and with a note where the file is damaged.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    try:
+        return unpacked(json.loads(gzip.decompress(path.read_bytes()))["answer"])
+    except FileNotFoundError:
+        return None
+    except (EOFError, zlib.error, gzip.BadGzipFile, KeyError, TypeError, ValueError) as error:
+        _LOG.warning("%s is damaged (%s); the answer is solved again", path, error)
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class KeptSolver:
+    """A solver whose answers are kept in a folder, and read from there at the second question.
+
+    Attributes:
+        solver: the function that answers.
+        name: of the solver.
+        folder: of the files.
+    """
+
+    solver: Solver
+    name: str
+    folder: Path
+
+    def __call__(self, scene: Scene, choices: Choices) -> Answer:
+        """The answer, kept or new.
+
+        Raises:
+            SceneError: the solver refuses the question.
+            OSError: the answer cannot be kept.
+        """
+        own = getattr(self.solver, "__qualname__", None) or repr(self.solver)
+        path = self.folder / f"{key(self.name, scene, choices, own)}.json.gz"
+        answer = read(path)
+        if answer is None:
+            answer = self.solver(scene, choices)
+            write(path, packed_json({"answer": answer}))
+        return answer
+
+
+def kept(solvers: Solvers, folder: Path) -> Solvers:
+    """The solvers with their answers kept in a folder."""
+    own = {name: getattr(solvers, name) for name in _CHOSEN}
+    changes: dict[str, Any] = {name: KeptSolver(each, name, folder) for name, each in own.items() if each is not None}
+    return replace(solvers, **changes)
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A run into a folder, which goes on where a killed run has ended.
+
+    Attributes:
+        solvers: with kept answers.
+        crew: worker processes.
+        folder: of the kept answers; None for a run without a folder.
+        names: of all questions, in order.
+    """
+
+    solvers: Solvers
+    crew: Crew
+    folder: Path | None
+    names: tuple[str, ...]
+
+    def mark_shown(self, name: str) -> None:
+        """Note that the page is about to show a question.
+
+        Raises:
+            OSError: the folder cannot be written to.
+        """
+        if self.folder is not None:
+            write(self.folder / f"{name}.shown", name)
+
+    def covers(self, names: Collection[str]) -> bool:
+        """True if ``names`` have all questions of the present page; otherwise the present page stays."""
+        if self.folder is None:
+            return True
+        return not any((self.folder / f"{name}.shown").exists() for name in self.names if name not in names)
+
+
+@contextmanager
+def run_into(out: Path | None, solvers: Solvers, names: tuple[str, ...] = (), processes: int = 1) -> Iterator[Run]:
+    """A run of the questions ``names`` into the folder ``out``, by ``processes``; None keeps no answers.
+
+    Raises:
+        OSError: the folder cannot be written to.
+    """
+    if processes > 1:
+        load_solvers()
+    with crew_of(processes) as crew:
+        if out is None:
+            yield Run(solvers, crew, None, names)
+            return
+        folder, ended = out / _FOLDER, out / _ENDED
+        for path in (folder, ended):
+            if path.is_symlink():  # answers belong into this folder, and no removal leaves the folder
+                path.unlink()
+        shutil.rmtree(ended, ignore_errors=True)
+        clear_partial((out, folder, *(out / name for name in names)))
+        yield Run(kept(solvers, folder), crew, folder, names)
+        with suppress(FileNotFoundError):  # nothing was solved
+            folder.rename(ended)
+        shutil.rmtree(ended, ignore_errors=True)
+
+
+def _silent(text: str) -> None:
+    """Print nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerMemory(Crew):
+    """A crew with a memory of the answers of ``solvers``.
+
+    Attributes:
+        solvers: the functions that answer.
+        say: called with a description of the next solve.
+        known: all answers.
+    """
+
+    solvers: Solvers = field(default_factory=Solvers)
+    say: Callable[[str], None] = _silent
+    known: dict[Job, Answer] = field(default_factory=dict)
+
+    def answers(self, jobs: list[Job]) -> list[Answer]:
+        """The answers to jobs, in the order of the jobs; only unknown answers are solved.
+
+        Raises:
+            SceneError: a solver refuses a job.
+        """
+        known = [(solver, scene, relevant(self._name(solver), choices)) for solver, scene, choices in jobs]
+        new = {short: job for short, job in zip(known, jobs, strict=True) if short not in self.known}
+        if new:
+            self.say("; ".join(dict.fromkeys(self._description(job) for job in new.values())))
+            # not super(), which a class with slots does not know
+            self.known.update(zip(new, Crew.begin(self, list(new.values()))(), strict=True))
+        return [self.known[short] for short in known]
+
+    def begin(self, jobs: list[Job], decided: Decided | None = None) -> Callable[[], list[Answer]]:
+        """A function for the answers; all jobs are solved with its call, since the memory grows until then."""
+        return partial(self.answers, jobs)
+
+    def sizes(self, solver: Solver, scene: Scene) -> tuple[int, ...]:
+        """Every number of links or elements at which a solver has answered a scene, ascending."""
+        mine = [choices for own, asked, choices in self.known if own == solver and asked == scene]
+        counts = [choices.links if solver == self.solvers.cprbm else choices.elements for choices in mine]
+        return tuple(sorted({count for count in counts if isinstance(count, int)}))
+
+    def _name(self, solver: Solver) -> str:
+        return next((name for name in _CHOSEN if getattr(self.solvers, name) == solver), "fea")
+
+    def _description(self, job: Job) -> str:
+        solver, scene, choices = job
+        return f"{scene.name}: {_DESCRIPTION[self._name(solver)].format(choices)}"

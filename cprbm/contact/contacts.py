@@ -1,0 +1,56 @@
+"""Contacts of a state: possible places, and the places that are closed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cprbm.contact.candidates import Geometry, fixed_places, sides_at_rest, taken
+from cprbm.contact.gap import Places
+from cprbm.contact.settling import new_counters, settle
+from cprbm_scene.answer import Array, Flags, Ints
+
+TOUCHING = 1e-9
+"""Gap, over the longest beam, below which curves touch: round-off of a scene's coordinates."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """Possible places of contact, marks of the closed places, sides of the pairs, counters.
+
+    ``given_up`` holds pairs and pieces at which a moving place failed; the pairs ``kept_open`` have no places.
+    """
+
+    places: Places
+    closed: Flags
+    sides: Array
+    counters: Ints
+    given_up: frozenset[tuple[int, int]] = frozenset()
+    kept_open: frozenset[int] = frozenset()
+
+    def pressing(self, pair: int) -> Flags:
+        """Closed places of a pair."""
+        return np.asarray(self.closed & (self.places.pair == pair))
+
+    def gaps(self, geometry: Geometry, z: Array) -> Array:
+        """Gaps of all places at a state, the feet moved; the present feet stay."""
+        count = len(self.closed)
+        places, gaps = taken(self.places, np.arange(count)), np.empty(count)
+        settle(z, geometry.arrays, places, gaps, np.empty(count), self.counters, 0)
+        return gaps
+
+
+def touching_as_drawn(geometry: Geometry, z: Array, contacts: Contacts) -> frozenset[int]:
+    """Pairs that touch in a state as drawn, at a weld on the rigid body of the foot too."""
+    near = np.ones(len(geometry.pairs), dtype=bool)
+    places = fixed_places(geometry, z, contacts.sides, near, contacts.counters, welds=True)
+    gaps = replace(contacts, places=places, closed=np.zeros(len(places.pair), dtype=bool)).gaps(geometry, z)
+    return frozenset(places.pair[gaps < TOUCHING].tolist())
+
+
+def open_contacts(geometry: Geometry, z: Array) -> Contacts:
+    """Contacts of a state as drawn, without any place."""
+    counters = new_counters()
+    nothing = taken(geometry.possible, np.zeros(0, dtype=np.int64))
+    return Contacts(nothing, np.zeros(0, dtype=bool), sides_at_rest(geometry, z, counters), counters)

@@ -1,0 +1,162 @@
+"""Contacts that close or open within a load step, and their location.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+g        least gap of an open pair of curves
+F        sum of the contact forces of a closed pair
+=======  ====================================================================================
+
+Brent's method locates the first closing, g = 0 on states with the pair kept open.  An opening is the zero of F,
+continued by −g where the pair is open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from cprbm.contact import TOUCHING, taken, touching_as_drawn
+from cprbm.equilibrium.contact_gaps import least_gap
+from cprbm.equilibrium.newton import NotConvergedError, Solved
+from cprbm.equilibrium.solving import at_state
+from cprbm.equilibrium.system import State, System
+
+LOCATED = 1e-12
+"""Accuracy of the fraction of a step."""
+
+
+class ContactChange(NamedTuple):
+    """Pairs that close or open at a fraction ``share`` of a step."""
+
+    share: float
+    pairs: frozenset[int]
+    closes: bool
+
+
+def pressing(solved: Solved) -> frozenset[int]:
+    """Numbers of the closed pairs."""
+    contacts = solved.state.contacts
+    return frozenset() if contacts is None else frozenset(contacts.places.pair[contacts.closed].tolist())
+
+
+def pressing_names(solved: Solved) -> frozenset[str]:
+    """Names of the contacts that press, at an own pin too."""
+    geometry, rows = solved.system.geometry, solved.system.mechanism.rows
+    if geometry is None:
+        return frozenset()
+    pins = {row.name.removesuffix(".pin") for row, closed in zip(rows, solved.state.driven, strict=True) if closed}
+    return frozenset(pair.name for k, pair in enumerate(geometry.pairs) if k in pressing(solved) or pair.name in pins)
+
+
+def drawn_names(system: System, state: State) -> frozenset[str]:
+    """Names of the contacts that touch in a state as drawn: such contacts neither close nor open later."""
+    geometry, contacts = system.geometry, state.contacts
+    if geometry is None or contacts is None:
+        return frozenset()
+    return frozenset(geometry.pairs[pair].name for pair in touching_as_drawn(geometry, state.z, contacts))
+
+
+def touches(solved: Solved) -> bool:
+    """True if open places touch: the state has no two-sided tangent."""
+    contacts = solved.state.contacts
+    return contacts is not None and bool(np.any(np.abs(solved.gaps[~contacts.closed]) < TOUCHING))
+
+
+def kept_open(state: State, pairs: frozenset[int]) -> State:
+    """The state with open pairs, which stay open in an equilibrium."""
+    contacts = state.contacts
+    if contacts is None:
+        return state
+    kept = ~np.isin(contacts.places.pair, list(pairs))
+    places, closed = taken(contacts.places, kept), contacts.closed[kept]
+    return replace(state, contacts=replace(contacts, places=places, closed=closed, kept_open=pairs))
+
+
+def may_close(state: State) -> State:
+    """The state with pairs that are free to close again."""
+    contacts = state.contacts
+    return state if contacts is None else replace(state, contacts=replace(contacts, kept_open=frozenset()))
+
+
+def pair_name(system: System, pair: int) -> str:
+    """Name of a pair's contact."""
+    return "" if system.geometry is None else system.geometry.pairs[pair].name
+
+
+def without(solved: Solved, pair: int) -> Solved:
+    """The state without the places of a pair, of which the force is about zero.
+
+    Raises:
+        NotConvergedError: the Hessian is singular.
+    """
+    state, contacts = solved.state, solved.state.contacts
+    assert contacts is not None
+    closed = contacts.closed & ~contacts.pressing(pair)
+    return at_state(solved.system, replace(state, contacts=replace(contacts, closed=closed)))
+
+
+def pair_force(solved: Solved, pair: int) -> float:
+    """F."""
+    contacts = solved.state.contacts
+    return 0.0 if contacts is None else float(contacts.places.force[contacts.pressing(pair)].sum())
+
+
+def first_change(
+    before: Solved, after: Solved, solve: Callable[[float, frozenset[int]], Solved]
+) -> ContactChange | None:
+    """The first pair that closes or opens in a step.
+
+    Args:
+        before, after: the step.
+        solve: state at a fraction of the step, with pairs kept open.
+
+    Raises:
+        NotConvergedError: a state on the way was not found.
+    """
+    old, new = pressing(before), pressing(after)
+    found = _closing(before, new - old, solve)
+    for pair in sorted(old - new):
+        found += _opening(pair, solve)
+    return min(found, default=None)
+
+
+def _closing(
+    before: Solved, pairs: frozenset[int], solve: Callable[[float, frozenset[int]], Solved]
+) -> list[ContactChange]:
+    """The first closing of some pairs; empty for pairs that touch already, or stay apart when kept open."""
+    apart = frozenset(pair for pair in pairs if _gap(before, pair) > TOUCHING)
+    if not apart:
+        return []
+
+    def gap(share: float) -> float:
+        solved = solve(share, apart)
+        return min(_gap(solved, pair) for pair in apart)
+
+    if gap(1.0) >= 0.0:
+        return []
+    return [ContactChange(float(brentq(gap, 0.0, 1.0, xtol=LOCATED)), apart, closes=True)]
+
+
+def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[ContactChange]:
+    """The opening of a pair; empty if the force does not change its sign."""
+
+    def force(share: float) -> float:
+        solved = solve(share, frozenset())
+        return pair_force(solved, pair) if pair in pressing(solved) else -_gap(solved, pair)
+
+    if not force(0.0) > 0.0 > force(1.0):
+        return []
+    return [ContactChange(float(brentq(force, 0.0, 1.0, xtol=LOCATED)), frozenset([pair]), closes=False)]
+
+
+def _gap(solved: Solved, pair: int) -> float:
+    """g; a pair without places is far apart."""
+    geometry, state = solved.system.geometry, solved.state
+    if geometry is None or state.contacts is None:
+        raise NotConvergedError("the scene has no contacts")
+    return least_gap(geometry, state.z, state.contacts, pair)

@@ -1,0 +1,87 @@
+"""Equilibria with and without contacts, and repeated rows.
+
+The active set decides about contacts (:mod:`cprbm.equilibrium.contact_points`).  A solved equilibrium has the factors
+and the gradient of the final state, the closed places included.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from cprbm.equilibrium.contact_points import touched_equilibrium
+from cprbm.equilibrium.factors import Factors, SingularError, Springs, factorise
+from cprbm.equilibrium.newton import NotConvergedError, Solved, newton
+from cprbm.equilibrium.rank import repeated_rows
+from cprbm.equilibrium.system import State, System
+from cprbm.equilibrium.touching import Touching, contact_terms, touching
+
+REPEATED = 1e-9
+"""Largest violation of a row that repeats others, in units of length or rad."""
+
+
+def equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Solved:
+    """Equilibrium near a state under the state's targets, with the contacts that press there.
+
+    Args:
+        system: the mechanism.
+        start: state with targets.
+        iterations: largest number of Newton iterations.
+        springs: springs on the links' angles, of a descent.
+
+    Raises:
+        NotConvergedError: no equilibrium was found.
+    """
+    solved = _near(system, start, iterations, springs)
+    while (missed := _contradicted(solved)) is not None:
+        # a repeated row of a straight beam may be independent once the beam is bent
+        state = solved.state
+        repeated = repeated_rows(system, state)
+        if repeated.sum() >= state.repeated.sum():
+            name = system.mechanism.rows[missed].name
+            raise NotConvergedError(f"row {name} contradicts the others", locked=name)
+        counting = replace(state, driven=(state.driven | state.repeated) & ~repeated, repeated=repeated)
+        solved = _near(system, counting, iterations, springs)
+    return solved
+
+
+def _near(system: System, start: State, iterations: int, springs: Springs | None) -> Solved:
+    """Equilibrium with the prescribed rows of a state.
+
+    Raises:
+        NotConvergedError: no equilibrium was found.
+    """
+    if system.geometry is None or start.contacts is None:
+        return newton(system, start, iterations, springs)
+    touched = touched_equilibrium(system, system.geometry, start, start.contacts, iterations, springs)
+    return at_state(system, replace(touched.state, contacts=touched.contacts), springs, touched.iterations)
+
+
+def at_state(system: System, state: State, springs: Springs | None = None, iterations: int = 0) -> Solved:
+    """A state in equilibrium, with factors and gradient.
+
+    Raises:
+        NotConvergedError: the Hessian is singular.
+    """
+    try:
+        free, gradient = factorise(system, state, springs)
+        factors: Factors | Touching = free
+        values, contacts = np.zeros(0), state.contacts
+        if system.geometry is not None and contacts is not None and contacts.closed.any():
+            terms = contact_terms(system.geometry, state.z, contacts.places, contacts.closed)
+            factors, values = touching(free, terms), terms.values
+            gradient = gradient + terms.gradient
+    except (SingularError, np.linalg.LinAlgError) as singular:
+        raise NotConvergedError("the system is singular") from singular
+    return Solved(system, state, factors, gradient, iterations, values)
+
+
+def _contradicted(solved: Solved) -> int | None:
+    """Number of a violated repeated row, or None."""
+    state = solved.state
+    if not state.repeated.any():
+        return None
+    missed = np.where(state.repeated, np.abs(solved.values - state.target), 0.0)
+    worst = int(np.argmax(missed))
+    return worst if missed[worst] > REPEATED else None

@@ -1,0 +1,114 @@
+"""Where the contact of a beam begins and ends.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+g, s     gap, arc length of a joint on the first beam
+e        arc length of the zone's end
+=======  ====================================================================================
+
+Forces act at joints, so that the outermost force gives e to about one link.  Beyond that force the moment is smooth:
+g″ is zero at e and grows evenly.  Second differences of g at the next joints, extrapolated to zero, give e.  The spline
+spreads a force over one joint on either side; such joints do not count.  A moving place at the end of a zone is e.
+
+Clamp and contact share the force of a zone beside a weld, and a moment at an own pin is part of the contact: such a
+zone begins at the beam's end.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cprbm.contact import Geometry
+from cprbm.results.contacts import Pressed, pin_moments, pressed
+from cprbm.results.view import View
+from cprbm_scene.answer import Array
+
+ZONE = 3
+"""Closed joints from which a contact has a length: two neighbours share the force of a point."""
+
+SMEARED = 1
+"""Joints beside a force with a wrong second difference."""
+
+JOINTS = 5
+"""Joints for three second differences."""
+
+FARTHEST = 1.5
+"""Distance, in links, of e from the outermost force; a larger one shows another law of g."""
+
+
+def contact_ends(view: View, contact: str) -> list[float]:
+    """Arc lengths on the first beam at which the first zone begins and the last zone ends; empty without contact."""
+    geometry, found = view.solved.system.geometry, pressed(view, contact)
+    pins = [view.end(pin.beam, pin.end)[0] for pin in pin_moments(view, contact)]
+    if geometry is None or (not found and not pins):
+        return []
+    arcs = [each.arcs[0] for each in found] + pins
+    low, high = min(arcs), max(arcs)
+    pair = next(k for k, each in enumerate(geometry.pairs) if each.name == contact)
+    if geometry.pairs[pair].itself or (len(found) < ZONE and not pins) or not _of_joints(view, geometry, found):
+        return [low, high]
+    points, clamps = _points(view, found), _clamps(view, found)
+    begin, end = min([low, *clamps]), max([high, *clamps])
+    held = [*pins, *clamps, *points]
+    return [
+        begin if begin in held else _zone_end(view, geometry, pair, low, sense=-1.0),
+        end if end in held else _zone_end(view, geometry, pair, high, sense=1.0),
+    ]
+
+
+def _of_joints(view: View, geometry: Geometry, found: list[Pressed]) -> bool:
+    """True if the places lie on the first curve."""
+    contacts = view.solved.state.contacts
+    assert contacts is not None
+    places = contacts.places
+    return all(places.curve[each.k] == geometry.pairs[places.pair[each.k]].first for each in found)
+
+
+def _points(view: View, found: list[Pressed]) -> list[float]:
+    """Arc lengths of the moving places: e itself at the end of a zone."""
+    contacts = view.solved.state.contacts
+    assert contacts is not None
+    return [each.arcs[0] for each in found if contacts.places.moves[each.k]]
+
+
+def _clamps(view: View, found: list[Pressed]) -> list[float]:
+    """Arc lengths of the welds that share a zone's force."""
+    contacts = view.solved.state.contacts
+    assert contacts is not None
+    arrays, shares = view.solved.system.geometry, contacts.places.shares
+    assert arrays is not None
+    ends = []
+    for each in found:
+        if shares[each.k] != 0:
+            curve = int(contacts.places.curve[each.k])
+            ends.append(0.0 if shares[each.k] > 0 else float(arrays.curves[curve].arcs[-1]))
+    return ends
+
+
+def _zone_end(view: View, geometry: Geometry, pair: int, outermost: float, *, sense: float) -> float:
+    """e beyond the ``outermost`` force, in the ``sense`` of growing or falling arc lengths."""
+    contacts = view.solved.state.contacts
+    assert contacts is not None
+    places = contacts.places
+    mine = (places.pair == pair) & (places.curve == geometry.pairs[pair].first) & ~places.moves & ~contacts.closed
+    arcs = geometry.arrays.arc[places.piece] + places.xi * geometry.arrays.span[places.piece]
+    span = float(geometry.arrays.span[places.piece].max())
+    beyond = np.flatnonzero(mine & (sense * (arcs - outermost) > 0.25 * span))
+    joints = beyond[np.argsort(sense * arcs[beyond])][SMEARED - 1 : SMEARED - 1 + JOINTS]
+    s, g = arcs[joints], view.solved.gaps[joints]
+    if len(joints) < JOINTS or not np.all(np.isfinite(g)):
+        return outermost
+    parting, at = _second_differences(s, g)
+    if not np.all(np.diff(parting, prepend=0.0) > 0.0):
+        return outermost
+    # s as a polynomial of g″, at zero (Lagrange)
+    weights = [np.prod([other / (other - own) for other in np.delete(parting, i)]) for i, own in enumerate(parting)]
+    end = float(np.dot(weights, at))
+    return end if abs(end - outermost) <= FARTHEST * span else outermost
+
+
+def _second_differences(s: Array, g: Array) -> tuple[Array, Array]:
+    """g″ (k − 2,) of a cubic through three joints each, and the places, the means of the joints."""
+    slopes = np.diff(g) / np.diff(s)
+    return np.diff(slopes) / (0.5 * (s[2:] - s[:-2])), (s[2:] + s[1:-1] + s[:-2]) / 3.0
