@@ -27,19 +27,15 @@ import numpy as np
 from comparisons.verdict.bounds import bounds_of
 from comparisons.verdict.calibration import true_errors
 from comparisons.verdict.completeness import ABSENT_WHILE_OPEN
-from comparisons.verdict.point_forces import resultant, sharing_sources
+from comparisons.verdict.point_forces import resultant
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.station_events import MIRRORED, PASSED, Place
 from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Scene
-from cprbm_scene.statement import Quantity
 
 Judged = tuple[Word | None, Reason | None]
 """Word and reason; no word where a row takes no part."""
-
-SHARED: frozenset[Quantity] = frozenset({"force", "centre", "ends", "reaction", "reaction_moment"})
-"""Quantities of a contact or a joint that depend on how a clamp and a contact share a force."""
 
 RESOLVABLE = frozenset({Reason.COARSE, Reason.EVENT})
 """Reasons that a finer mesh or another station removes."""
@@ -67,7 +63,7 @@ def _judge(table: RunsTable, row: Row, *, faint: bool) -> Judged:
     limit = scene.limit(row.probe) * row.scale
     if max(bounds.total, bounds.same_theory) <= limit:
         return Word.AGREE, None
-    if _shares(table, row) is not None:
+    if row.shared is not None:
         return Word.UNDECIDED, Reason.NOT_UNIQUE
     if row.events.unsettled:
         return Word.UNDECIDED, _event_reason(row)
@@ -124,19 +120,11 @@ def _event_reason(row: Row) -> Reason:
     return Reason.BRANCH if row.events.unsettled & {PASSED, MIRRORED} else Reason.EVENT
 
 
-def _shares(table: RunsTable, row: Row) -> tuple[str, frozenset[str]] | None:
-    """The beam, and the sources that share a force with the row's contact or joint."""
-    if row.probe.quantity not in SHARED:
-        return None
-    return sharing_sources(table.scene, table.at(row.where).values(), row.probe.of)
-
-
 def _same_resultant(table: RunsTable, row: Row) -> bool:
     """Whether the row's contact or joint shares its force, and the sums of the shared forces do not contradict."""
-    shared = _shares(table, row)
-    if shared is None:
+    if row.shared is None:
         return False
-    beam, others = shared
+    beam, others = row.shared
     sums = {name: resultant(station, {row.probe.of, *others}, beam) for name, station in table.at(row.where).items()}
     bounds = bounds_of(table.runs, sums, lambda difference: float(np.linalg.norm(difference)), 0.0)
     v_c, v_f = (sums[name] for name in table.compared)

@@ -9,7 +9,8 @@ q       uncertainty of x: its certificate's residual, at least 1e-9 of the scale
 ======  ==========================================================================================
 
 A probe has one stated uncertainty per solver, stage and branch: the largest of the stations.  An error changes its sign
-along a stage, and the change between two grids vanishes there by accident.  Critical points split a stage.
+along a stage, and the change between two grids vanishes there by accident.  Critical points split a stage, and so do
+stations at which a clamp or another contact shares the force: the shares of a force do not converge.
 """
 
 from __future__ import annotations
@@ -24,17 +25,20 @@ from comparisons.pairing import Runs
 from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, norm, unit_of
 from comparisons.stations import station_of
 from comparisons.verdict.bounds import Bounds, bounds_of
-from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.scales import denominator, probe_scales
 from comparisons.verdict.station_events import NO_EVENTS, Place, StationEvents, station_events
 from comparisons.verdict.uncertainty import largest
 from cprbm_scene import Probe, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array, Flags
-from cprbm_scene.statement import STRESSES
+from cprbm_scene.statement import STRESSES, Quantity
 
 ROUND_OFF = 1e-9
 """Round-off of a value, and least uncertainty of an exact value, as shares of the probe's scale."""
+
+SHARED: frozenset[Quantity] = frozenset({"force", "centre", "ends", "reaction", "reaction_moment"})
+"""Quantities of a contact or a joint that depend on how a clamp and a contact share a force."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +60,7 @@ class Row:
         cprbm, fea: values (k,), empty where a contact is open.
         scale: of the probe in the stage; denominator: divisor of shown fractions.
         events: events of the runs by the station.
+        shared: a beam, and the sources that share a force with the probe's contact or joint; None without any.
         difference, same_theory: distances of v_c from v_f and from v_b; NaN without a value.
         bounds: stated uncertainties; None without the value of a needed run.
         missing: runs without the station; absent: runs without a value, since a contact is open.
@@ -73,6 +78,7 @@ class Row:
     scale: float
     denominator: float
     events: StationEvents = NO_EVENTS
+    shared: tuple[str, frozenset[str]] | None = None
     difference: float = math.nan
     same_theory: float = math.nan
     bounds: Bounds | None = None
@@ -127,7 +133,9 @@ def build_rows(table: RunsTable, events: Mapping[tuple[str, float], StationEvent
         for probe in scene.probes_in(where[0]):
             pair = stations[first], stations[second]
             row = bare_row(scene, pair, probe, stages[where[0]], where[1], scales[where[0], probe.name])
-            found.append(_measured(table, replace(row, events=events[where], missing=missing), stations, exact))
+            shared = sharing_sources(scene, stations.values(), probe.of) if probe.quantity in SHARED else None
+            row = replace(row, events=events[where], shared=shared, missing=missing)
+            found.append(_measured(table, row, stations, exact))
     return _with_largest_uncertainties(found)
 
 
@@ -229,9 +237,13 @@ def _with_largest_uncertainties(rows: Sequence[Row]) -> tuple[Row, ...]:
     A contact that is open in all runs has no force and no uncertainty.
     """
     names = ("cprbm", "fea", "bending")
+
+    def key(row: Row) -> tuple[object, ...]:
+        return row.probe.name, row.stage, row.branch, row.shared is None
+
     stated = {
         name: largest(
-            ((row.probe.name, row.stage, row.branch), getattr(row.bounds, name) or 0.0)
+            (key(row), getattr(row.bounds, name) or 0.0)
             for row in rows
             if row.bounds is not None and not row.events.unsettled
         )
@@ -241,8 +253,7 @@ def _with_largest_uncertainties(rows: Sequence[Row]) -> tuple[Row, ...]:
     def widened(row: Row) -> Row:
         if row.bounds is None or row.bounds.total == 0.0:
             return row
-        key = row.probe.name, row.stage, row.branch
-        own = {name: max(getattr(row.bounds, name) or 0.0, each.get(key, 0.0)) for name, each in stated.items()}
+        own = {name: max(getattr(row.bounds, name) or 0.0, each.get(key(row), 0.0)) for name, each in stated.items()}
         bending = None if row.bounds.bending is None else own["bending"]
         return replace(row, bounds=replace(row.bounds, cprbm=own["cprbm"], fea=own["fea"], bending=bending))
 

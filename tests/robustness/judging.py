@@ -40,10 +40,7 @@ from comparisons.stations import station_of
 from comparisons.verdict.bounds import Bounds
 from comparisons.verdict.calibration import EXACT_FACTOR, true_errors
 from comparisons.verdict.completeness import ends_at_critical, problems
-from comparisons.verdict.judge import SHARED
-from comparisons.verdict.point_forces import sharing_sources
 from comparisons.verdict.rows import Row
-from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Scene, SceneError
 from tests.robustness.auditing import Auditing
@@ -275,9 +272,8 @@ def _beside(scene: Scene, coarser: _Finding, finding: _Finding) -> _Finding:
     worst, said = 1.0, ""
     if finding.runs is None or coarser.runs is None:
         return finding
-    table = RunsTable(scene, coarser.runs)
     for row in coarser.rows:
-        if _depends_on_the_mesh(table, row):
+        if _depends_on_the_mesh(row):
             continue
         for solver, off, allowed in _from_refinement(row, finding.runs):
             if off > worst * allowed:
@@ -289,12 +285,11 @@ def _beside(scene: Scene, coarser: _Finding, finding: _Finding) -> _Finding:
     return finding if not said else replace(finding, way=Way.WRONG, sentence=said, ending="")
 
 
-def _depends_on_the_mesh(table: RunsTable, row: Row) -> bool:
+def _depends_on_the_mesh(row: Row) -> bool:
     """Whether a row is a stress, the force of a contact that shares it, or between the runs' loads of one event."""
     if row.arc_length is not None or row.events.unsettled or row.events.contradictory:
         return True
-    shared = row.probe.quantity in SHARED
-    return shared and sharing_sources(table.scene, table.at(row.where).values(), row.probe.of) is not None
+    return row.shared is not None
 
 
 def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]]:
