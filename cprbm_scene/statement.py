@@ -257,7 +257,7 @@ class Scene(Record):
 
     @property
     def display_units(self) -> Units:
-        """Units of the scene's file, for tables and figures; ``model_fields_set`` has those that the file states."""
+        """Units of the scene's file, for tables and figures; ``model_fields_set`` lists the stated ones."""
         return self._display.units
 
     def limit(self, probe: Probe) -> float:

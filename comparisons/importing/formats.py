@@ -1,4 +1,4 @@
-"""Formats of drawings, and the reader for each of them.
+"""Formats of drawings, and their readers.
 
 The beginning of a file decides on the format.  gmsh chooses by the ending and runs unknown files as programs: a file
 for gmsh therefore needs the ending of its format, and only the ending ``.geo`` lets a file run.

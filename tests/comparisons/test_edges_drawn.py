@@ -9,7 +9,7 @@ from comparisons import figures
 from comparisons.bodies_drawn import draw_edges, places_at
 from cprbm_scene import Certificate, Shape, StationAnswer, scene_from
 from tests.cprbm_scene.editing import edited
-from tests.cprbm_scene.test_pins import LINKAGE
+from tests.cprbm_scene.scenes import LINKAGE
 
 EDGE = {
     "kind": "beam-line",
