@@ -33,7 +33,7 @@ from comparisons.present.row_tables import Judged, shown_stations
 from comparisons.present.strips import Coloured
 from comparisons.quantities import norm
 from comparisons.stations import station_of
-from cprbm_scene import Answer, Scene, StationAnswer
+from cprbm_scene import Answer, FreeEnd, Scene, StationAnswer
 from cprbm_scene.answer import Array
 
 if TYPE_CHECKING:
@@ -143,7 +143,7 @@ def _draw_mechanism(axes: Axes, scene: Scene, view: View, stations: Mapping[str,
         rest = points(beam.curve, np.linspace(0.0, length(beam.curve), 200))
         axes.plot(*rest.T, "--", color=GREY, linewidth=1.0, label=None if place else "at rest")
         for end, index in ((beam.start, 0), (beam.end, -1)):
-            if scene.assembly is not None and hasattr(end, "point"):
+            if scene.assembly is not None and not isinstance(end, FreeEnd):
                 axes.plot(*np.stack([rest[index], scene.place_of(end.point)]).T, ":", color=GREY, linewidth=0.9)
         for label, station in stations.items():
             line, colour = (".", BLUE) if label == "CPRBM" else ("-", RED)

@@ -13,7 +13,7 @@ from comparisons.present import json_document
 from comparisons.verdict.rows import Row
 from cprbm_scene import Claim, Probe
 from cprbm_scene.answer import frozen_array
-from cprbm_scene.checks import mistakes_in
+from cprbm_scene.reading import mistakes_in
 from tests.tables import sentences_of, tables_of
 
 

@@ -10,19 +10,16 @@ from cprbm_scene.statement import Scene
 
 def station_reached(logger: logging.Logger, scene: Scene, reached: int, station: StationAnswer) -> None:
     """Log that a solver has come to the ``station`` with the number ``reached`` of the scene."""
-    if not logger.isEnabledFor(logging.INFO):
-        return
-    stage = next(stage for stage in scene.stages if stage.name == station.stage)
-    whole = sum(len(each.stations) for each in scene.stages)
+    steps, whole = {stage.name: stage.steps for stage in scene.stages}, sum(len(each.stations) for each in scene.stages)
     spent = station.certificate.iterations
     logger.info(
         "%s: %s, stage %s: station %d of %d, %s = %.6g, %d iteration%s",
         scene.name,
         logger.name.rpartition(".")[0],
-        stage.name,
+        station.stage,
         reached,
         whole,
-        stage.steps,
+        steps[station.stage],
         station.value,
         spent,
         "" if spent == 1 else "s",
