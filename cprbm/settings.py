@@ -7,6 +7,7 @@ from typing import Annotated, Literal, cast
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+from cprbm.routing import by_second_edition
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.requirements import refuse
@@ -63,8 +64,6 @@ class Settings(BaseModel):
             SceneError: a beam has no number, a number has no beam, a number is too small, or the scene
                 requires more.
         """
-        of_paper = bool(scene.contacts) and self.formulation == "paper"
-        refuse(scene, "the CPRBM", "overlap at rest", *(() if of_paper else ("theory", "edge")))
         named: Mapping[str, int] = dict.fromkeys(scene.beams, self.links) if isinstance(self.links, int) else self.links
         known, fewest = " or ".join(scene.beams), f"at least {FEWEST_LINKS} elements per beam"
         wrong = [(beam, "no such beam", known) for beam in named if beam not in scene.beams]
@@ -75,6 +74,8 @@ class Settings(BaseModel):
             raise SceneError(
                 [Mistake(f"settings.links.{beam}", found, allowed, scene.file) for beam, found, allowed in wrong]
             )
+        second = by_second_edition(scene, self.formulation, self.links_of)
+        refuse(scene, "the CPRBM", "overlap at rest", *(("theory", "edge") if second else ()))
 
 
 def _doubled(links: int | Mapping[str, int]) -> int | Mapping[str, int]:

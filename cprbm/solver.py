@@ -1,7 +1,8 @@
 """From a scene to an answer.
 
-The second edition (:mod:`cprbm.results.stations`) answers in every theory.  Contacts in the formulation ``paper`` are
-answered by the first edition (:mod:`cprbm.march`), in bending.
+The second edition (:mod:`cprbm.results.stations`) answers in every theory.  Contacts in the formulation ``paper`` and
+edges with features smaller than a link (:mod:`cprbm.routing`) are answered by the first edition (:mod:`cprbm.march`),
+in bending.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from cprbm.march import March
 from cprbm.refining import coarser
+from cprbm.routing import by_second_edition
 from cprbm.settings import Settings
 from cprbm_scene import Answer, Ending, Scene
 from cprbm_scene.contact_states import openings
@@ -75,7 +77,7 @@ def prepared(scene: Scene, settings: Settings | None = None) -> Prepared | Run:
     began = time.perf_counter()
     settings = settings or Settings()
     settings.check(scene)
-    if not scene.contacts or settings.formulation == "auto":
+    if by_second_edition(scene, settings.formulation, settings.links_of):
         from cprbm.results.stations import Run  # Numba and its kernels take 0.4 s to load
 
         return Run(scene, settings)
