@@ -1,6 +1,6 @@
 """The harness: one scene to both solvers, their answers beside each other, and a verdict.
 
-Only :mod:`comparisons.pairing` knows the solvers, and only :mod:`comparisons.figures` knows matplotlib.
+Only :mod:`comparisons.pairing` knows the solvers, and only :mod:`comparisons.present.canvas` knows matplotlib.
 
 From Python it is :func:`open` for a mechanism with all that the program does::
 
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
     from comparisons.choices import Choices
     from comparisons.mechanism import Mechanism, MechanismComparison
+    from comparisons.present.csv_table import Number
     from comparisons.sweeps.running import Sweep
-    from comparisons.tidy import Number
     from cprbm_scene import Answer, Scene
 
 __all__ = ["compare", "open", "records", "sweep", "write_csv"]
@@ -89,7 +89,7 @@ def records(scene: Scene, answer: Answer) -> list[Number]:
         A dictionary of each number: ``scene``, ``solver``, ``stage``, ``station``, ``branch``, ``probe``,
         ``component``, ``arc_length`` (m, along a beam), ``unit`` (SI) and ``value``.
     """
-    from comparisons.tidy import numbers
+    from comparisons.present.csv_table import numbers
 
     return list(numbers(scene, answer))
 
@@ -139,7 +139,7 @@ def write_csv(path: str | Path, scene: Scene, *answers: Answer) -> None:
     Raises:
         OSError: the file cannot be written.
     """
-    from comparisons.tidy import csv_of
+    from comparisons.present.csv_table import csv_of
     from comparisons.writing import write
 
     write(Path(path), csv_of(scene, *answers))

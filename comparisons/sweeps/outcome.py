@@ -13,8 +13,8 @@ from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.executor import TimeLimitError, WorkerDiedError, call_limited
 from comparisons.pairing import Solvers, paired
+from comparisons.present.csv_table import comparison_records, numbers
 from comparisons.stages import begins_at
-from comparisons.tidy import comparison_records, numbers
 from cprbm_scene import Answer, Scene, SceneError
 
 Asked = Literal["cprbm", "fea", "compare"]

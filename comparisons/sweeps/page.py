@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from comparisons.display_units import display_unit
-from comparisons.rendering import embedded, rendered
+from comparisons.present.page import rendered
 from comparisons.sweeps.pictures import curve_of, names_of, pictures
 from comparisons.sweeps.running import Sweep
 from comparisons.writing import write
@@ -30,7 +30,7 @@ def write_page(folder: Path, sweep: Sweep) -> None:
     ]
     context = {
         "sweep": sweep,
-        "pictures": [embedded(each) for each in drawn],
+        "figures": drawn,
         "failed": failed,
         "family": json.dumps(_family(sweep)).replace("<", "\\u003c"),
     }

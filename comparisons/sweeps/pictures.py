@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from comparisons.display_units import display_unit
-from comparisons.figures import BLUE, RED, Picture, canvas, picture
+from comparisons.present.canvas import BLUE, RED, canvas, finished
+from comparisons.present.columns import Figure
 from comparisons.sweeps.outcome import Outcome, Record
 from comparisons.sweeps.points import Axis
 from comparisons.sweeps.running import Sweep, Task
@@ -27,7 +28,7 @@ _PANELS = 6
 _Solved = list[tuple[Task, Outcome]]
 
 
-def pictures(sweep: Sweep) -> Iterator[Picture]:
+def pictures(sweep: Sweep) -> Iterator[Figure]:
     """All figures of a sweep; none where no point has a number."""
     solved = [(task, outcome) for task, outcome in sweep.points() if outcome.numbers]
     if not solved:
@@ -64,7 +65,7 @@ def _panels(figure: Any, count: int) -> Sequence[Axes]:  # noqa: ANN401 - loaded
     return [figure.add_subplot(rows, columns, place + 1) for place in range(count)]
 
 
-def _over_parameters(sweep: Sweep, solved: _Solved) -> Picture:
+def _over_parameters(sweep: Sweep, solved: _Solved) -> Figure:
     """Numbers of the last station over the parameters: curves, contours, or points of a sample."""
     chosen = list(islice(names_of(max(solved, key=lambda each: len(each[1].numbers))[1]), _PANELS))
     grid, count = all(axis.count for axis in sweep.axes), len(sweep.axes)
@@ -88,7 +89,7 @@ def _over_parameters(sweep: Sweep, solved: _Solved) -> Picture:
             if failed:
                 axes.plot([_place(task, first) for task in failed], low, "x", color=RED, clip_on=False)
         caption = "Values at the last station over the parameters. Crosses: points that failed."
-        return picture(figure, "parameters", caption)
+        return finished(figure, "parameters", caption)
 
 
 def _place(task: Task, axis: Axis) -> float:
@@ -131,7 +132,7 @@ def _contours(figure: Any, axes: Axes, sweep: Sweep, solved: _Solved, numbers: l
     figure.colorbar(drawn, ax=axes)
 
 
-def _family(sweep: Sweep, solved: _Solved) -> Iterator[Picture]:
+def _family(sweep: Sweep, solved: _Solved) -> Iterator[Figure]:
     """The curves of all points against the load or drive of every stage."""
     first = sweep.axes[0]
     span = first.high - first.low
@@ -158,7 +159,7 @@ def _family(sweep: Sweep, solved: _Solved) -> Iterator[Picture]:
                         axes.plot(curve[-1]["station"] / step, curve[-1]["value"] / size, "x", color=RED)
             caption = f"Stage {stage.name}: curves of all points; colours from {first.text(first.low)} (dark) to "
             caption += f"{first.text(first.high)} (light). Crosses: the last station of points that failed."
-            yield picture(figure, f"curves-{stage.name}", caption)
+            yield finished(figure, f"curves-{stage.name}", caption)
 
 
 def _colour(share: float) -> tuple[float, float, float]:
@@ -166,7 +167,7 @@ def _colour(share: float) -> tuple[float, float, float]:
     return 0.1 + 0.5 * share, 0.2 + 0.55 * share, 0.45 + 0.45 * share
 
 
-def _checked(sweep: Sweep, solved: _Solved) -> Picture:
+def _checked(sweep: Sweep, solved: _Solved) -> Figure:
     """Largest difference over stated uncertainty at the checked points."""
     checked = [(task, outcome) for task, outcome in solved if outcome.solver == "compare"]
     ratios = [
@@ -187,4 +188,4 @@ def _checked(sweep: Sweep, solved: _Solved) -> Picture:
             y = [task.point[second.name] / second.size for task, _ in checked]
             drawn = axes.scatter(x, y, c=ratios, cmap="viridis")
             figure.colorbar(drawn, ax=axes, label="difference over stated uncertainty")
-        return picture(figure, "checked", "Largest difference over stated uncertainty at the checked points.")
+        return finished(figure, "checked", "Largest difference over stated uncertainty at the checked points.")

@@ -7,8 +7,8 @@ g        least gap of an open pair of curves
 F        sum of the contact forces of a closed pair
 =======  ====================================================================================
 
-Brent's method locates the first closing, g = 0 on states with the pair kept open.  An opening is the zero of F,
-continued by −g where the pair is open.
+Brent's method locates the first closing on states with the pair kept open: g = −CLOSED there, so that the active set
+closes the pair in its least gap.  An opening is the zero of F, continued by −g where the pair is open.
 """
 
 from __future__ import annotations
@@ -25,6 +25,9 @@ from cprbm.equilibrium.contact_gaps import least_gap
 from cprbm.equilibrium.newton import NotConvergedError, Solved
 from cprbm.equilibrium.solving import at_state
 from cprbm.equilibrium.system import State, System
+
+CLOSED = 1e-11
+"""Overlap, over the longest beam, at which a contact has closed: ten times the active set's round-off."""
 
 LOCATED = 1e-12
 """Accuracy of the fraction of a step."""
@@ -135,7 +138,7 @@ def _closing(
 
     def gap(share: float) -> float:
         solved = solve(share, apart)
-        return min(_gap(solved, pair) for pair in apart)
+        return min(_gap(solved, pair) for pair in apart) + CLOSED
 
     if gap(1.0) >= 0.0:
         return []

@@ -19,6 +19,7 @@ from math import sqrt
 import numpy as np
 
 from cprbm.chain import add_row_gradient
+from cprbm.equilibrium.contact_gaps import contact_measures
 from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.stability import softest
 from cprbm.equilibrium.system import System
@@ -45,6 +46,9 @@ SMALLEST_LOAD = 1e-12
 PULL = 1e-9
 """Moment by which a stop may pull, over the largest moment."""
 
+
+OVERLAPS = 1e-9
+"""Overlap of open curves, over the longest beam, left by the active set, which closes larger ones."""
 
 OPEN = "the joints are open by {:.1e} of the longest beam, allowed {:.1e}"
 BENT = "one element turns by {:.2f} rad, more than {:.1f}: use more links"
@@ -78,8 +82,9 @@ def certify(
     floor = 4.0 * EPSILON * (stiffest * turned + sqrt(len(system.metric)) * scale) / scale
     force_rows, equations = _parts(system)
     residual = float(np.abs(solved.gradient[force_rows]).max()) / scale
-    violation = float(np.abs(solved.gradient[equations]).max())
-    complementarity = _complementarity(solved, acting) / scale
+    contact = contact_measures(solved)
+    violation = max(float(np.abs(solved.gradient[equations]).max()), contact.violation)
+    complementarity = max(_complementarity(solved, acting), contact.pull) / scale
     balance = _balance(solved, scale)
     strain = float(np.abs(system.lean * _pull(solved)).max())
     bend = float(np.abs(_turns(solved)).max(initial=0.0))
@@ -88,7 +93,8 @@ def certify(
     checks = (
         (residual, max(tolerance, floor), Ending.NOT_CERTIFIED, "the residual is {:.1e}, allowed {:.1e}"),
         (violation, max(tolerance, LEAST_VIOLATION), Ending.NOT_CERTIFIED, OPEN),
-        (complementarity, PULL, Ending.NOT_CERTIFIED, "a stop pulls or is passed by {:.1e}, allowed {:.1e}"),
+        (complementarity, PULL, Ending.NOT_CERTIFIED, "a stop or contact pulls or is passed by {:.1e}, allowed {:.1e}"),
+        (contact.overlap, OVERLAPS, Ending.BEAMS_CROSSED, "an open contact overlaps by {:.1e} beams, allowed {:.1e}"),
         (bend, LARGEST_BEND, Ending.TURNED_TOO_FAR, BENT),
         (strain, LARGEST_STRAIN, Ending.TURNED_TOO_FAR, STRAINED),
         (balance.force, balance_limit, Ending.NOT_CERTIFIED, "ΣF is {:.1e} of the largest force, allowed {:.1e}"),
@@ -100,7 +106,7 @@ def certify(
         residual=residual,
         residual_floor=floor,
         violation=violation,
-        penetration=0.0,
+        penetration=contact.overlap,
         complementarity=complementarity,
         force_balance=balance.force,
         moment_balance=balance.moment,

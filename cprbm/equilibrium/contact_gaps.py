@@ -6,11 +6,14 @@ The gap of a pair may be least between two joints.  A moving place without a for
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from cprbm.contact import Contacts, Geometry, Places, may_move, settle, taken
 from cprbm.equilibrium.contact_set import FINDING, arc_of, with_fixed_places
+from cprbm.equilibrium.iteration import beside_points
+from cprbm.equilibrium.newton import Solved
 from cprbm_scene.answer import Array, Flags, Ints
 
 NEIGHBOURS = 1.6
@@ -60,3 +63,32 @@ def least_gap(geometry: Geometry, z: Array, contacts: Contacts, pair: int) -> fl
         if curvature > 0.0 and may_move(geometry, trial)[0]:
             least = min(least, gap)
     return least
+
+
+class ContactMeasures(NamedTuple):
+    """Largest violation of a closed place, largest overlap of an open place, and largest pull of a closed place."""
+
+    violation: float
+    overlap: float
+    pull: float
+
+
+def contact_measures(solved: Solved) -> ContactMeasures:
+    """Complementarity of a solved state, in units.
+
+    Joints within a piece of a point contact, and the compliance that the chain lacks there, are no overlaps.  Places
+    with a shared force overlap by the sum of both gaps.
+    """
+    geometry, contacts = solved.system.geometry, solved.state.contacts
+    if geometry is None or contacts is None or not len(contacts.closed):
+        return ContactMeasures(0.0, 0.0, 0.0)
+    places, closed = contacts.places, contacts.closed
+    beside, depth = beside_points(geometry.arrays, places, closed)
+    gaps, leaders = solved.gaps.copy(), np.arange(len(closed)) + places.shares
+    follows = places.shares != 0
+    np.add.at(gaps, leaders[follows], solved.gaps[follows])
+    thick = geometry.arrays.thickness[places.piece] + geometry.arrays.thickness[places.foot] > 0.0
+    free = ~closed & ~follows & ~beside & ~places.moves & (thick | ~places.at_point)
+    overlap = float(np.max(-gaps[free] - depth[free], initial=0.0))
+    violation = float(np.abs(solved.contact_values).max(initial=0.0))
+    return ContactMeasures(violation, overlap, float(np.max(-places.force[closed], initial=0.0)))

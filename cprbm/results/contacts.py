@@ -29,16 +29,19 @@ NO_FORCE = np.zeros(2)
 
 
 class Pressed(NamedTuple):
-    """A closed place, in units: number ``k``, ``arcs`` on both curves of its pair, ``places`` and ``forces`` there.
+    """A closed place, in units: ``arcs`` on both curves of the pair, ``places`` and ``forces`` there.
 
-    ``surface`` is the position between both neutral lines where the curves touch.
+    ``surface`` is the position between both neutral lines where the curves touch; ``moves`` marks a point contact;
+    ``share`` is the offset of the place with the same force, beside a weld; ``on_first``: on the pair's first curve.
     """
 
-    k: int
     arcs: tuple[float, float]
     places: tuple[Array, Array]
     forces: tuple[Array, Array]
     surface: Array
+    moves: bool
+    share: int
+    on_first: bool
 
 
 class PinMoment(NamedTuple):
@@ -70,19 +73,13 @@ def _pressed(view: View, geometry: Geometry, places: Places, k: int) -> Pressed:
     at = tuple(np.array(curve_point(z, arrays, p, t, 0, weights)) for p, t in ((piece, xi), (foot, eta)))
     force = float(places.force[k]) * normal
     surface = at[0] - normal * (arrays.thickness[piece] + xi * arrays.thickening[piece])
-    # of a beam with itself the place is behind the foot or before
-    swapped = places.curve[k] != geometry.pairs[places.pair[k]].first or (
-        places.curve[k] == places.other[k] and arcs[1] < arcs[0]
-    )
-    order = (1, 0) if swapped else (0, 1)
+    on_first = places.curve[k] == geometry.pairs[places.pair[k]].first
+    # of a beam with itself the smaller arc length counts as the first
+    ahead = arcs[0] <= arcs[1] if places.curve[k] == places.other[k] else on_first
+    i, j = (0, 1) if ahead else (1, 0)
     forces = (force, -force)
-    return Pressed(
-        k,
-        (arcs[order[0]], arcs[order[1]]),
-        (at[order[0]], at[order[1]]),
-        (forces[order[0]], forces[order[1]]),
-        surface,
-    )
+    moves, share = bool(places.moves[k]), int(places.shares[k])
+    return Pressed((arcs[i], arcs[j]), (at[i], at[j]), (forces[i], forces[j]), surface, moves, share, bool(on_first))
 
 
 def pin_moments(view: View, contact: str) -> Iterator[PinMoment]:
@@ -155,10 +152,7 @@ def touching_places(view: View) -> dict[str, Array]:
 
 def states_of_contacts(view: View, forces: PointForces, touching: Mapping[str, Array]) -> Mapping[str, ContactState]:
     """States of all contacts; a force that a clamp shares with the contact beside it is indeterminate."""
-    units, contacts = view.mechanism.units, view.solved.state.contacts
+    units = view.mechanism.units
     states = contact_states(view.scene.contacts, forces, touching, (units.length, units.force))
-    shared = set()
-    for name in view.scene.contacts:
-        if contacts is not None and any(contacts.places.shares[each.k] != 0 for each in pressed(view, name)):
-            shared.add(name)
-    return {name: replace(state, indeterminate=name in shared) for name, state in states.items()}
+    shared = {name: any(each.share for each in pressed(view, name)) for name in view.scene.contacts}
+    return {name: replace(state, indeterminate=shared[name]) for name, state in states.items()}

@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 
 from cprbm.contact import Geometry
-from cprbm.results.contacts import Pressed, pin_moments, pressed
+from cprbm.results.contacts import pin_moments, pressed
 from cprbm.results.view import View
 from cprbm_scene.answer import Array
 
@@ -46,44 +46,17 @@ def contact_ends(view: View, contact: str) -> list[float]:
     arcs = [each.arcs[0] for each in found] + pins
     low, high = min(arcs), max(arcs)
     pair = next(k for k, each in enumerate(geometry.pairs) if each.name == contact)
-    if geometry.pairs[pair].itself or (len(found) < ZONE and not pins) or not _of_joints(view, geometry, found):
+    of_joints = all(each.on_first for each in found) and not geometry.pairs[pair].itself
+    if (len(found) < ZONE and not pins) or not of_joints:
         return [low, high]
-    points, clamps = _points(view, found), _clamps(view, found)
+    length = float(geometry.curves[geometry.pairs[pair].first].arcs[-1])
+    clamps = [0.0 if each.share > 0 else length for each in found if each.share]
     begin, end = min([low, *clamps]), max([high, *clamps])
-    held = [*pins, *clamps, *points]
+    held = [*pins, *clamps, *(each.arcs[0] for each in found if each.moves)]
     return [
         begin if begin in held else _zone_end(view, geometry, pair, low, sense=-1.0),
         end if end in held else _zone_end(view, geometry, pair, high, sense=1.0),
     ]
-
-
-def _of_joints(view: View, geometry: Geometry, found: list[Pressed]) -> bool:
-    """True if the places lie on the first curve."""
-    contacts = view.solved.state.contacts
-    assert contacts is not None
-    places = contacts.places
-    return all(places.curve[each.k] == geometry.pairs[places.pair[each.k]].first for each in found)
-
-
-def _points(view: View, found: list[Pressed]) -> list[float]:
-    """Arc lengths of the moving places: e itself at the end of a zone."""
-    contacts = view.solved.state.contacts
-    assert contacts is not None
-    return [each.arcs[0] for each in found if contacts.places.moves[each.k]]
-
-
-def _clamps(view: View, found: list[Pressed]) -> list[float]:
-    """Arc lengths of the welds that share a zone's force."""
-    contacts = view.solved.state.contacts
-    assert contacts is not None
-    arrays, shares = view.solved.system.geometry, contacts.places.shares
-    assert arrays is not None
-    ends = []
-    for each in found:
-        if shares[each.k] != 0:
-            curve = int(contacts.places.curve[each.k])
-            ends.append(0.0 if shares[each.k] > 0 else float(arrays.curves[curve].arcs[-1]))
-    return ends
 
 
 def _zone_end(view: View, geometry: Geometry, pair: int, outermost: float, *, sense: float) -> float:

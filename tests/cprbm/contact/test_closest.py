@@ -41,7 +41,7 @@ def test_closest_points_of_random_places(name):
         near = points[rng.integers(len(points))]
         x = near + 0.08 * complex(*rng.normal(size=2))
         reach = np.abs(points - x) - thickness
-        piece, eta, _ = closest_chord(z, geometry.arrays, number, x.real, x.imag, 0.0, 0.0, 0.0, weights)
+        piece, eta, _ = closest_chord(z, geometry.arrays, number, x.real, x.imag, 0.0, 0.0, weights)
         piece, eta, at_point = closest_point(z, geometry.arrays, number, x.real, x.imag, piece, eta, 0.0, 0.0, weights)
         local = piece - geometry.arrays.first[number]
         s = curve.arcs[local] + eta * np.diff(curve.arcs)[local]
@@ -81,7 +81,9 @@ def test_convex_corners_hold_the_foot():
     for share in (0.01, 0.03):
         x = corner + share * outward
         begin = geometry.arrays.first[number]
-        piece, eta, at_point = closest_point(rest, geometry.arrays, number, x.real, x.imag, begin, 0.4, 0.0, 0.0, weights)
+        piece, eta, at_point = closest_point(
+            rest, geometry.arrays, number, x.real, x.imag, begin, 0.4, 0.0, 0.0, weights
+        )
         assert at_point
         assert (piece - begin, eta) == (1, 0.0)
 
