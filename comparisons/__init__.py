@@ -24,11 +24,12 @@ From Python it is :func:`open` for a mechanism with all that the program does::
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from comparisons.choices import Choices
     from comparisons.mechanism import Mechanism, MechanismComparison
     from comparisons.present.csv_table import Number

@@ -30,11 +30,6 @@ from comparisons import logs
 T = TypeVar("T")
 P = ParamSpec("P")
 
-ONE_THREAD = dict.fromkeys(
-    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
-)
-"""Environment for linear algebra on one thread; a library reads the variables when the library is loaded."""
-
 COLLECTED = (50_000, 20, 100)
 """Thresholds of a worker's garbage collector: new objects, and collections of the younger generations."""
 
