@@ -164,7 +164,6 @@ def call_limited(seconds: float, call: Callable[P, T], *arguments: P.args, **nam
 @contextmanager
 def threads(count: int) -> Iterator[ThreadPoolExecutor]:
     """Pool of ``count`` threads for :func:`call_limited`, whose children end with the context."""
-    _ended.clear()
     pool = ThreadPoolExecutor(count)
     try:
         yield pool
