@@ -18,7 +18,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from cprbm.contact import TOUCHING, taken, touching_as_drawn
 from cprbm.equilibrium.contact_gaps import least_gap
@@ -142,7 +141,7 @@ def _closing(
 
     if gap(1.0) >= 0.0:
         return []
-    return [ContactChange(float(brentq(gap, 0.0, 1.0, xtol=LOCATED)), apart, closes=True)]
+    return [ContactChange(_zero(gap), apart, closes=True)]
 
 
 def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[ContactChange]:
@@ -154,7 +153,14 @@ def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> lis
 
     if not force(0.0) > 0.0 > force(1.0):
         return []
-    return [ContactChange(float(brentq(force, 0.0, 1.0, xtol=LOCATED)), frozenset([pair]), closes=False)]
+    return [ContactChange(_zero(force), frozenset([pair]), closes=False)]
+
+
+def _zero(event: Callable[[float], float]) -> float:
+    """Share of a step at which an event function vanishes."""
+    from scipy.optimize import brentq  # steps without a closing load no optimisers
+
+    return float(brentq(event, 0.0, 1.0, xtol=LOCATED))
 
 
 def _gap(solved: Solved, pair: int) -> float:
