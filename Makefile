@@ -72,14 +72,14 @@ $(READY): requirements.lock pyproject.toml
 	$(ENVIRONMENT) $(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
 	$(ENVIRONMENT) $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
 	$(ENVIRONMENT) $(BIN)/python -c "from cprbm import answer; from cprbm_scene import read; \
-	  answer(read('comparisons/cases/tapered.toml'))"  # stores the machine code of the compiled kernels
+	  [answer(read(f'comparisons/cases/{case}.toml')) for case in ('tapered', 'hinge')]"  # stores the compiled kernels
 	touch $(READY)
 
 # The extra 'view' is left out: VTK's modules take 565 MB, and nothing but pictures in space needs them.
 lock:
 	{ sed '/^$$/q' requirements.lock; \
 	  uv pip compile --universal --generate-hashes --python-version 3.11 --quiet \
-	    --extra build --extra docs --extra peers --extra solid --extra test --extra threads \
+	    --extra build --extra docs --extra dxf --extra peers --extra solid --extra test --extra threads \
 	    --no-header --no-emit-index-url pyproject.toml; } > requirements.new
 	mv requirements.new requirements.lock
 

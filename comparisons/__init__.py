@@ -1,6 +1,6 @@
 """The harness: one scene to both solvers, their answers beside each other, and a verdict.
 
-Only :mod:`comparisons.pairing` knows the solvers, and only :mod:`comparisons.figures` knows matplotlib.
+Only :mod:`comparisons.pairing` knows the solvers, and only :mod:`comparisons.present.canvas` knows matplotlib.
 
 From Python it is :func:`open` for a mechanism with all that the program does::
 
@@ -23,17 +23,20 @@ From Python it is :func:`open` for a mechanism with all that the program does::
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from comparisons.choices import Choices
     from comparisons.mechanism import Mechanism, MechanismComparison
-    from comparisons.tidy import Number
+    from comparisons.present.csv_table import Number
+    from comparisons.sweeps.running import Sweep
     from cprbm_scene import Answer, Scene
 
-__all__ = ["compare", "open", "records", "write_csv"]
+__all__ = ["compare", "open", "records", "sweep", "write_csv"]
 
 
 def open(  # noqa: A001 - as in gzip.open or Image.open
@@ -86,9 +89,43 @@ def records(scene: Scene, answer: Answer) -> list[Number]:
         A dictionary of each number: ``scene``, ``solver``, ``stage``, ``station``, ``branch``, ``probe``,
         ``component``, ``arc_length`` (m, along a beam), ``unit`` (SI) and ``value``.
     """
-    from comparisons.tidy import numbers
+    from comparisons.present.csv_table import numbers
 
     return list(numbers(scene, answer))
+
+
+def sweep(
+    scene: Scene,
+    vary: Mapping[str, Sequence[float]],
+    solver: Literal["cprbm", "fea", "compare"] = "cprbm",
+    check: int = 0,
+    choices: Choices | None = None,
+    executor: Executor | None = None,
+    at_most: float = 600.0,
+    out: str | Path | None = None,
+) -> Sweep:
+    """A scene at all combinations of values of its parameters.
+
+    Args:
+        scene: the question, read from a file with parameters.
+        vary: two values or more by the name of a parameter, SI.
+        solver: solver of every point, or ``compare`` for both with a verdict.
+        check: number of points at which both solvers are compared.
+        choices: how finely, and by which variants; the standard choices if None.
+        executor: executor of the solves, as of :mod:`concurrent.futures`; None for this machine.
+        at_most: time limit of a solve, s.
+        out: folder of the tables, where a stopped sweep goes on; None for no folder.
+
+    Returns:
+        The points with their outcomes.
+
+    Raises:
+        SceneError: the scene refuses a name or a value.
+        OSError: the folder cannot be written to.
+    """
+    from comparisons.sweeps.start import start
+
+    return start(scene, vary, solver, check, choices, executor, at_most, None if out is None else Path(out))
 
 
 def write_csv(path: str | Path, scene: Scene, *answers: Answer) -> None:
@@ -102,7 +139,7 @@ def write_csv(path: str | Path, scene: Scene, *answers: Answer) -> None:
     Raises:
         OSError: the file cannot be written.
     """
-    from comparisons.tidy import csv_of
+    from comparisons.present.csv_table import csv_of
     from comparisons.writing import write
 
     write(Path(path), csv_of(scene, *answers))

@@ -110,7 +110,7 @@ def _verdict(
     findings += [(*row.judged, said.critical_sentence(table.scene, row)) for row in criticals]
     completed = _completed(table, criticals)
     if table.problems and not completed:
-        findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table.problems)))
+        findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table, table.problems)))
     for name, found in audits.items():
         if found.complaints:
             findings.append((Word.UNDECIDED, Reason.AUDIT, said.audit_sentence(name, found.complaints)))
@@ -121,8 +121,8 @@ def _verdict(
     findings.sort(key=_rank)
     words = tuple(found for found, _ in judged)
     word, reason, _ = findings[0]
-    others = {name: each for name, each in table.problems.items() if not ends_at_critical(table.answers[name])}
-    more = [said.ended_sentence(others)] if completed and others else []
+    others = [name for name in table.problems if not ends_at_critical(table.answers[name])]
+    more = [said.ended_sentence(table, others)] if completed and others else []
     more += [*said.passed_sentences(table, rows, judged), said.calibration_sentence(table.scene, rows)]
     if word is Word.AGREE:
         more.append(said.wider_limits(table.scene))

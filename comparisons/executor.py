@@ -1,13 +1,13 @@
-"""Processes beside this process: a pool of workers that share the work, and a process for a single call.
+"""Processes beside this process: a pool of workers that share the work, and a child that answers call by call.
 
 On Linux the workers of a pool are forked from this process, which has loaded all modules: several workers pay for the
 imports once.  Elsewhere a fork may break libraries of the system, and a fork of a process with threads may copy a
-locked lock; there every worker is a fresh Python.  A single call always has a fresh Python.
+locked lock; there every worker is a fresh Python.  A child is always a fresh Python.
 
 Every process ends with the process that asked for the work, also where that process was killed.
 
 Python counts the objects that a pool passes over by semaphores, which on Linux are files in ``/dev/shm``; in a
-container this folder may be absent or read-only.  A single call needs no semaphore.
+container this folder may be absent or read-only.  A child needs no semaphore.
 """
 
 from __future__ import annotations
@@ -17,22 +17,18 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
-from multiprocessing import get_context
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from multiprocessing import get_context, parent_process
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import ParamSpec, TypeVar
+from weakref import WeakSet
 
 from comparisons import logs
 
 T = TypeVar("T")
 P = ParamSpec("P")
-
-ONE_THREAD = dict.fromkeys(
-    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
-)
-"""Environment for linear algebra on one thread; a library reads the variables when the library is loaded."""
 
 COLLECTED = (50_000, 20, 100)
 """Thresholds of a worker's garbage collector: new objects, and collections of the younger generations."""
@@ -44,6 +40,10 @@ _THREADS = Path("/proc/self/task")
 
 class NoWorkersError(RuntimeError):
     """The system permits no worker processes; the text states the reason and a remedy."""
+
+
+class TimeLimitError(RuntimeError):
+    """A call was ended at its time limit."""
 
 
 class WorkerDiedError(RuntimeError):
@@ -84,45 +84,125 @@ def obstacle() -> str:
         return str(error)
 
 
-def call_fresh(call: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
-    """Value of a call in a fresh Python; an exception of the call is raised here.
+class Child:
+    """A fresh Python that answers call by call; a child that died or took too long is replaced at the next call."""
 
-    Function, arguments and value are pickled.  An interrupt of this process ends the call.
+    def __init__(self) -> None:
+        self._start()
+        _children.add(self)
+
+    def _start(self) -> None:
+        context = get_context("spawn")
+        self._line, line = context.Pipe()
+        self._process = context.Process(target=_serve, args=(line,), daemon=True)
+        with interrupts_ignored():
+            self._process.start()
+        line.close()
+
+    def call(self, seconds: float | None, function: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
+        """Value of a call in the child; an exception of the call is raised here.
+
+        Function, arguments and value are pickled.  An interrupt of this process ends the child.
+
+        Args:
+            seconds: time limit by the clock, s; None for no limit.
+            function, arguments, named: the call.
+
+        Raises:
+            TimeLimitError: the time limit passed.
+            WorkerDiedError: the child ended by force.
+        """
+        if self._line.closed:
+            self._start()
+        try:
+            self._line.send((function, arguments, named))
+            if seconds is not None and not self._line.poll(seconds):
+                raise TimeLimitError(f"no result after {seconds:g} s")
+            value, error = self._line.recv()
+        except (EOFError, BrokenPipeError, ConnectionResetError):
+            self.close()
+            raise WorkerDiedError(f"a process ended with {self._process.exitcode}") from None
+        except BaseException:
+            self.kill()
+            self.close()
+            raise
+        if error is not None:
+            raise error
+        found: T = value
+        return found
+
+    def kill(self) -> None:
+        """End the child by force; a running call raises :class:`WorkerDiedError`."""
+        self._process.kill()
+
+    def close(self) -> None:
+        """End the child after its last call."""
+        self._line.close()
+        self._process.join()
+
+
+_children: WeakSet[Child] = WeakSet()
+_local = threading.local()
+_ended = threading.Event()
+
+
+def call_limited(seconds: float, call: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
+    """Value of a call in the child of this thread, which keeps its loaded modules and kernels from call to call.
+
+    Raises:
+        TimeLimitError: the call took more than ``seconds``.
+        WorkerDiedError: the child ended by force, or all children were ended.
+    """
+    if not hasattr(_local, "child"):
+        _local.child = Child()
+    if _ended.is_set():
+        raise WorkerDiedError("the calls of this process were ended")
+    child: Child = _local.child
+    return child.call(seconds, call, *arguments, **named)
+
+
+@contextmanager
+def threads(count: int) -> Iterator[ThreadPoolExecutor]:
+    """Pool of ``count`` threads for :func:`call_limited`, whose children end with the context."""
+    _ended.clear()
+    pool = ThreadPoolExecutor(count)
+    try:
+        yield pool
+    finally:
+        _ended.set()
+        for child in list(_children):
+            child.kill()
+        pool.shutdown(cancel_futures=True)
+        _ended.clear()
+
+
+def call_fresh(call: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
+    """Value of a call in a fresh Python, as :meth:`Child.call` without a time limit.
 
     Raises:
         WorkerDiedError: the process ended by force.
     """
-    context = get_context("spawn")
-    reading, writing = context.Pipe(duplex=False)
-    process = context.Process(target=_send_value, args=(writing, call, arguments, named), daemon=True)
-    with interrupts_ignored():
-        process.start()
-    writing.close()
+    child = Child()
     try:
-        value, error = reading.recv()
-    except EOFError:
-        process.join()
-        raise WorkerDiedError(f"a process ended with {process.exitcode}") from None
+        return child.call(None, call, *arguments, **named)
     finally:
-        process.kill()
-        process.join()
-        reading.close()
-    if error is not None:
-        raise error
-    found: T = value
-    return found
+        child.close()
 
 
-def _send_value(
-    writing: Connection, call: Callable[..., object], arguments: tuple[object, ...], named: dict[str, object]
-) -> None:
-    """Call a function and send its value or its exception."""
+def _serve(line: Connection) -> None:
+    """Answer calls until the line closes."""
+    parent = parent_process()
+    assert parent is not None, "this process was started by another process"
+    _follow(parent.sentinel)
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    try:
-        result: tuple[object, Exception | None] = (call(*arguments, **named), None)
-    except Exception as error:
-        result = (None, error)
-    writing.send(result)
+    with suppress(EOFError):
+        while True:
+            function, arguments, named = line.recv()
+            try:
+                result: tuple[object, Exception | None] = (function(*arguments, **named), None)
+            except Exception as error:
+                result = (None, error)
+            line.send(result)
 
 
 @contextmanager
@@ -158,7 +238,7 @@ def _prepare_worker(reading: Connection, lifeline: Connection | None, level: int
     _follow(reading)
 
 
-def _follow(lifeline: Connection) -> None:
+def _follow(lifeline: Connection | int) -> None:
     """End this process as soon as the other end of ``lifeline`` closes; only the asking process owns the other end."""
 
     def end_with() -> None:

@@ -7,15 +7,15 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from comparisons import case, figures
-from comparisons.brief import headline, last_rows_of_stages, nearest_rows
+from comparisons import case
 from comparisons.choices import Choices
-from comparisons.figures import Picture
 from comparisons.pairing import cprbm_answer, exact_answer, fea_answer, paired, solid_answer, solvers_of
-from comparisons.rendering import embedded, rendered
-from comparisons.sheet import Sheet
-from comparisons.sheets import of_answer
-from comparisons.tidy import comparison_records, csv_of, csv_of_comparisons, numbers
+from comparisons.present import figures
+from comparisons.present.answer_tables import answer_tables
+from comparisons.present.brief import headline, last_rows_of_stages, nearest_rows
+from comparisons.present.columns import Figure, Table
+from comparisons.present.csv_table import comparison_records, csv_of, csv_of_comparisons, numbers
+from comparisons.present.page import rendered
 from comparisons.writing import write
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
@@ -33,7 +33,7 @@ class MechanismComparison(case.Comparison):
         """Name, verdict and number of rows."""
         return f"<Comparison {headline(self.scene.name, self.verdict, f'{len(self.rows)} rows')}>"
 
-    def plot(self, path: str | Path | None = None) -> Picture:
+    def plot(self, path: str | Path | None = None) -> Figure:
         """Drawing of both answers at the last common station.
 
         Args:
@@ -45,7 +45,7 @@ class MechanismComparison(case.Comparison):
         """
         if not self.rows:
             raise ValueError(f"{self.scene.name}: no drawing, since the answers have no common station")
-        return _saved(figures.of_comparison(self)[0], path)
+        return _saved(figures.comparison_figures(self)[0], path)
 
     def to_csv(self, path: str | Path) -> None:
         """Write a file with a row per station, probe and component, and the values of both solvers.
@@ -67,7 +67,7 @@ class MechanismComparison(case.Comparison):
         """Verdict, table of the last station of each stage, and drawing, for a notebook."""
         rows = last_rows_of_stages(self)
         sentence = headline(self.scene.name, self.verdict, self.verdict.sentence)
-        return _html(sentence, (nearest_rows(self, rows, len(rows)),), figures.of_comparison(self)[:1])
+        return _html(sentence, (nearest_rows(self, rows, len(rows)),), figures.comparison_figures(self)[:1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +109,7 @@ class Mechanism:
 
     def plot(
         self, path: str | Path | None = None, solver: SolverName = "cprbm", choices: Choices | None = None
-    ) -> Picture:
+    ) -> Figure:
         """Drawing of an answer at its last station.
 
         Args:
@@ -121,7 +121,7 @@ class Mechanism:
             ValueError: the path ends otherwise, or the answer has no station.
             OSError: the file cannot be written.
         """
-        return _saved(figures.of_answer(self.scene, self.solve(solver, choices)), path)
+        return _saved(figures.answer_figure(self.scene, self.solve(solver, choices)), path)
 
     def to_csv(self, path: str | Path, solver: SolverName = "cprbm", choices: Choices | None = None) -> None:
         """Write a file with a row per station, probe and component of an answer.
@@ -144,11 +144,11 @@ class Mechanism:
     def _repr_html_(self) -> str:
         """Tables and drawing of the CPRBM's answer, for a notebook."""
         answer = self.solve()
-        drawing = (figures.of_answer(self.scene, answer),) if answer.stations else ()
-        return _html(f"{answer.ending.name}. {answer.sentence}", of_answer(self.scene, answer), drawing)
+        drawing = (figures.answer_figure(self.scene, answer),) if answer.stations else ()
+        return _html(f"{answer.ending.name}. {answer.sentence}", answer_tables(self.scene, answer), drawing)
 
 
-def _saved(drawing: Picture, path: str | Path | None) -> Picture:
+def _saved(drawing: Figure, path: str | Path | None) -> Figure:
     if path is not None:
         drawing.save(Path(path))
     return drawing
@@ -162,6 +162,5 @@ def _data_frame(rows: Iterable[Mapping[str, object]]) -> Any:  # noqa: ANN401
     return pandas.DataFrame(list(rows))
 
 
-def _html(sentence: str, sheets: Iterable[Sheet], pictures: Iterable[Picture]) -> str:
-    drawings = [embedded(each) for each in pictures]
-    return rendered("notebook.html", {"sentence": sentence, "sheets": sheets, "pictures": drawings})
+def _html(sentence: str, tables: Iterable[Table], drawings: Iterable[Figure]) -> str:
+    return rendered("notebook.html", {"sentence": sentence, "tables": tables, "figures": drawings})

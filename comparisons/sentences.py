@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 
 from comparisons.display_units import at_station, distance_text, with_unit
 from comparisons.formats import number, percent
 from comparisons.verdict.calibration import SOLVERS, error_ratios, tally, true_errors
+from comparisons.verdict.completeness import problems
 from comparisons.verdict.events import ClosingRow, CriticalRow, mechanism
 from comparisons.verdict.judge import Judged
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.station_events import MIRRORED, PASSED, passed_by
 from comparisons.verdict.words import Reason, Word
-from cprbm_scene import Scene
+from cprbm_scene import Answer, Scene
 
 NAMES = {"cprbm": "the CPRBM", "fea": "the finite elements"}
 _OPTIONS = {"cprbm": ("-n", "links"), "fea": ("--elements", "elements")}
@@ -80,12 +82,17 @@ def wider_limits(scene: Scene) -> str:
     return f"The scene allows stated uncertainties of {percent(scene.verdict_limit)} of the scale; {limits}."
 
 
-def ended_sentence(problems: Mapping[str, tuple[str, ...]]) -> str:
-    """The runs that are not complete, and their problems; each problem once."""
+def problem_sentences(scene: Scene, answer: Answer) -> tuple[str, ...]:
+    """Problems of an answer in sentences, with stations in the units of the scene's file; empty if complete."""
+    return problems(scene, answer, partial(at_station, scene))
+
+
+def ended_sentence(table: RunsTable, names: Iterable[str]) -> str:
+    """The incomplete runs of some ``names``, and their problems; each problem once."""
     by_problem: dict[str, list[str]] = {}
-    for name, found in problems.items():
-        by_problem.setdefault(_first(found), []).append(name)
-    parts = "; ".join(f"{', '.join(names)}: {problem}" for problem, names in by_problem.items())
+    for name in names:
+        by_problem.setdefault(_first(problem_sentences(table.scene, table.answers[name])), []).append(name)
+    parts = "; ".join(f"{', '.join(runs)}: {problem}" for problem, runs in by_problem.items())
     return f"Runs without a complete answer: {parts}."
 
 

@@ -11,10 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from comparisons.case import Comparison
-from comparisons.display_units import display_units
-from comparisons.formats import percent, vector
+from comparisons.formats import percent
 from comparisons.quantities import norm
-from comparisons.sheet import Sheet
 from comparisons.solid_limits import solid_limit
 from comparisons.stations import station_of
 from comparisons.verdict.rows import Row
@@ -62,42 +60,6 @@ def thirds_of(compared: Comparison) -> tuple[Third, ...]:
         found.append(Third(row, x, size(u), size(row.cprbm - x), size(v_b - x), size(row.fea - x)))
     widest = largest(((one.row.probe.name, one.row.stage), one.uncertainty) for one in found)
     return tuple(replace(one, uncertainty=widest[one.row.probe.name, one.row.stage]) for one in found)
-
-
-def of_thirds(compared: Comparison) -> Sheet:
-    """The last station's rows beside the solid."""
-    thirds = thirds_of(compared)
-    last = [one for one in thirds if (one.row.stage, one.row.station) == (thirds[-1].row.stage, thirds[-1].row.station)]
-    sizes = ((one.row.unit, norm(one.row.probe.quantity, one.solid)) for one in last)
-    units, body = display_units(compared.scene, sizes), []
-    for one in last:
-        row = one.row
-        factor, unit = units[row.unit]
-        fractions = (one.uncertainty, one.cprbm, one.bending, one.chosen)
-        body.append(
-            (
-                row.probe.name,
-                unit,
-                *(vector(value, factor) for value in (row.cprbm, row.fea, one.solid)),
-                *(percent(row.fraction(value)) for value in fractions),
-            )
-        )
-    return Sheet(
-        "The beam theories beside a solid, at the last station",
-        (
-            "probe",
-            "unit",
-            "CPRBM",
-            "FEA",
-            "solid",
-            "u solid",
-            "CPRBM off",
-            "FEA bending off",
-            f"FEA {compared.runs.kinematics} off",
-        ),
-        tuple(body),
-        "The solid's values are extrapolated from its meshes, and what is off is measured from these, as above.",
-    )
 
 
 def sentence(compared: Comparison) -> str:

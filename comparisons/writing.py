@@ -1,4 +1,4 @@
-"""Files that are whole or absent, also after a kill or a loss of power."""
+"""Files that are whole or absent, and files that grow by whole lines; also after a kill or a loss of power."""
 
 from __future__ import annotations
 
@@ -31,6 +31,31 @@ def write(path: Path, content: str | bytes) -> None:
         # the error of a full disk names no file, and another error names the temporary file
         error.filename, error.filename2 = str(path), None
         raise
+
+
+def append_line(path: Path, line: str) -> None:
+    """Add a line to a file; a line that a kill cuts short has no end and is dropped by :func:`whole_lines`.
+
+    Raises:
+        OSError: the file cannot be written to.
+    """
+    with path.open("ab") as stream:
+        stream.write(line.encode("utf-8") + b"\n")
+
+
+def whole_lines(path: Path) -> list[str]:
+    """The whole lines of a file, none where the file is absent; a last line without an end is cut off the file.
+
+    Raises:
+        OSError: the file cannot be read or cut.
+    """
+    if not path.exists():
+        return []
+    content = path.read_bytes()
+    whole = content[: content.rfind(b"\n") + 1]
+    if len(whole) < len(content):
+        os.truncate(path, len(whole))
+    return whole.decode("utf-8").split("\n")[:-1]
 
 
 def clear_partial(folders: Iterable[Path]) -> None:

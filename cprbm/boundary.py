@@ -44,7 +44,7 @@ from cprbm.once import once
 from cprbm.related import related_joints
 from cprbm_scene import BeamContact, Mistake, Scene, SceneError
 from cprbm_scene.answer import Array, Ints
-from cprbm_scene.check_overlaps import overlap_at_rest
+from cprbm_scene.clearance import overlap_at_rest
 
 FEWEST_POINTS = 3
 FEW = 100  # related joints, whose derivatives are products with a small matrix

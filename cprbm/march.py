@@ -38,7 +38,7 @@ from cprbm.settings import Settings
 from cprbm.steadied import Turn, steadied
 from cprbm.zones import Zone
 from cprbm_scene import Certificate, Critical, Ending, Event, GoneOver, Loss, Scene, Stage, StationAnswer
-from cprbm_scene.told import station_reached
+from cprbm_scene.progress import station_reached
 
 _SAYS = logging.getLogger(__name__)
 

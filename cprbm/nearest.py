@@ -77,7 +77,7 @@ from cprbm.once import once
 from cprbm.pairs import Pressed
 from cprbm_scene import BeamContact, Scene
 from cprbm_scene.answer import Array, Flags, Ints
-from cprbm_scene.check_overlaps import overlap_at_rest
+from cprbm_scene.clearance import overlap_at_rest
 
 ARCHING = 1.0  # of what the largest force bends one element by: unlike elements of two beams arch by as much
 DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even

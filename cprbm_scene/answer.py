@@ -1,6 +1,6 @@
 """The answer sheet that every solver hands back, at the scene's own stations.
 
-Values are NumPy arrays in SI units, made read-only.  What each quantity means:
+Values are NumPy arrays in SI units, made read-only.  Meaning of the quantities:
 
 =================  ======  ====================================================================
 quantity           shape   meaning
@@ -62,7 +62,7 @@ class Ending(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """What makes one station's answer believable; every number is relative to a stated scale.
+    """Evidence for the answer at a station; every number is relative to a stated scale.
 
     Attributes:
         residual: largest unbalanced generalised force over the largest one that balances.
@@ -136,7 +136,7 @@ class BeamState:
 
 
 class PointForce(NamedTuple):
-    """One force on one beam or body: a row of :class:`PointForces`.
+    """Force on a beam or body: a row of :class:`PointForces`.
 
     Attributes:
         source: name of the cause: the point that a beam's end is joined to, the contact, stop, drive, pin or sliding

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import Annotated, Literal
 
 import numpy as np
@@ -19,7 +19,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, shape_of, with_half_waves
 from cprbm_scene.curves import Array
-from cprbm_scene.mistakes import Mistake
+from cprbm_scene.mistakes import Mistake, broken, written_place
 from cprbm_scene.record import Name, Of, Record
 from cprbm_scene.units import NUMBER, STRESS, Length, Number, PositiveLength
 
@@ -57,9 +57,18 @@ class PinnedEnd(Record):
 
 
 class FreeEnd(Record):
-    """End of a beam without a joint."""
+    """End of a beam without a joint; with a ``point``, a name of the end for loads and probes.
+
+    A scene has a free body of this point, welded to the end, in place of a named free end.
+    """
 
     joint: Literal["free"]
+    point: Name | None = None
+
+    def rules(self) -> Iterator[Mistake]:
+        """A name whose body is another body of the scene."""
+        found = f"{self.point!r}, and another body with the name '{self.point}-body'"
+        return broken((self.point is not None, "point", found, "another name of the free end"))
 
 
 BeamEnd = Annotated[WeldedEnd | PinnedEnd | FreeEnd, Field(discriminator="joint")]
@@ -77,23 +86,23 @@ class Profile(Record):
     def rules(self) -> Iterator[Mistake]:
         """Places without ascent from 0 to 1, or more or fewer than the values; jumps of the size."""
         at, values = self.at, self.values
-        if len(at) != len(values):
-            found = f"{len(values)} values at {len(at)} places"
-            yield Mistake("values", found, "as many values as places in at")
-        elif len(at) > MOST_PLACES:
-            yield Mistake("at", f"{len(at)} places", f"at most {MOST_PLACES} of them")
-        elif at[0] != 0.0 or at[-1] != 1.0:
-            allowed = "fractions of the beam's length that begin with 0 and end with 1"
-            yield Mistake("at", f"places from {at[0]:.9g} to {at[-1]:.9g}", allowed)
-        elif not max(values) / LARGEST_RATIO <= min(values):
-            allowed = f"values of which the largest is at most {LARGEST_RATIO:g} times the least"
-            yield Mistake("values", f"values from {min(values):g} m to {max(values):g} m", allowed)
-        else:
-            for i, (before, place) in enumerate(pairwise(at), start=1):
-                if not place - before >= CLOSEST:
-                    allowed = f"places that ascend, each at least {CLOSEST:g} after the one before"
-                    yield Mistake(f"at[{i}]", f"{place:.9g} after {before:.9g}", allowed)
-                    return
+        where = f"places from {at[0]:.9g} to {at[-1]:.9g}"
+        span, places = f"values from {min(values):g} m to {max(values):g} m", f"at most {MOST_PLACES} of them"
+        ratio = f"values of which the largest is at most {LARGEST_RATIO:g} times the least"
+        counts, many = f"{len(values)} values at {len(at)} places", f"{len(at)} places"
+        ends = at[0] != 0.0 or at[-1] != 1.0
+        ascent = f"places that ascend, each at least {CLOSEST:g} after the one before"
+        rules = broken(
+            (len(at) != len(values), "values", counts, "as many values as places in at"),
+            (len(at) > MOST_PLACES, "at", many, places),
+            (ends, "at", where, "fractions of the beam's length that begin with 0 and end with 1"),
+            (not max(values) / LARGEST_RATIO <= min(values), "values", span, ratio),
+            *(
+                (not place - before >= CLOSEST, f"at[{i}]", f"{place:.9g} after {before:.9g}", ascent)
+                for i, (before, place) in enumerate(pairwise(at), start=1)
+            ),
+        )
+        return islice(rules, 1)
 
 
 def _size_tag(value: object) -> str:
@@ -180,31 +189,41 @@ class Beam(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """Thickness out of proportion to the length or the curvature, of a curve and sizes without mistakes."""
-        parts = [part for part in (self.curve, self.thickness, self.width) if isinstance(part, Record)]
-        if any(mistake for part in parts for mistake in part.rules()):
+        if not _parts_sound(self):
             return
         shape = shape_of(self.curve)
         for thickness in (self.thinnest, self.thickest):
             share = thickness / shape.length
+            found = f"{thickness:g} m, which is {share:.3g} of the beam's length{mix_up(share)}"
+            allowed = f"a thickness between {THINNEST:g} and {THICKEST:g} of the beam's length"
             if not THINNEST <= share <= THICKEST:
-                found = f"{thickness:g} m, which is {share:.3g} of the beam's length"
-                allowed = f"a thickness between {THINNEST:g} and {THICKEST:g} of the beam's length"
                 yield Mistake("thickness", found, allowed)
                 return
-        thickness, curvature = self.thickest, shape.largest_curvature
-        if self.tapered and 0.5 * thickness * curvature >= MOST_CURVED:
-            u = np.union1d(np.linspace(0.0, 1.0, _SAMPLES), self.knots)
-            worst = u[[(self.thickness_at(u) * shape.curvature(u)).argmax()]]
-            thickness, curvature = float(self.thickness_at(worst)[0]), float(shape.curvature(worst)[0])
-        if 0.5 * thickness * curvature >= MOST_CURVED:
-            found = f"{thickness:g} m, half of which is {0.5 * thickness * curvature:.3g} of the radius of curvature"
-            yield Mistake("thickness", found, f"half a thickness less than {MOST_CURVED:g} of the radius of curvature")
+        share = 0.5 * self.thickest * shape.largest_curvature
+        if share < MOST_CURVED:
+            return
+        u = np.union1d(np.linspace(0.0, 1.0, _SAMPLES), self.knots)
+        shares = 0.5 * self.thickness_at(u) * shape.curvature(u)
+        worst, share = u[[shares.argmax()]], float(shares.max()) if self.tapered else share
+        found = f"{float(self.thickness_at(worst)[0]):g} m, half of which is {share:.3g} of the radius of curvature at "
+        found += f"{float(worst[0]):.3g} of the length, near {written_place(shape.point(worst)[0])} m{mix_up(share)}"
+        allowed = f"half a thickness less than {MOST_CURVED:g} of the radius of curvature"
+        yield from broken((share >= MOST_CURVED, "thickness", found, allowed))
+
+
+def mix_up(share: float) -> str:
+    """A question about the unit of a thickness, for a ``share`` that a unit 1000 times smaller would make ordinary."""
+    return " (in mm in place of m, or in um in place of mm?)" if 2.0 <= share <= 1e3 * THICKEST else ""
+
+
+def _parts_sound(beam: Beam) -> bool:
+    parts = (part for part in (beam.curve, beam.thickness, beam.width) if isinstance(part, Record))
+    return not any(mistake for part in parts for mistake in part.rules())
 
 
 @lru_cache(maxsize=512)
 def _sound(beam: Beam) -> bool:
-    parts = [part for part in (beam, beam.curve, beam.thickness, beam.width) if isinstance(part, Record)]
-    return not any(mistake for part in parts for mistake in part.rules())
+    return _parts_sound(beam) and not any(beam.rules())
 
 
 def _size_at(size: float | Profile, u: Array) -> Array:

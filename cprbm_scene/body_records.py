@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
+from math import isnan, nan
 from typing import Annotated, ClassVar, Literal, cast
 
 from pydantic import Field, create_model
 
 from cprbm_scene.beam_records import PointName
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, unknown_name
+from cprbm_scene.mistakes import Mistake, broken, unknown_names
 from cprbm_scene.record import Name, Named, Of, Record, nonzero
 from cprbm_scene.units import ANGLE, FORCE, LENGTH, LINE_LOAD, MOMENT, Direction, Point, Share, Unit
 
@@ -22,10 +24,13 @@ BeamName = Annotated[Name, Of("beam")]
 
 
 class FixedBody(Record):
-    """The ground: a rigid body with named points (m), at rest."""
+    """The ground: a rigid body with named points (m), at rest.
+
+    A scene has a point at an edge of the body, or at the first beam, in place of no points.
+    """
 
     motion: Literal["fixed"]
-    points: Points
+    points: Named[Point] = Field(default_factory=frozendict)
 
 
 class FreeBody(Record):
@@ -57,15 +62,15 @@ class SlidingBody(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """A guide without direction; a pin without a point, of another body or without ``turns``."""
+        names, known = ", ".join(map(repr, self.points)), self.about in self.points
+        turned = f"{self.about!r}, a point to turn about, of a body that does not turn"
+        nothing = "nothing: of the points of a body that slides and turns, one stays in the slot"
         yield from nonzero("along", self.along)
-        if self.about is not None and self.about not in self.points:
-            yield unknown_name("about", self.about, "point of this body", self.points)
-        elif self.about is not None and not self.turns:
-            found = f"{self.about!r}, a point to turn about, of a body that does not turn"
-            yield Mistake("about", found, "turns = true, or no point")
-        elif self.turns and self.about is None and len(self.points) > 1:
-            found = "nothing: of the points of a body that slides and turns, one stays in the slot"
-            yield Mistake("about", found, f"one of {', '.join(map(repr, self.points))}")
+        yield from unknown_names("about", self.about, "point of this body", self.points)
+        yield from broken(
+            (known and not self.turns, "about", turned, "turns = true, or no point"),
+            (self.turns and self.about is None and len(self.points) > 1, "about", nothing, f"one of {names}"),
+        )
 
 
 class TurningBody(Record):
@@ -80,8 +85,7 @@ class TurningBody(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """A pivot outside the body's points."""
-        if self.about not in self.points:
-            yield unknown_name("about", self.about, "point of this body", self.points)
+        return unknown_names("about", self.about, "point of this body", self.points)
 
 
 Body = Annotated[FixedBody | FreeBody | SlidingBody | TurningBody, Field(discriminator="motion")]
@@ -110,11 +114,12 @@ class Stop(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """No limit, or limits in the wrong order."""
-        if self.least is None and self.most is None:
-            yield Mistake("", "neither 'least' nor 'most'", "at least one of the two, rad")
-        elif self.least is not None and self.most is not None and not self.least < self.most:
-            found = f"least = {self.least:g} rad and most = {self.most:g} rad"
-            yield Mistake("", found, "a least angle that is less than the most")
+        least, most = (nan if limit is None else limit for limit in (self.least, self.most))
+        both = f"least = {least:g} rad and most = {most:g} rad"
+        return broken(
+            (isnan(least) and isnan(most), "", "neither 'least' nor 'most'", "at least one of the two, rad"),
+            (least >= most, "", both, "a least angle that is less than the most"),
+        )
 
 
 class Assembly(Record):
@@ -136,7 +141,15 @@ class Moment(Record):
     body: BodyName
 
 
-class Force(Record):
+class _Directed(Record):
+    """Load or drive along a ``direction`` of any length but zero."""
+
+    def rules(self) -> Iterator[Mistake]:
+        """A direction [0, 0]."""
+        return nonzero("direction", getattr(self, "direction"))  # noqa: B009 - a field of the records below
+
+
+class Force(_Directed):
     """Dead force at a body's ``point``, N: the ``direction`` (of any length but zero) stays as the body turns."""
 
     unit: ClassVar[Unit] = FORCE
@@ -144,12 +157,8 @@ class Force(Record):
     point: PointName
     direction: Direction
 
-    def rules(self) -> Iterator[Mistake]:
-        """A direction [0, 0]."""
-        return nonzero("direction", self.direction)
 
-
-class BeamForce(Record):
+class BeamForce(_Directed):
     """Dead force on a ``beam``, N, ``at`` a fraction of the arc length from the start.
 
     The ``direction`` (of any length but zero) stays as the beam turns.
@@ -160,10 +169,6 @@ class BeamForce(Record):
     beam: BeamName
     at: Share
     direction: Direction
-
-    def rules(self) -> Iterator[Mistake]:
-        """A direction [0, 0]."""
-        return nonzero("direction", self.direction)
 
 
 class BeamMoment(Record):
@@ -189,11 +194,9 @@ class DistributedLoad(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """A direction [0, 0], and a stretch without length."""
-        yield from nonzero("direction", self.direction)
-        begin, end = self.along
-        if not end - begin >= SHORTEST_STRETCH:
-            allowed = "two fractions of the beam's length, the smaller one first"
-            yield Mistake("along", f"a stretch from {begin:.9g} to {end:.9g}", allowed)
+        (begin, end), allowed = self.along, "two fractions of the beam's length, the smaller one first"
+        short = (end - begin < SHORTEST_STRETCH, "along", f"a stretch from {begin:.9g} to {end:.9g}", allowed)
+        return chain(nonzero("direction", self.direction), broken(short))
 
 
 Load = Annotated[Moment | Force | BeamForce | BeamMoment | DistributedLoad, Field(discriminator="kind")]
@@ -218,7 +221,7 @@ class _Drive(_From):
         return cast("str | None", getattr(self, "from"))
 
 
-class DisplacementDrive(_Drive):
+class DisplacementDrive(_Drive, _Directed):
     """Prescribed displacement of a body's ``point`` along ``direction`` (of any length but zero), m.
 
     With ``from`` the displacement is free before the named stage, and then holds the value that it has there.
@@ -228,10 +231,6 @@ class DisplacementDrive(_Drive):
     kind: Literal["displacement"]
     point: PointName
     direction: Direction
-
-    def rules(self) -> Iterator[Mistake]:
-        """A direction [0, 0]."""
-        return nonzero("direction", self.direction)
 
 
 class RotationDrive(_Drive):

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import combinations, islice, pairwise
+from itertools import chain, combinations, islice, pairwise
 from math import cos, sin
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
 
-from cprbm_scene.curve_records import MOST_POINTS, Polynomial, Spline, graph_rules
+from cprbm_scene.curve_records import MOST_POINTS, Polynomial, Spline, SplinePoints, graph_rules
 from cprbm_scene.curves import unit_vector
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake
+from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.record import Name, Named, Of, Record, nonzero
 from cprbm_scene.units import ANGLE, Coefficients, Direction, Length, Point, PositiveLength
 
@@ -29,12 +29,12 @@ class Related(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """Ranges of both coordinates or of none, and descending ranges."""
-        ranges = [(axis, span) for axis, span in (("x", self.x), ("y", self.y)) if span is not None]
-        if len(ranges) != 1:
-            yield Mistake("", "both x and y" if ranges else "neither x nor y", "a range in exactly one of x and y")
-        for axis, span in ranges:
-            if span[0] >= span[1]:
-                yield Mistake(axis, str(list(span)), "a range from the smaller to the larger value")
+        ranges = {axis: span for axis, span in (("x", self.x), ("y", self.y)) if span is not None}
+        found, allowed = "both x and y" if ranges else "neither x nor y", "a range from the smaller to the larger value"
+        return broken(
+            (len(ranges) != 1, "", found, "a range in exactly one of x and y"),
+            *((span[0] >= span[1], axis, str(list(span)), allowed) for axis, span in ranges.items()),
+        )
 
 
 class PaperContact(Record):
@@ -57,11 +57,11 @@ class PaperRigid(Record):
 
 def _paper_rules(paper: PaperContact | PaperRigid | None, beams: tuple[str, ...], allowed: str) -> Iterator[Mistake]:
     """Entries for beams outside the contact."""
-    if isinstance(paper, PaperContact) and paper.boundary not in beams:
-        yield Mistake("paper.boundary", repr(paper.boundary), allowed)
-    for beam in paper.related if paper is not None else ():
-        if beam not in beams:
-            yield Mistake(f"paper.related.{beam}", f"the beam {beam!r}", allowed)
+    boundary, related = getattr(paper, "boundary", beams[0]), paper.related if paper is not None else ()
+    return broken(
+        (boundary not in beams, "paper.boundary", repr(boundary), allowed),
+        *((beam not in beams, f"paper.related.{beam}", f"the beam {beam!r}", allowed) for beam in related),
+    )
 
 
 class BeamContact(Record):
@@ -79,14 +79,22 @@ class BeamContact(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """A pair of the same beam twice, and data for ``paper`` of other beams."""
-        if self.between[0] == self.between[1]:
-            allowed = "two different beams; a beam may touch itself in a contact of kind 'beam-self'"
-            yield Mistake("between", f"{self.between[0]!r} twice", allowed)
-        allowed = f"one of the pair: {', '.join(map(repr, self.between))}"
-        yield from _paper_rules(self.paper, self.between, allowed)
+        (one, other), allowed = self.between, f"one of the pair: {', '.join(map(repr, self.between))}"
+        different = "two different beams; a beam may touch itself in a contact of kind 'beam-self'"
+        twice = broken((one == other, "between", f"{one!r} twice", different))
+        return chain(twice, _paper_rules(self.paper, self.between, allowed))
 
 
-class SelfContact(Record):
+class _OneBeam(Record):
+    """Contact of a single ``beam``."""
+
+    @property
+    def beams(self) -> tuple[str, ...]:
+        """Name of the beam."""
+        return (getattr(self, "beam"),)  # noqa: B009 - a field of the records below
+
+
+class SelfContact(_OneBeam):
     """Frictionless contact of a beam with itself, after enough rotation.
 
     A ``thick`` beam touches by the edges, half of the local thickness from the neutral line; another beam as a line.
@@ -98,13 +106,8 @@ class SelfContact(Record):
     thick: bool = True
     paper: ClassVar[None] = None  # the formulation has no form for self-contact
 
-    @property
-    def beams(self) -> tuple[str, ...]:
-        """Name of the beam."""
-        return (self.beam,)
 
-
-class RigidContact(Record):
+class RigidContact(_OneBeam):
     """Fields of all contacts of a beam with a rigid shape, without friction.
 
     The shape is fixed to ``body`` and stated at the initial place, m.  A ``thick`` beam touches by the edge, half of
@@ -116,15 +119,10 @@ class RigidContact(Record):
     thick: bool = True
     paper: PaperRigid | None = None
 
-    @property
-    def beams(self) -> tuple[str, ...]:
-        """Name of the beam."""
-        return (self.beam,)
-
     def rules(self) -> Iterator[Mistake]:
         """Data for ``paper`` of other beams, and shapes without geometry."""
-        yield from _paper_rules(self.paper, self.beams, f"the contact's beam {self.beam!r}")
-        yield from islice(self.shape_rules(), 1)
+        paper = _paper_rules(self.paper, self.beams, f"the contact's beam {self.beam!r}")
+        return chain(paper, islice(self.shape_rules(), 1))
 
     def shape_rules(self) -> Iterator[Mistake]:
         """Mistakes of the shape, only the first of them valid; none by default."""
@@ -158,16 +156,20 @@ class LineContact(RigidContact):
 
     def shape_rules(self) -> Iterator[Mistake]:
         """Too many points, repeated points, lines with reversals or crossings."""
-        if len(self.points) > MOST_POINTS:
-            yield Mistake("points", f"{len(self.points)} points", f"at most {MOST_POINTS} of them")
-        pieces = list(pairwise(self.points))
-        for i, (a, b) in enumerate(pieces, start=1):
-            if a == b:
-                yield Mistake(f"points[{i}]", "a point 0 m from the one before", "two different points")
+        pieces, many = list(pairwise(self.points)), f"at most {MOST_POINTS} of them"
+        yield from broken(
+            (len(self.points) > MOST_POINTS, "points", f"{len(self.points)} points", many),
+            *(
+                (a == b, f"points[{i}]", "a point 0 m from the one before", "two different points")
+                for i, (a, b) in enumerate(pieces, start=1)
+            ),
+        )
         tau = [unit_vector((b[0] - a[0], b[1] - a[1])) for a, b in pieces]
-        for i, (before, behind) in enumerate(pairwise([*tau, tau[0]] if self.closed else tau), start=1):
-            if 1.0 + float(before @ behind) < BACKWARDS:
-                yield Mistake(f"points[{i}]", "a point at which the line turns back on itself", "a line that goes on")
+        back = "a point at which the line turns back on itself"
+        corners = enumerate(pairwise([*tau, tau[0]] if self.closed else tau), start=1)
+        yield from broken(
+            *((1.0 + a @ b < BACKWARDS, f"points[{i}]", back, "a line that goes on") for i, (a, b) in corners)
+        )
         for (i, first), (j, second) in combinations(enumerate(pieces), 2):
             neighbours = j == i + 1 or (self.closed and j - i == len(pieces) - 1)
             if not neighbours and _crosses(first, second) and _crosses(second, first):
@@ -229,7 +231,7 @@ class SplineContact(RigidContact):
     """
 
     kind: Literal["beam-spline"]
-    points: Annotated[tuple[Point, ...], Field(min_length=3)]
+    points: SplinePoints
     start_direction: Direction | None = None
     end_direction: Direction | None = None
     side: Literal["left", "right"]

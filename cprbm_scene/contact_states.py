@@ -1,4 +1,4 @@
-"""Which contacts are active at a station, and which open from one station to the next.
+"""Active contacts at a station, and contacts that open between two stations.
 
 A contact is active where its forces exceed a floor: round-off leaves forces of 1e-15 N in contacts that only touch.
 """

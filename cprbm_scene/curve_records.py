@@ -10,19 +10,21 @@ Bounds are on dimensionless numbers:
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterator
-from functools import lru_cache
-from itertools import islice, pairwise
+from functools import lru_cache, reduce
+from itertools import accumulate, islice, pairwise, repeat
 from math import dist, inf, isfinite
-from typing import Annotated, Literal
+from typing import Annotated, Literal, cast
 
 import numpy as np
-from pydantic import Field
+from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
 
 from cprbm_scene.curves import CircularArc, Curve, Graph, SplineCurve, StraightLine
-from cprbm_scene.mistakes import Mistake, written_place
+from cprbm_scene.mistakes import Mistake, broken, written_place
+from cprbm_scene.point_table import read_points
 from cprbm_scene.record import Record, nonzero
-from cprbm_scene.units import Coefficients, Direction, Length, Point
+from cprbm_scene.units import Coefficients, Direction, Length, Point, Reading
 
 SHORTEST = 1e-6
 STEEPEST = 1e3
@@ -35,13 +37,30 @@ MEETING = 1e-6
 """Distance between an end and its point, of the beam's length, and difference of an arc's radii, of the radius."""
 
 
+def _of_table(value: object, info: ValidationInfo) -> object:
+    """Points of the table that a text names, in the file's units; another value unchanged."""
+    if not isinstance(value, str) or not isinstance(info.context, Reading):
+        return value
+    return read_points(info.context.folder / value, info.context.units.length)
+
+
+_NUMBER = {"anyOf": [{"type": "number"}, {"type": "string", "pattern": "^="}]}
+_POINT = {"type": "array", "prefixItems": [_NUMBER, _NUMBER], "minItems": 2, "maxItems": 2}
+SplinePoints = Annotated[
+    tuple[Point, ...],
+    Field(min_length=3),
+    BeforeValidator(_of_table),
+    WithJsonSchema({"anyOf": [{"type": "array", "items": _POINT, "minItems": 3}, {"type": "string"}]}),
+]
+"""Points of a spline, or the path of a table with the points, relative to the scene's folder."""
+
+
 class _Curve(Record):
     """Neutral line between ``start`` and ``end``, m."""
 
     def rules(self) -> Iterator[Mistake]:
         """The first mistake of the curve: later rules need the geometry that earlier rules ensure."""
-        assert isinstance(self, Line | Arc | Polynomial | Spline)
-        return islice(_curve_rules(self), 1)
+        return islice(_curve_rules(cast("NeutralLine", self)), 1)
 
 
 class Line(_Curve):
@@ -88,9 +107,7 @@ class Polynomial(_Curve):
         return self._at(self.range[1])
 
     def _at(self, variable: float) -> Point:
-        value = 0.0
-        for coefficient in reversed(self.coefficients):
-            value = value * variable + coefficient
+        value = reduce(lambda sum_, coefficient: sum_ * variable + coefficient, reversed(self.coefficients), 0.0)
         return (variable, value) if self.axis == "x" else (value, variable)
 
 
@@ -100,11 +117,12 @@ class Spline(_Curve):
     x and y are cubic splines of t; t is zero at the first point and grows between points by their distance.  Tangent
     and curvature are continuous.  At an end with a ``start_direction`` or ``end_direction`` the derivative is the unit
     vector of the direction, in the sense of the beam.  At an end without a direction the outer two pieces are one
-    cubic.  The spline of three points without directions is the parabola through them.
+    cubic.  The spline of three points without directions is the parabola through them.  A file may name a table of
+    points in place of ``points``.
     """
 
     kind: Literal["spline"]
-    points: Annotated[tuple[Point, ...], Field(min_length=3)]
+    points: SplinePoints
     start_direction: Direction | None = None
     end_direction: Direction | None = None
 
@@ -167,71 +185,69 @@ def _curve_rules(curve: NeutralLine) -> Iterator[Mistake]:
             yield from graph_rules(curve)
         case Spline():
             yield from _spline_rules(curve)
-    if curve.start == curve.end:
-        found = f"a start and an end at the same place {written_place(curve.start)} m"
-        yield Mistake("", found, "two different places")
+    same = f"a start and an end at the same place {written_place(curve.start)} m"
+    yield from broken((curve.start == curve.end, "", same, "two different places"))
+    places = curve.points if isinstance(curve, Spline) else (curve.start, curve.end)
     if isinstance(curve, Arc):
         yield from _arc_rules(curve)
-    places = curve.points if isinstance(curve, Spline) else (curve.start, curve.end)
-    places += (curve.center,) if isinstance(curve, Arc) else ()
+        places += (curve.center,)
     length, largest = shape_of(curve).length, max(abs(number) for place in places for number in place)
-    if not SHORTEST * largest <= length < inf:
-        found = f"a length of {length:.3g} m at coordinates up to {largest:.3g} m"
-        yield Mistake("", found, f"a length of at least {SHORTEST:g} of the largest coordinate")
-    if isinstance(curve, Polynomial) and not SHORTEST * _largest_term(curve) <= length:
-        found = f"a term of {_largest_term(curve):.3g} m in a curve of {length:.3g} m"
-        yield Mistake("coefficients", found, f"a length of at least {SHORTEST:g} of the largest term")
+    term = _largest_term(curve) if isinstance(curve, Polynomial) else 0.0
+    short, allowed = (
+        f"a length of {length:.3g} m at coordinates up to {largest:.3g} m",
+        f"a length of at least {SHORTEST:g}",
+    )
+    steep = f"a term of {term:.3g} m in a curve of {length:.3g} m"
+    yield from broken(
+        (not SHORTEST * largest <= length < inf, "", short, f"{allowed} of the largest coordinate"),
+        (not SHORTEST * term <= length, "coefficients", steep, f"{allowed} of the largest term"),
+    )
 
 
 def _arc_rules(curve: Arc) -> Iterator[Mistake]:
     first, last = dist(curve.start, curve.center), dist(curve.end, curve.center)
-    if min(first, last) == 0.0:
-        yield Mistake("", "an end at the arc's own center", "ends on a circle about the center")
-    if not abs(last - first) <= MEETING * first:
-        found = f"ends that lie on no common circle: the start is {first:.9g} m from the center, the end {last:.9g} m"
-        yield Mistake("", found, f"distances that differ by at most {MEETING:g} of the radius")
+    found = f"ends that lie on no common circle: the start is {first:.9g} m from the center, the end {last:.9g} m"
+    allowed = f"distances that differ by at most {MEETING:g} of the radius"
+    return broken(
+        (min(first, last) == 0.0, "", "an end at the arc's own center", "ends on a circle about the center"),
+        (not abs(last - first) <= MEETING * first, "", found, allowed),
+    )
 
 
 def graph_rules(curve: Polynomial) -> Iterator[Mistake]:
     """Mistakes of a polynomial that leave no graph with a finite slope; each rule needs the earlier ones."""
-    first, last = curve.range
-    if len(curve.coefficients) > HIGHEST_DEGREE + 1:
-        found = f"{len(curve.coefficients)} coefficients"
-        yield Mistake("coefficients", found, f"at most {HIGHEST_DEGREE + 1} of them")
-    if first == last:
-        yield Mistake("range", f"a range from {first:g} m to the same {last:g} m", "two different values")
+    (first, last), many = curve.range, f"{len(curve.coefficients)} coefficients"
+    yield from broken(
+        (len(curve.coefficients) > HIGHEST_DEGREE + 1, "coefficients", many, f"at most {HIGHEST_DEGREE + 1} of them"),
+        (first == last, "range", f"a range from {first:g} m to the same {last:g} m", "two different values"),
+    )
     finite = isfinite(_largest_term(curve)) and isfinite(last - first)
     slope = Graph(curve.coefficients, first, last, along=0).steepest if finite else inf
-    if not slope <= STEEPEST:
-        other = {"x": "y", "y": "x"}[curve.axis]
-        allowed = f"a slope of at most {STEEPEST:g} (a steeper curve may be a function of {other})"
-        yield Mistake("coefficients", f"a slope of up to {slope:.3g} in the range", allowed)
+    allowed = f"a slope of at most {STEEPEST:g} (a steeper curve may be a function of {'yx'['xy'.index(curve.axis)]})"
+    yield from broken((not slope <= STEEPEST, "coefficients", f"a slope of up to {slope:.3g} in the range", allowed))
 
 
 def _largest_term(curve: Polynomial) -> float:
     """Largest term |c_k v^k| of f in the range, m; not finite beyond the range of floating-point numbers."""
-    variable, power, largest = max(abs(v) for v in curve.range), 1.0, 0.0
-    for coefficient in curve.coefficients:
-        largest = max(largest, abs(coefficient) * power if coefficient else 0.0)
-        power *= variable
-    return largest
+    variable = max(abs(v) for v in curve.range)
+    powers = accumulate(repeat(variable, len(curve.coefficients) - 1), operator.mul, initial=1.0)
+    return max(abs(c) * power if c else 0.0 for c, power in zip(curve.coefficients, powers, strict=True))
 
 
 def _spline_rules(curve: Spline) -> Iterator[Mistake]:
-    if len(curve.points) > MOST_POINTS:
-        yield Mistake("points", f"{len(curve.points)} points", f"at most {MOST_POINTS} of them")
+    many, most = f"{len(curve.points)} points", f"at most {MOST_POINTS} of them"
+    yield from broken((len(curve.points) > MOST_POINTS, "points", many, most))
     yield from nonzero("start_direction", curve.start_direction)
     yield from nonzero("end_direction", curve.end_direction)
     chords = [dist(*pair) for pair in pairwise(curve.points)]
+    whole, allowed = (
+        sum(chords),
+        f"a point at least {SHORTEST:g} of all the distances between the points away from the one before",
+    )
     for i, chord in enumerate(chords, start=1):
-        if not SHORTEST * sum(chords) <= chord < inf:
-            found = f"{written_place(curve.points[i])} m, {chord:.3g} m from the point before"
-            allowed = f"a point at least {SHORTEST:g} of all the distances between the points away from the one before"
-            yield Mistake(f"points[{i}]", found, allowed)
-    shape = shape_of(curve)
-    assert isinstance(shape, SplineCurve)
-    speed, place = shape.slowest
-    if not speed >= SLOWEST:
-        found = f"points through which a smooth line has to turn back on the spot, near {written_place(place)} m"
-        allowed = "points (and directions) that a smooth line follows; more of them where it turns sharply"
-        yield Mistake("points", found, allowed)
+        found = f"{written_place(curve.points[i])} m, {chord:.3g} m from the point before"
+        yield from broken((not SHORTEST * whole <= chord < inf, f"points[{i}]", found, allowed))
+    speed, place = cast(SplineCurve, shape_of(curve)).slowest
+    found = f"points through which a smooth line has to turn back on the spot, near {written_place(place)} m"
+    allowed = "points (and directions) that a smooth line follows; more of them where it turns sharply"
+    yield from broken((not speed >= SLOWEST, "points", found, allowed))

@@ -14,23 +14,78 @@ Lines and arcs have closed forms.  A graph y = f(x) has the parameter w = |x −
 A spline has two cubic splines of the chord length, q' with respect to chord length over T.  Chord lengths keep a cubic
 spline within the fourth power of the points' distance of a smooth curve through the points (M. S. Floater, Chordal
 cubic spline interpolation is fourth-order accurate, IMA Journal of Numerical Analysis 26 (2006) 25-33).
+
+Arc length: S(w), with S' = |q'|, is a sum of Gauss-Legendre integrals over panels of w.  Panels are halved until S at
+the panels' ends is stationary.  Newton's method, started by linear interpolation in a panel, inverts u = S(w)/S(1).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from math import atan2, dist, hypot, tau
 from typing import Protocol
 
 import numpy as np
 from numpy.polynomial import Polynomial
+from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
-from cprbm_scene.arc_length import ArcLength
-
 Array = NDArray[np.float64]
+_NODES, _WEIGHTS = leggauss(12)
+_MOST_PANELS = 1 << 16
+_SETTLED = 1e-14
+"""Largest change of S by a halving of all panels, a fraction of the length: a few units of round-off."""
+_NEWTON_STEPS = 30
+_CLOSE = 1e-10
+"""Newton step at which the iteration ends: the next step, by quadratic convergence, is below round-off."""
+_REMEMBERED = 24
+"""Arrays of fractions with stored places: a solver asks for the same fractions at many stations."""
+
+
+class ArcLength:
+    """Arc length S(w) of a curve with the ``speed`` S', from panels between ``first`` (p+1,), ascending from 0 to 1."""
+
+    def __init__(self, speed: Callable[[Array], Array], first: Array) -> None:
+        self._speed, self._w, self._S = speed, first, _sums(speed, first)
+        while len(self._w) <= _MOST_PANELS:
+            before, self._w = self._S, np.sort(np.append(self._w, 0.5 * (self._w[1:] + self._w[:-1])))
+            self._S = _sums(speed, self._w)
+            if np.max(np.abs(self._S[::2] - before)) <= _SETTLED * self._S[-1]:
+                break
+        self.whole = float(self._S[-1])
+        self._places = lru_cache(maxsize=_REMEMBERED)(self._inverted)
+
+    def places(self, u: Array) -> Array:
+        """Parameters w (n,), read-only, at fractions ``u`` (n,), which are clipped to [0, 1]."""
+        return self._places(np.asarray(u, dtype=np.float64).tobytes())
+
+    def _inverted(self, fractions: bytes) -> Array:
+        S = np.clip(np.frombuffer(fractions), 0.0, 1.0) * self.whole
+        panel = np.clip(np.searchsorted(self._S, S, side="right") - 1, 0, len(self._w) - 2)
+        low, high, missing = self._w[panel], self._w[panel + 1], S - self._S[panel]
+        w = low + (high - low) * missing / (self._S[panel + 1] - self._S[panel])
+        for _ in range(_NEWTON_STEPS):
+            step = (missing - _integral(self._speed, low, w)) / self._speed(w)
+            w = np.clip(w + step, low, high)
+            if np.max(np.abs(step), initial=0.0) <= _CLOSE:
+                break
+        w.flags.writeable = False
+        return w
+
+
+def _integral(speed: Callable[[Array], Array], low: Array, high: Array) -> Array:
+    """Gauss–Legendre integrals (n,) of the speed from ``low`` (n,) to ``high`` (n,)."""
+    half = 0.5 * (high - low)
+    return np.asarray(speed(low[:, None] + half[:, None] * (1.0 + _NODES)) @ _WEIGHTS * half)
+
+
+def _sums(speed: Callable[[Array], Array], w: Array) -> Array:
+    """S at the ends ``w`` (p+1,) of the panels."""
+    return np.concatenate(([0.0], np.cumsum(_integral(speed, w[:-1], w[1:]))))
+
+
 Point = tuple[float, float]
 
 _SAMPLES = 2001
@@ -139,7 +194,7 @@ class ParametricCurve:
     @cached_property
     def largest_curvature(self) -> float:
         """Largest absolute curvature, 1/m."""
-        return -least(lambda w: -self._bend(w), self.samples)
+        return -least(lambda w: -self._bend(w), self.samples)[0]
 
     def derivative(self, w: Array, order: int) -> Array:
         """Derivatives (n, 2) of the place by the parameter, m, at parameters ``w`` (n,)."""
@@ -247,23 +302,31 @@ def unit_vector(direction: Point) -> Array:
     return np.asarray(e / hypot(*e))
 
 
-def least(function: Callable[[Array], Array], samples: Array) -> float:
-    """Least value of a function (n,) -> (n,) between ``samples`` (n,), ascending, refined beside the lowest of them."""
+def least(
+    function: Callable[[Array], Array], samples: Array, refined_below: float = float("inf")
+) -> tuple[float, float]:
+    """Least value of a function (n,) -> (n,), and the place, between ``samples`` (n,), ascending.
+
+    The lowest sampled minima are refined if the least is below a bound.
+    """
     from scipy.optimize import minimize_scalar  # scenes of lines and arcs alone need no SciPy
 
     values = function(samples)
     fence = np.pad(values, 1, constant_values=np.inf)
     minima = np.flatnonzero((values <= fence[:-2]) & (values <= fence[2:]))
-    found = [float(np.min(values))]
+    found = [(float(np.min(values)), float(samples[np.argmin(values)]))]
+    if found[0][0] > refined_below:
+        return found[0]
     for i in minima[np.argsort(values[minima], kind="stable")[:_LOWEST]]:
-        beside = (float(samples[max(i - 1, 0)]), float(samples[min(i + 1, len(samples) - 1)]))
+        # the tolerance of the place is a share of the variable: the variable is zero at the sample
+        beside = samples[max(i - 1, 0)] - samples[i], samples[min(i + 1, len(samples) - 1)] - samples[i]
         refined = minimize_scalar(
-            lambda place: float(function(np.array([place]))[0]),
+            lambda aside, i=i: float(function(samples[[i]] + aside)[0]),
             bounds=beside,
             method="bounded",
             options={"xatol": _PLACE},
         )
-        found.append(float(refined.fun))
+        found.append((float(refined.fun), float(samples[i] + refined.x)))
     return min(found)
 
 

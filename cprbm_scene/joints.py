@@ -42,10 +42,10 @@ def _may_be_apart(scene: Scene, beam: Beam) -> bool:
 
 def _distance(scene: Scene, beam: Beam, side: str) -> float | None:
     """Distance of an end from the point, m; None if the end meets the point, or either does not exist."""
-    joint = getattr(beam, side)
-    if isinstance(joint, FreeEnd) or joint.point not in scene.owners or any(beam.curve.rules()):
+    point = getattr(beam, side).point
+    if point not in scene.owners or any(beam.curve.rules()):
         return None
-    apart = dist(getattr(beam.curve, side), scene.place_of(joint.point))
+    apart = dist(getattr(beam.curve, side), scene.place_of(point))
     return None if apart <= MEETING * shape_of(beam.curve).length else apart
 
 

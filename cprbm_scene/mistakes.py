@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from itertools import islice
+
+import numpy as np
+from numpy.typing import NDArray
 
 _LISTED = 200
 """Largest number of names in a message."""
 
 _MEANT = {
-    "gravity": "distributed",
-    "weight": "distributed",
-    "torque": "moment",
-    "clamp": "weld",
-    "hinge": "pin",
-    "roller": "slides",
-    "pivot": "turns",
-    "circle": "arc",
-    "straight": "line",
+    "gravity": ("distributed", "a load of kind 'distributed'"),
+    "weight": ("distributed", "a load of kind 'distributed'"),
+    "torque": ("moment", "a load of kind 'moment'"),
+    "clamp": ("weld", "an end with joint = 'weld'"),
+    "hinge": ("pin", "an end with joint = 'pin'"),
+    "roller": ("slides", "a body with motion = 'slides'"),
+    "pivot": ("turns", "a body with motion = 'turns'"),
+    "circle": ("arc", "a curve of kind 'arc'"),
+    "straight": ("line", "a curve of kind 'line'"),
 }
-"""Words of other programs, and the words of a scene for the same."""
-_NOT_MODELLED = frozenset({"friction", "temperature", "plasticity", "yield_stress", "damping", "density", "mass"})
+"""Words of other programs; the words of a scene for the same, alone and with their place in a file."""
+_NOT_MODELLED = re.compile("friction|temperature|thermal|plastic|yield|damping|density|mass|viscos", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +50,15 @@ class Mistake:
         return f"{where}: found {self.found}; allowed: {self.allowed}"
 
 
+Rule = tuple[object, str, str, str]
+"""A condition that is true where the rule is broken; key, found and allowed of the mistake."""
+
+
+def broken(*rules: Rule) -> Iterator[Mistake]:
+    """Mistakes of the broken ``rules``, in order."""
+    return (Mistake(*rule[1:]) for rule in rules if rule[0])
+
+
 MOST = 100
 """Largest number of mistakes in an error: a larger number repeats a single mistake."""
 
@@ -66,15 +79,15 @@ def first_of(found: Iterable[Mistake], file: str = "") -> list[Mistake]:
 
 def hint(word: str, known: Iterable[str]) -> str:
     """`` (is 'X' meant?)`` for a ``word`` close to a ``known`` word, upper or lower case; otherwise an empty text."""
-    if word.casefold() in _NOT_MODELLED:
-        return f" ({word} is not modelled)"
-    by_case = {each.casefold(): each for each in known}
-    near = get_close_matches(
-        ({} if word.casefold() in by_case else _MEANT).get(word.casefold(), word.casefold()), by_case, n=1
-    )
+    by_case, same = {each.casefold(): each for each in known}, word.casefold()
+    term, place = _MEANT.get(same, ("", ""))
+    near = [term] if term in by_case and same not in by_case else get_close_matches(same, by_case, n=1)
     # any two words as short as a unit are close
-    told = near and (len(word) > 2 or near[0] == word.casefold())
-    return f" (is {by_case[near[0]]!r} meant?)" if told else ""
+    if near and (len(word) > 2 or near[0] == same):
+        return f" (is {by_case[near[0]]!r} meant?)"
+    if _NOT_MODELLED.search(word):
+        return f" ({word} is not modelled)"
+    return f" (is {place} meant?)" if place else ""
 
 
 def unknown_name(key: str, name: str, what: str, known: Iterable[str]) -> Mistake:
@@ -85,6 +98,11 @@ def unknown_name(key: str, name: str, what: str, known: Iterable[str]) -> Mistak
     return Mistake(key, f"{name!r}, which names no {what}{hint(name, names)}", f"the name of a {what}: {listed}")
 
 
-def written_place(place: tuple[float, float]) -> str:
+def unknown_names(key: str, name: str | None, what: str, known: Iterable[str]) -> Iterator[Mistake]:
+    """The mistake of a name outside the ``known`` names, as :func:`unknown_name`; no mistake without a name."""
+    return iter(() if name is None or name in known else (unknown_name(key, name, what, known),))
+
+
+def written_place(place: Sequence[float] | NDArray[np.float64]) -> str:
     """A place as text."""
     return f"({place[0]:.9g}, {place[1]:.9g})"

@@ -14,13 +14,15 @@ space of B contains the motions without bending: no force resists them.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import islice
 from math import dist
 
 import numpy as np
 
 from cprbm_scene.curve_records import MEETING
 from cprbm_scene.freedoms import AXES, NEGLIGIBLE, Freedoms, Row, rank, unit
-from cprbm_scene.mistakes import Mistake, written_place
+from cprbm_scene.mistakes import Mistake, broken, written_place
 from cprbm_scene.names import unknown_names
 from cprbm_scene.statement import BodyPin, FreeEnd, PinnedEnd, Scene, WeldedEnd
 
@@ -44,11 +46,11 @@ def wrong_mobility(scene: Scene) -> Iterator[Mistake]:
     acting = [*scene.bodies.values(), *scene.drives.values()]
     sound = not any(key.startswith(("drives", "pins")) or key.endswith(".point") for key in unknown)
     sound = sound and not any(mistake for record in acting for mistake in record.rules())
-    loose = list(unsupported(scene, Freedoms(scene) if sound else None))
+    freedoms = Freedoms(scene) if sound else None
+    loose = list(unsupported(scene, freedoms))
     yield from (mistake for mistake, names in loose if not _acted_on(scene, names))
-    if not sound or any(_owners(scene, pin)[0] == _owners(scene, pin)[1] for pin in scene.pins.values()):
+    if freedoms is None or any(len({*map(scene.body_of, pin.points)}) == 1 for pin in scene.pins.values()):
         return
-    freedoms = Freedoms(scene)
     if scene.pins:
         yield from _held_twice(scene, freedoms)
     held_otherwise = scene.contacts or scene.stops or scene.assembly is not None
@@ -56,27 +58,27 @@ def wrong_mobility(scene: Scene) -> Iterator[Mistake]:
         yield from _loose(scene, freedoms)
 
 
-def _owners(scene: Scene, pin: BodyPin) -> list[str]:
-    return [scene.body_of(point) for point in pin.points]
-
-
 def _pins(scene: Scene) -> Iterator[Mistake]:
     """Pins within a body, between fixed bodies, or between distant points."""
-    places = {point: scene.place_of(point) for point in scene.owners}
+    owners = scene.owners
+    places = {point: scene.place_of(point) for point in owners}
     extent = float(np.ptp(list(places.values()), axis=0).max()) if places else 0.0
     for name, pin in scene.pins.items():
-        if any(point not in places for point in pin.points):
+        if not all(point in places for point in pin.points):
             continue
-        key, (one, other) = f"pins.{name}.points", _owners(scene, pin)
-        both = [places[point] for point in pin.points]
-        if one == other:
-            found = f"{pin.points[0]!r} and {pin.points[1]!r}, both of the body {one!r}"
-            yield Mistake(key, found, "points of two different bodies")
-        elif scene.bodies[one].motion == scene.bodies[other].motion == "fixed":
-            yield Mistake(key, f"points of two fixed bodies, {one!r} and {other!r}", "one that moves")
-        elif not dist(*both) <= MEETING * extent:
-            found = f"points {dist(*both):.3g} m apart: {' and '.join(f'{written_place(place)} m' for place in both)}"
-            yield Mistake(key, found, f"at most {MEETING:g} of the scene's extent between them")
+        one, other = (owners[point] for point in pin.points)
+        fixed, (a, b) = (
+            scene.bodies[one].motion == scene.bodies[other].motion == "fixed",
+            map(scene.place_of, pin.points),
+        )
+        both = f"{pin.points[0]!r} and {pin.points[1]!r}, both of the body {one!r}"
+        apart = f"points {dist(a, b):.3g} m apart: {written_place(a)} m and {written_place(b)} m"
+        rules = broken(
+            (one == other, "", both, "points of two different bodies"),
+            (fixed, "", f"points of two fixed bodies, {one!r} and {other!r}", "one that moves"),
+            (not dist(a, b) <= MEETING * extent, "", apart, f"at most {MEETING:g} of the scene's extent between them"),
+        )
+        yield from (replace(each, key=f"pins.{name}.points") for each in islice(rules, 1))
 
 
 def unsupported(scene: Scene, freedoms: Freedoms | None) -> Iterator[tuple[Mistake, set[str]]]:
@@ -89,15 +91,16 @@ def unsupported(scene: Scene, freedoms: Freedoms | None) -> Iterator[tuple[Mista
         yield Mistake("bodies", "no fixed body", 'at least one body with motion = "fixed"'), set()
         return
     joints = {}
+    turns = "a pin at one end and nothing at the other: the beam turns freely"
     for name, beam in scene.beams.items():
         ends = [end for end in (beam.start, beam.end) if not isinstance(end, FreeEnd)]
         joints[name] = [end.point for end in ends]
-        if not ends:
-            allowed = "at least one end that meets a body, or a contact that holds the beam"
-            yield Mistake(f"beams.{name}", "two free ends", allowed), {name}
-        elif len(ends) == 1 and isinstance(ends[0], PinnedEnd):
-            found = "a pin at one end and nothing at the other: the beam turns freely"
-            yield Mistake(f"beams.{name}", found, "a weld, joints at both ends, or a contact or a load"), {name}
+        pinned = len(ends) == 1 and isinstance(ends[0], PinnedEnd)
+        rules = broken(
+            (not ends, "", "two free ends", "at least one end that meets a body, or a contact that holds the beam"),
+            (pinned, "", turns, "a weld, joints at both ends, or a contact or a load"),
+        )
+        yield from ((replace(each, key=f"beams.{name}"), {name}) for each in rules)
     if freedoms is None:
         return
     met = {name: {freedoms.owners[point] for point in points} for name, points in joints.items()}
@@ -106,18 +109,12 @@ def unsupported(scene: Scene, freedoms: Freedoms | None) -> Iterator[tuple[Mista
         together = _connected(name, list(met.values()))
         rows = [row for each in together for row in freedoms.guide(each)]
         rows += [freedoms.row(drive) for drive in drives if freedoms.owner(drive) in together]
-        if rank(rows) == FREEDOMS:
-            continue
-        found = f"a {_KINDS.get(body.motion, 'free')} body that "
-        if any(name in bodies for bodies in met.values()):
-            found += "no fixed body holds"
-            allowed = "beams that lead to a fixed body, or slides, pivots, drives, contacts and loads that hold it"
-        else:
-            found, allowed = (
-                f"{found}no beam meets",
-                "a beam's end, a pin, a contact or a load on it",
-            )
-        yield Mistake(f"bodies.{name}", found, allowed), together | {beam for beam in met if met[beam] & together}
+        reached = any(name in bodies for bodies in met.values())
+        found = f"a {_KINDS.get(body.motion, 'free')} body that no {'fixed body holds' if reached else 'beam meets'}"
+        held_by = "beams that lead to a fixed body, or slides, pivots, drives, contacts and loads that hold it"
+        allowed = held_by if reached else "a beam's end, a pin, a contact or a load on it"
+        if rank(rows) < FREEDOMS:
+            yield Mistake(f"bodies.{name}", found, allowed), together | {beam for beam in met if met[beam] & together}
 
 
 def _acted_on(scene: Scene, names: set[str]) -> bool:
@@ -163,17 +160,16 @@ def _loose(scene: Scene, freedoms: Freedoms) -> Iterator[Mistake]:
         for drive in scene.drives.values()
         if scene.holds(drive, scene.stages[0].name)
     ]
-    for name, beam in scene.beams.items():
-        for end in (beam.start, beam.end):
-            if not isinstance(end, FreeEnd):
-                welded = isinstance(end, WeldedEnd)
-                own = list(np.eye(3)) if welded else [freedoms.along(end.point, axis) for axis in AXES]
-                rows += [{("beam", name): row, ("body", freedoms.owners[end.point]): -row} for row in own]
+    for name, end in ((name, end) for name, beam in scene.beams.items() for end in (beam.start, beam.end)):
+        if not isinstance(end, FreeEnd):
+            along = [freedoms.along(end.point, axis) for axis in AXES]
+            own = list(np.eye(3)) if isinstance(end, WeldedEnd) else along
+            rows += [{("beam", name): row, ("body", freedoms.owners[end.point]): -row} for row in own]
     _, values, motions = np.linalg.svd(_matrix(rows, parts))
     null_space = motions[np.count_nonzero(values > NEGLIGIBLE) :]
-    for i, (kind, name) in enumerate(parts):
+    for i, name in enumerate(scene.bodies):
         own = list(null_space[:, 3 * i : 3 * i + 3])
-        if kind == "body" and np.abs(own).max(initial=0.0) > NEGLIGIBLE:
+        if np.abs(own).max(initial=0.0) > NEGLIGIBLE:
             how = _in_words(freedoms, own[0]) if len(own) == 1 else f"move in {rank(own)} ways"
             found = f"a body that can {how} where it is without bending a beam"
             yield Mistake(f"bodies.{name}", found, "pins, guides, drives and beams that hold it")
@@ -204,9 +200,11 @@ def _in_words(freedoms: Freedoms, motion: Row) -> str:
     """A small motion (3,) of a body: a turn about a place, or a displacement along a direction."""
     u, v, turn = motion
     if abs(turn) <= NEGLIGIBLE * np.hypot(u, v):
-        e = unit((float(u), float(v))) * np.sign(u if abs(u) > abs(v) else v)
-        e = np.where(np.abs(e) <= NEGLIGIBLE, 0.0, e)
-        return f"move along [{e[0]:.4g}, {e[1]:.4g}]"
-    away = np.array([-v, u]) / turn
-    pole = freedoms.origin + freedoms.extent * np.where(np.abs(away) <= NEGLIGIBLE, 0.0, away)
-    return f"turn about [{pole[0]:.4g}, {pole[1]:.4g}] m"
+        x, y = _rounded(unit((float(u), float(v))) * np.sign(u if abs(u) > abs(v) else v))
+        return f"move along [{x:.4g}, {y:.4g}]"
+    x, y = freedoms.origin + freedoms.extent * _rounded(np.array([-v, u]) / turn)
+    return f"turn about [{x:.4g}, {y:.4g}] m"
+
+
+def _rounded(values: Row) -> Row:
+    return np.where(np.abs(values) <= NEGLIGIBLE, 0.0, values)

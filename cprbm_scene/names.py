@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from cprbm_scene.mistakes import Mistake, unknown_name
 from cprbm_scene.record import Of, Record
-from cprbm_scene.statement import RigidContact, Scene
+from cprbm_scene.statement import BeamContact, RigidContact, Scene
 
 RESERVED = "scene"
 """Name of the scene itself in a probe."""
@@ -48,6 +48,18 @@ def repeated_names(scene: Scene) -> Iterator[Mistake]:
             allowed = "names that are used once among points, bodies, beams, loads, drives, contacts, stops and pins"
             yield Mistake(key, f"the name {name!r}, which {first[name]} has too", allowed)
         first.setdefault(name, key)
+
+
+def repeated_contacts(scene: Scene) -> Iterator[Mistake]:
+    """Contacts of the same beams, or of the same beam and rigid shape."""
+    seen: dict[object, str] = {}
+    for name, contact in scene.contacts.items():
+        rigid, paired = isinstance(contact, RigidContact), isinstance(contact, BeamContact)
+        shape = tuple(value for field, value in contact if field not in {"thick", "paper"})
+        first = seen.setdefault(shape if rigid else frozenset(contact.beams), name)
+        if first != name:
+            what, part = ("beam and the shape", "") if rigid else ("pair", ".between") if paired else ("beam", ".beam")
+            yield Mistake(f"contacts.{name}{part}", f"the {what} of contacts.{first} again", f"each {what} once")
 
 
 def unknown_names(scene: Scene) -> Iterator[Mistake]:

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import Field
 
 from cprbm_scene.curve_records import CurveField, shape_of
-from cprbm_scene.mistakes import Mistake
+from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.record import Name, Named, Record, Text, Title
 from cprbm_scene.units import Positive, PositiveLength, PositiveShare
 
@@ -86,13 +86,15 @@ class OffsetQuestion(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """Repeated values, claims on numbers without a run, and offset curves that are no graph over the other axis."""
-        for key, values in (("offsets", self.offsets), ("numbers", self.numbers)):
-            if len(set(values)) < len(values):
-                yield Mistake(key, "a value twice", "each once")
-        for i, claim in enumerate(self.claims):
-            if claim.numbers_from > max(self.numbers):
-                found = f"{claim.numbers_from}, beyond all numbers"
-                yield Mistake(f"claims[{i}].numbers_from", found, f"at most {max(self.numbers)}")
+        listed = (("offsets", self.offsets), ("numbers", self.numbers))
+        most = max(self.numbers)
+        yield from broken(
+            *((len(set(values)) < len(values), key, "a value twice", "each once") for key, values in listed),
+            *(
+                (from_ > most, f"claims[{i}].numbers_from", f"{from_}, beyond all numbers", f"at most {most}")
+                for i, from_ in enumerate(claim.numbers_from for claim in self.claims)
+            ),
+        )
         if any(self.curve.rules()):
             return
         u, shape = np.linspace(0.0, 1.0, _SAMPLES), shape_of(self.curve)
@@ -102,10 +104,13 @@ class OffsetQuestion(Record):
             yield Mistake("axis", repr(self.axis), "an axis to which the curve is nowhere parallel")
             return
         normals = self.sign * np.column_stack((-tangents[:, 1], tangents[:, 0]))
-        for key, offsets in (("offsets", self.offsets), ("shown.offsets", self.shown.offsets if self.shown else ())):
-            for i, t in enumerate(offsets):
-                # beyond the radius of curvature the offset curve runs backwards, with a cusp
-                forwards = (np.diff(p + t * normals, axis=0) * tangents[:-1]).sum(axis=1)
-                if np.min(forwards) <= 0.0:
-                    allowed = "less than the radius of curvature on that side of the curve"
-                    yield Mistake(f"{key}[{i}]", f"{t:g}", allowed)
+        allowed = "less than the radius of curvature on that side of the curve"
+        shown = self.shown.offsets if self.shown else ()
+        for key, t in (*_items("offsets", self.offsets), *_items("shown.offsets", shown)):
+            # beyond the radius of curvature the offset curve runs backwards, with a cusp
+            forwards = (np.diff(p + t * normals, axis=0) * tangents[:-1]).sum(axis=1)
+            yield from broken((np.min(forwards) <= 0.0, key, f"{t:g}", allowed))
+
+
+def _items(key: str, values: tuple[float, ...]) -> list[tuple[str, float]]:
+    return [(f"{key}[{i}]", value) for i, value in enumerate(values)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bisect import bisect
+from bisect import bisect, insort
 from collections.abc import Iterator, Mapping
 from math import isclose
 from typing import Annotated, Any, Literal
@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, WithJsonSchema, model_validator
 
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake
+from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.record import Name, Of, Record, Text
 from cprbm_scene.units import (
     ANGLE,
@@ -129,19 +129,22 @@ class Stage(Record):
     def rules(self) -> Iterator[Mistake]:
         """Repeated stations, indistinguishable in an answer, and shown values without a station."""
         before: list[float] = []  # ascending
+        allowed = "each value once in a stage; a further stage may go back to it"
         for j, value in enumerate(self.stations):
+            insort(before, value)
             place = bisect(before, value)
-            beside = before[max(0, place - 1) : place + 1]
-            before.insert(place, value)
-            if any(isclose(value, other, rel_tol=1e-9) for other in beside):
-                allowed = "each value once in a stage; a further stage may go back to it"
-                yield Mistake(f"stations[{j}]", f"{value:g} again", allowed)
-        if self.together and (self.together[0] != self.steps or len(set(self.together)) < len(self.together)):
-            yield Mistake("steps", f"{list(self.together)}", "different loads, each once")
+            beside = [*before[max(0, place - 2) : place - 1], *before[place : place + 1]]
+            again = any(isclose(value, other, rel_tol=1e-9) for other in beside)
+            yield from broken((again, f"stations[{j}]", f"{value:g} again", allowed))
+        first, once = self.together[:1] in ((), (self.steps,)), len(set(self.together)) == len(self.together)
         stations = set(self.stations)
-        for j, value in enumerate(self.shown):
-            if value not in stations:
-                yield Mistake(f"shown[{j}]", f"{value:g}", "one of the stage's stations")
+        yield from broken(
+            (not (first and once), "steps", f"{list(self.together)}", "different loads, each once"),
+            *(
+                (value not in stations, f"shown[{j}]", f"{value:g}", "one of the stage's stations")
+                for j, value in enumerate(self.shown)
+            ),
+        )
 
 
 class Probe(Record):
@@ -169,9 +172,9 @@ class Probe(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """Places of quantities other than stress."""
-        if "points" in self.model_fields_set and self.quantity not in STRESSES:
-            allowed = "points for 'bending_stress' and 'combined_stress' only"
-            yield Mistake("points", f"places along {self.name!r}", allowed)
+        wrong = "points" in self.model_fields_set and self.quantity not in STRESSES
+        allowed = "points for 'bending_stress' and 'combined_stress' only"
+        return broken((wrong, "points", f"places along {self.name!r}", allowed))
 
 
 class Claim(Record):

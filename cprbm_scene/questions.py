@@ -28,7 +28,7 @@ from cprbm_scene.statement import (
 
 _OF: Mapping[Quantity, str] = frozendict(
     {
-        "displacement": "a body's point",
+        "displacement": "a point of a body or of a free end, end = { joint = 'free', point = 'NAME' }",
         "rotation": "a body",
         "force": "a contact",
         "centre": "a contact",

@@ -5,21 +5,62 @@ from __future__ import annotations
 import re
 import tomllib
 from codecs import BOM_UTF8
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from cprbm_scene.checks import mistakes_in
-from cprbm_scene.keys import keys_at
+from cprbm_scene.clearance import wrong_clearance
+from cprbm_scene.freedoms import wrong_actions
+from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
 from cprbm_scene.mistakes import Mistake, SceneError, first_of, unknown_name
+from cprbm_scene.mobility import wrong_mobility
+from cprbm_scene.names import records, repeated_contacts, repeated_names, unknown_names
 from cprbm_scene.offset import OffsetQuestion
 from cprbm_scene.parameters import register
+from cprbm_scene.questions import wrong_claims, wrong_probes, wrong_spacings, wrong_stages
+from cprbm_scene.record import Record
 from cprbm_scene.statement import Scene
 from cprbm_scene.units import Reading, Units
-from cprbm_scene.wording import in_words, repeats_another
+from cprbm_scene.wording import in_words, keys_at, repeats_another
+
+
+def broken_rules(root: Record) -> Iterator[Mistake]:
+    """Mistakes within the records of a scene or another question."""
+    for key, record in records(root):
+        for mistake in record.rules():
+            below = mistake.key if not mistake.key or not key else f".{mistake.key}"
+            yield replace(mistake, key=f"{key}{below}")
+
+
+_CHECKS = (
+    repeated_names,
+    unknown_names,
+    distant_ends,
+    wrong_assembly,
+    wrong_stops,
+    wrong_mobility,
+    wrong_actions,
+    repeated_contacts,
+    wrong_spacings,
+    wrong_clearance,
+    wrong_stages,
+    wrong_probes,
+    wrong_claims,
+)
+
+
+def mistakes_in(question: Scene | OffsetQuestion) -> list[Mistake]:
+    """All mistakes of a question; empty for a valid question.
+
+    A check is silent on parts with other mistakes: a slip has a single message.
+    """
+    between = (check(question) for check in _CHECKS) if isinstance(question, Scene) else ()
+    return [replace(mistake, file=question.file) for mistake in first_of(chain(broken_rules(question), *between))]
+
 
 Question = Scene | OffsetQuestion
 Asked = TypeVar("Asked", Scene, OffsetQuestion)
@@ -180,7 +221,7 @@ def _record(kind: type[Asked], data: dict[str, Any], file: str, settings: Mappin
         raise SceneError([replace(unknown_name("file", "file", "key here", keys_at((), kind)), file=file)])
     try:
         content = _tuples(data)
-        reading = Reading(_units(content), settings=settings)
+        reading = Reading(_units(content), settings=settings, folder=Path(file).parent)
         if "parameters" not in content:
             register(reading, {})
         record = kind.model_validate({**content, "file": file}, context=reading)

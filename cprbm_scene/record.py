@@ -2,7 +2,7 @@
 
 A reference to another part of the scene states the kind of the part, ``Annotated[Name, Of("beam")]``; a walk over the
 records finds all references (:mod:`cprbm_scene.names`).  The rules of a record yield the mistakes between
-its fields, with keys below the record's key; a walk over the records finds all mistakes (:mod:`cprbm_scene.checks`).
+its fields, with keys below the record's key; a walk over the records finds all mistakes (:mod:`cprbm_scene.reading`).
 """
 
 from __future__ import annotations

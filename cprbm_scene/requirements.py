@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal
 
-from cprbm_scene.check_overlaps import overlap_at_rest
+from cprbm_scene.clearance import overlap_at_rest
 from cprbm_scene.freedoms import Freedoms
 from cprbm_scene.mistakes import Mistake, SceneError
 from cprbm_scene.mobility import unsupported

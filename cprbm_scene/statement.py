@@ -1,7 +1,7 @@
 """The problem statement: immutable records in SI units, angles in radians; a file may state other units.
 
 Every record refuses unknown keys, NaN and infinity, and states the rules between the fields.  Rules between records
-(a beam's end meets a body's point, a load acts on a movable body) are in :mod:`cprbm_scene.checks`.
+(a beam's end meets a body's point, a load acts on a movable body) are in :mod:`cprbm_scene.reading`.
 
 Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a new record with another ``kind`` (or
 ``joint``, or ``motion``).
@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Literal, TypeVar
 
-from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from cprbm_scene.beam_records import (
     Beam,
@@ -64,7 +64,7 @@ from cprbm_scene.contact_records import (
 )
 from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake
+from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.parameters import Parameter, Tolerance, register
 from cprbm_scene.question_records import CRITICAL, STRESSES, UNITS, Claim, Probe, Quantity, Stage
 from cprbm_scene.record import Name, Named, Of, Record, Text, Title
@@ -179,9 +179,12 @@ class Scene(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """Pairs of the same name."""
-        for i, pair in enumerate(self.may_cross):
-            if pair[0] == pair[1]:
-                yield Mistake(f"may_cross[{i}]", f"{pair[0]!r} twice", "two different names")
+        return broken(
+            *(
+                (one == other, f"may_cross[{i}]", f"{one!r} twice", "two different names")
+                for i, (one, other) in enumerate(self.may_cross)
+            )
+        )
 
     @field_validator("units", "parameters", "loads", "drives", "stages", "probes")
     @classmethod
@@ -203,6 +206,27 @@ class Scene(Record):
             case _, Mapping() as acting:
                 reading.stepped.update({name: each.unit for name, each in acting.items()})
         return value
+
+    @model_validator(mode="after")
+    def _completed(self) -> Scene:
+        """The scene with a free body for each named free end, and with a point for each fixed body without points."""
+        beams, bodies = dict(self.beams), dict(self.bodies)
+        for name, beam in self.beams.items():
+            for side in ("start", "end"):
+                point = getattr(beam, side).point if isinstance(getattr(beam, side), FreeEnd) else None
+                if point is not None and f"{point}-body" not in bodies:
+                    points = frozendict({point: getattr(beam.curve, side)})
+                    bodies[f"{point}-body"] = FreeBody(motion="free", points=points)
+                    joint = WeldedEnd(joint="weld", point=point)
+                    beams[name] = beams[name].model_copy(update={side: joint})
+        for name, body in self.bodies.items():
+            if not body.points:
+                edges = (edge for edge in self.contacts.values() if getattr(edge, "body", None) == name)
+                place = next((_place(edge) for edge in edges), next(iter(beams.values())).curve.start)
+                bodies[name] = FixedBody(motion="fixed", points=frozendict({f"{name}-point": place}))
+        if (beams, bodies) != (self.beams, self.bodies):
+            self.__dict__.update(beams=frozendict(beams), bodies=frozendict(bodies))
+        return self
 
     def with_parameters(self, **values: float) -> Scene:
         """The scene with other values of its parameters, checked as a file is checked.
@@ -233,7 +257,7 @@ class Scene(Record):
 
     @property
     def display_units(self) -> Units:
-        """Units of the scene's file, for tables and figures; ``model_fields_set`` has those that the file states."""
+        """Units of the scene's file, for tables and figures; ``model_fields_set`` lists the stated ones."""
         return self._display.units
 
     def limit(self, probe: Probe) -> float:
@@ -283,3 +307,15 @@ class Scene(Record):
             KeyError: no body has a point of that name.
         """
         return self.owners[point]
+
+
+def _place(contact: Contact) -> Point:
+    """A place of a rigid shape: its center, or a point of its edge, m."""
+    match contact:
+        case CircleContact(center=place) | EllipseContact(center=place) | HalfPlaneContact(point=place):
+            return place
+        case LineContact(points=points) | SplineContact(points=points):
+            return points[0]
+        case FunctionContact(curve=curve):
+            return curve.start
+    raise TypeError(type(contact))

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def one_thread() -> AbstractContextManager[object]:
-    """Context with one thread for each loaded library of linear algebra; without effect if threadpoolctl is missing."""
+    """Context with a single thread per loaded library of linear algebra; without effect if threadpoolctl is missing."""
     try:
         libraries = _loaded(len(sys.modules))
     except ImportError:

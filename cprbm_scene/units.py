@@ -19,6 +19,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import astuple, dataclass, field
 from fractions import Fraction
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import (
@@ -34,12 +35,13 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake, SceneError
 from cprbm_scene.record import Record
 
 SMALLEST, LARGEST = 1e-50, 1e50
 """Magnitudes of numbers with a unit, in SI: a product of six such numbers stays within floating-point numbers."""
 
-_SIZES: Mapping[str, Fraction] = frozendict(
+SIZES: Mapping[str, Fraction] = frozendict(
     {
         name: Fraction(size)
         for name, size in {"m": "1", "cm": "1/100", "mm": "1/1000", "um": "1e-6", "in": "0.0254"}.items()
@@ -62,7 +64,7 @@ class Units(Record):
 
 @dataclass(slots=True)
 class Reading:
-    """State while a file is read: its ``units``, and the units of stations and probes by name, as far as read."""
+    """State while a file is read: its ``units`` and ``folder``, and the units of stations and probes read so far."""
 
     units: Units
     stepped: dict[str, Unit] = field(default_factory=dict)
@@ -70,12 +72,13 @@ class Reading:
     probes: dict[str, Unit | None] = field(default_factory=dict)
     settings: Mapping[str, float | str] = field(default_factory=dict)
     evaluate: Callable[[str, Unit | None], float] | None = None
+    folder: Path = Path()
 
     def number(self, value: object, unit: Unit | None) -> object:
         """The number of an expression in the file's units; another value unchanged.
 
         Raises:
-            PydanticCustomError: the expression has no value, or another unit.
+            SceneError: the expression has no value, or another unit.
         """
         if not (isinstance(value, str) and value.startswith("=")):
             return value
@@ -84,9 +87,9 @@ class Reading:
         return self.evaluate(value, unit)
 
 
-def mistake(found: str, allowed: str, key: str = "") -> PydanticCustomError:
+def mistake(found: str, allowed: str, key: str = "") -> SceneError:
     """An error of a validator with both halves of a mistake's sentence, at a ``key`` below the validated field."""
-    return PydanticCustomError("mistake", "{allowed}", {"found": found, "allowed": allowed, "key": key})
+    return SceneError([Mistake(key, found, allowed)])
 
 
 class Measured:
@@ -142,7 +145,7 @@ class Unit(Measured):
         """Size of the unit in SI: an exact factor, and a factor with π."""
         size = Fraction(1)
         for name, power in ((units.length, self.length), (units.force, self.force), (units.stress, self.stress)):
-            size *= _SIZES[name] ** power
+            size *= SIZES[name] ** power
         return size, (math.pi / _DEGREES) ** self.angle if units.angle == "deg" else 1.0
 
     def over(self, other: Unit, units: Units) -> float | None:

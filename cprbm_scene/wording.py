@@ -1,14 +1,73 @@
-"""Errors of pydantic as mistakes: the key in the file, the value found, the values allowed."""
+"""Errors of pydantic as mistakes: the key in the file, the value found, the values allowed.
+
+The annotations of the records tell the tags of unions, which are no keys, and the allowed keys of a table.
+"""
 
 from __future__ import annotations
 
 import re
+from types import NoneType, UnionType
+from typing import Annotated, Any, Union, get_args, get_origin
 
+from pydantic import BaseModel, Tag
 from pydantic_core import ErrorDetails
 
-from cprbm_scene.keys import is_tag, keys_at, tags_at
-from cprbm_scene.mistakes import Mistake, hint, unknown_name
+from cprbm_scene.mistakes import Mistake, SceneError, hint, unknown_name
 from cprbm_scene.record import Record
+
+
+def keys_at(loc: tuple[int | str, ...], root: type[Record]) -> tuple[str, ...]:
+    """Keys of the table at ``loc``, a place in ``root`` as pydantic names it (tags of unions included)."""
+    record = _bare(_place(loc, root))
+    return tuple(key for key in record.model_fields if (record, key) != (root, "file"))
+
+
+def is_tag(loc: tuple[int | str, ...], depth: int, root: type[Record]) -> bool:
+    """True if ``loc`` has the tag of a union at ``depth``: a tag is no key of the file."""
+    return get_origin(_bare(_place(loc[:depth], root))) in (Union, UnionType)
+
+
+def tags_at(loc: tuple[int | str, ...], root: type[Record]) -> tuple[str, ...]:
+    """Kinds, joints or motions of the table at ``loc``."""
+    return tuple(tag for record in get_args(_bare(_place(loc, root))) for tag in _tags(record))
+
+
+def _place(loc: tuple[int | str, ...], root: type[Record]) -> Any:  # noqa: ANN401 - annotations have no type
+    """The annotation at ``loc``."""
+    place: Any = root
+    for part in loc:
+        place = _below(_bare(place), part)
+    return place
+
+
+def _below(place: Any, part: int | str) -> Any:  # noqa: ANN401 - annotations have no type
+    """The annotation one step below ``place``."""
+    if isinstance(place, type) and issubclass(place, BaseModel):
+        return place.model_fields[str(part)].annotation
+    if get_origin(place) in (Union, UnionType):
+        return next(record for record in get_args(place) if part in _tags(record))
+    # of Mapping[Name, T] and tuple[T, ...], T
+    return next(each for each in reversed(get_args(place)) if each is not ...)
+
+
+def _bare(place: Any) -> Any:  # noqa: ANN401 - annotations have no type
+    """An annotation without its metadata and without None."""
+    while get_origin(place) is Annotated:
+        place = get_args(place)[0]
+    if get_origin(place) in (Union, UnionType):
+        some = [each for each in get_args(place) if each is not NoneType]
+        if len(some) == 1:
+            return _bare(some[0])
+    return place
+
+
+def _tags(record: Any) -> tuple[str, ...]:  # noqa: ANN401 - annotations have no type
+    """Tags of a member of a union."""
+    if get_origin(record) is Annotated:
+        return tuple(each.tag for each in get_args(record) if isinstance(each, Tag))
+    fields = record.model_fields
+    return get_args(next(fields[tag] for tag in ("kind", "joint", "motion") if tag in fields).annotation)
+
 
 _QUOTED = re.compile(r"'([^']*)'")
 _MEASURED = re.compile(r"\s*[-+]?[\d.]+(?:e[-+]?\d+)?\s*[^\d\s]{1,8}\s*", re.ASCII | re.IGNORECASE)
@@ -38,7 +97,6 @@ _ALLOWED = {
     "too_long": "at most {max_length} of them",
     "string_too_long": "at most {max_length} characters",
     "literal_error": "one of {expected}",
-    "mistake": "{allowed}",
 }
 """Allowed values by the type of an error, with the fields of the error's context."""
 
@@ -49,6 +107,8 @@ def in_words(details: ErrorDetails, root: type[Record]) -> Mistake:
     key, context = _key_path(loc, root), details.get("ctx", {})
     found, allowed = shown(given), _ALLOWED[kind].format(**context) if kind in _ALLOWED else details["msg"]
     match kind:
+        case "tuple_type" if loc[-1] == "points" and isinstance(given, str):
+            allowed += ", or the name of a table of points in a scene file"
         case "extra_forbidden":
             return unknown_name(key, str(loc[-1]), "key here", keys_at(loc[:-1], root))
         case "string_pattern_mismatch" if "x00" in context["pattern"]:
@@ -71,8 +131,9 @@ def in_words(details: ErrorDetails, root: type[Record]) -> Mistake:
             key, allowed = f"{key}.{tag}", f"one of {', '.join(map(repr, tags))}"
         case "model_type" if loc == ("units",):
             allowed += f", as {_UNITS}"
-        case "mistake":
-            found, key = context["found"], f"{key}.{context['key']}".strip(".")
+        case "value_error" if isinstance(error := context["error"], SceneError):
+            (mistake,) = error.mistakes
+            key, found, allowed = f"{key}.{mistake.key}".strip("."), mistake.found, mistake.allowed
     return Mistake(key, found, allowed)
 
 

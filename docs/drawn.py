@@ -16,33 +16,32 @@ import lzma
 import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.patches import Circle
 from pictures import thumbnail
 
 import cprbm
 import fea_reference
-from comparisons import cases, offset_drawn
-from comparisons.bodies_drawn import draw_bodies, draw_edges, draw_names, draw_stops, joined_ends, places_at
+from comparisons import cases
 from comparisons.display_units import axis_unit, display_unit
-from comparisons.figures import BLUE, GREY, RED, Picture, canvas, picture, show_lengths
 from comparisons.formats import number
-from comparisons.framing import frame
-from comparisons.geometry import length, longest, points
 from comparisons.offset_verdict import compared_offset
-from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
-from comparisons.stations import station_of
+from comparisons.present import figures
+from comparisons.present.canvas import BLUE, GREY, RED, canvas, finished, show_lengths
+from comparisons.present.columns import Figure
+from comparisons.present.curves import curve_figures
+from comparisons.present.offset import offset_figures
+from comparisons.quantities import arc_lengths, load_unit, unit_of
 from comparisons.writing import write
-from cprbm_scene import Answer, CircleContact, OffsetQuestion, Scene, Stage, StationAnswer
+from cprbm_scene import Answer, OffsetQuestion, Scene, Stage
 from cprbm_scene.statement import STRESSES
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from sphinx.application import Sphinx
 
 HERE = Path(__file__).resolve().parent
@@ -54,15 +53,6 @@ LINKS, ELEMENTS = 20, 40
 N, n = 40, 80  # links and elements of the recorded numbers: the standard settings
 MOST_STATIONS = 41  # of a drawn stage; further stations are thinned evenly, except shown stations and the last
 NOTHING = 1e-15  # m, rad, N, N·m or J: round-off of zero
-CURVES = ("rotation", "force", "moment", "reaction", "reaction_moment", "potential_energy")
-TITLES = {
-    "rotation": "rotation",
-    "force": "contact force",
-    "moment": "moment of a contact or stop",
-    "reaction": "reaction",
-    "reaction_moment": "reaction moment",
-    "potential_energy": "potential energy",
-}
 
 
 def thinned(scene: Scene) -> Scene:
@@ -95,29 +85,12 @@ def solved(scene: Scene) -> tuple[Answer, Answer]:
     )
 
 
-def shapes(scene: Scene, answers: tuple[Answer, Answer]) -> Picture:
-    """The undeformed mechanism, dashed, and the shown stations: finite elements as lines, joints of links as dots."""
+def shapes(scene: Scene, answers: tuple[Answer, Answer]) -> Figure:
+    """The mechanism at rest, dashed, and at the shown stations: finite elements as lines, joints of links as dots."""
     reached = [(stage, value) for stage, value in shown(scene) if all(_has(each, stage, value) for each in answers)]
-    columns = min(2, len(reached))
-    with canvas(4.4 * columns, 4.2 * -(-len(reached) // columns) + 0.4) as figure:
-        for place, (stage, value) in enumerate(reached):
-            axes = figure.add_subplot(-(-len(reached) // columns), columns, place + 1)
-            chain, elements = (station_of(answer, stage.name, value) for answer in answers)
-            _as_drawn(axes, scene)
-            _loaded(axes, scene, chain, elements)
-            factor, unit = axis_unit(scene, load_unit(scene, stage), value)
-            axes.set_title(f"{stage.steps} = {_short(value / factor, unit)}", loc="left", fontsize=10)
-            frame(axes, elements)
-            show_lengths(scene, axes.xaxis)
-            show_lengths(scene, axes.yaxis)
-            if place == 0:
-                draw_names(axes, scene)
-        handles, labels = figure.axes[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=2 * columns)
-        _, unit = display_unit(scene, "m", longest(scene))
-        return picture(
-            figure, "shapes", f"Neutral lines in {unit}, as drawn and under load, with the places of contact."
-        )
+    labelled = {"FEA": answers[1], "CPRBM": answers[0]}
+    drawn = figures.shapes(scene, labelled, [(stage.name, value) for stage, value in reached])
+    return replace(drawn, name="shapes")
 
 
 def _short(value: float, unit: str) -> str:
@@ -129,95 +102,7 @@ def _has(answer: Answer, stage: Stage, value: float) -> bool:
     return any(at.stage == stage.name and at.value == value for at in answer.stations)
 
 
-def _as_drawn(axes: Axes, scene: Scene) -> None:
-    for place, beam in enumerate(scene.beams.values()):
-        x, y = points(beam.curve, np.linspace(0.0, length(beam.curve), 120)).T
-        axes.plot(x, y, "--", color=GREY, linewidth=1.0, label="as drawn" if place == 0 else None)
-    draw_bodies(axes, scene, {end.point: scene.place_of(end.point) for _, end, _ in joined_ends(scene)}, "--", GREY)
-    for contact in scene.contacts.values():
-        if isinstance(contact, CircleContact):
-            x, y = contact.center
-            # an artist, no patch: a large circle must not make the beams small
-            axes.add_artist(Circle((x, y), contact.radius, fill=False, edgecolor=GREY))
-
-
-def _loaded(axes: Axes, scene: Scene, chain: StationAnswer, elements: StationAnswer) -> None:
-    places = places_at(scene, elements)
-    draw_edges(axes, scene, places, GREY)
-    draw_bodies(axes, scene, places, "-", "black")
-    draw_stops(axes, scene, places)
-    for place, beam in enumerate(scene.beams):
-        one, other = elements.shapes[beam], chain.shapes[beam]
-        label = ("finite elements", "CPRBM") if place == 0 else (None, None)
-        axes.plot(one.x, one.y, "-", color=RED, linewidth=2.0, label=label[0])
-        axes.plot(other.x, other.y, ".", color=BLUE, markersize=4.0, label=label[1])
-    touching = [spots for spots in chain.touching.values() if len(spots)]
-    if touching:
-        x, y = np.concatenate(touching).T
-        axes.plot(x, y, "o", color=BLUE, markersize=7.0, markerfacecolor="none", linestyle="", label="contact")
-
-
-def curves(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
-    """Rotations, forces, moments and energy against the load or drive of the last stage."""
-    last = scene.stages[-1]
-    stages = [stage for stage in scene.stages if stage.steps == last.steps]
-    asked = {quantity: [each for each in scene.probes if each.quantity == quantity] for quantity in CURVES}
-    panels = {quantity: probes for quantity, probes in asked.items() if probes}
-    if not panels or sum(len(stage.stations) for stage in stages) < 2:
-        return None
-    step, step_unit = axis_unit(
-        scene, load_unit(scene, last), max(abs(value) for stage in stages for value in stage.stations)
-    )
-    with canvas(7.0, 0.4 + 2.5 * len(panels)) as figure:
-        for axes, (quantity, probes) in zip(
-            np.atleast_1d(figure.subplots(len(panels), 1, sharex=True)), panels.items(), strict=True
-        ):
-            sizes = [
-                abs(float(each)) for answer in answers for at in answer.stations for probe in probes
-                for each in at.values[probe.name]
-            ]  # fmt: skip
-            factor, unit = display_unit(scene, unit_of(scene, probes[0], last), max(sizes, default=1.0))
-            for place, probe in enumerate(probes):
-                for component, name in enumerate(COMPONENTS.get(quantity, ("",))):
-                    look = ("-", "--", ":", "-.")[(2 * place + component) % 4]
-                    label = f"{probe.of} {name}".strip()
-                    _curve(axes, stages, answers, probe.name, component, look, label, (step, factor))
-            axes.set_ylabel(f"{TITLES[quantity]}, {unit}")
-            axes.legend(loc="best", fontsize=8)
-        axes.set_xlabel(f"{last.steps}, {step_unit}")
-        titles = ", ".join(TITLES[quantity] for quantity in panels)
-        return picture(
-            figure, "curves", f"Against {last.steps}: {titles}. Lines: finite elements; dots: CPRBM. Gaps are jumps."
-        )
-
-
-def _curve(
-    axes: Axes,
-    stages: Sequence[Stage],
-    answers: tuple[Answer, Answer],
-    probe: str,
-    component: int,
-    look: str,
-    label: str,
-    scales: tuple[float, float],
-) -> None:
-    step, factor = scales
-    chain, elements = answers
-    names = {stage.name for stage in stages}
-    for answer, style in ((elements, {"linestyle": look, "color": RED}), (chain, {"marker": ".", "color": BLUE})):
-        runs = dict.fromkeys((each.stage, each.branch) for each in answer.stations if each.stage in names)
-        for place, (stage, branch) in enumerate(runs):
-            mine = [
-                (each.value / step, float(each.values[probe][component]) / factor)
-                for each in answer.stations
-                if (each.stage, each.branch) == (stage, branch) and len(each.values[probe]) > component
-            ]
-            if mine:
-                legend = label if answer is elements and place == 0 else None
-                axes.plot(*zip(*mine, strict=True), label=legend, **{"linestyle": "none", **style})
-
-
-def stress(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
+def stress(scene: Scene, answers: tuple[Answer, Answer]) -> Figure | None:
     """Bending stress along the beams at the last station."""
     probes = [probe for probe in scene.probes if probe.quantity == "bending_stress"]
     reached = [answer.stations[-1] for answer in answers if answer.stations]
@@ -237,7 +122,7 @@ def stress(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
             show_lengths(scene, axes.xaxis)
         show_lengths(scene, axes.xaxis, "arc length as drawn")
         figure.axes[0].legend(loc="best", fontsize=8)
-        return picture(
+        return finished(
             figure,
             "stress",
             "Bending stress along the beams at the last station, positive where the load turns the tangent "
@@ -279,16 +164,16 @@ def numbers(scene: Scene) -> str:
     return "\n".join(lines) + "\n"
 
 
-def pictures_of(name: str) -> tuple[str, tuple[Picture, ...]]:
+def pictures_of(name: str) -> tuple[str, tuple[Figure, ...]]:
     """Text before the figures of a case, and the figures."""
     question = cases.asked(name)
     if isinstance(question, OffsetQuestion):
         write(MADE / name / "thumbnail.png", thumbnail(question, None))
-        return "", offset_drawn.of_comparison(compared_offset(question))
+        return "", offset_figures(compared_offset(question))
     scene = thinned(question)
     answers = solved(scene)
     write(MADE / name / "thumbnail.png", thumbnail(scene, answers[0]))
-    drawn = (shapes(scene, answers), curves(scene, answers), stress(scene, answers))
+    drawn = (shapes(scene, answers), *curve_figures(scene, answers[1], answers[0]), stress(scene, answers))
     said = "".join(
         f"The {who} end before the last station: {answer.sentence}.\n\n"
         for who, answer in zip(("links", "elements"), answers, strict=True)

@@ -15,12 +15,11 @@ import numpy as np
 
 import cprbm
 from comparisons import cases
-from comparisons.bodies_drawn import draw_bodies, places_at
-from comparisons.figures import BLUE, GREY, RED, canvas
 from comparisons.geometry import length, points
-from comparisons.viewing.moved import obstacles
-from comparisons.viewing.shown import files
-from comparisons.viewing.strips import with_stresses
+from comparisons.present.animation import files
+from comparisons.present.canvas import BLUE, GREY, RED, canvas, draw_parts, image
+from comparisons.present.picture import view_of
+from comparisons.present.strips import with_stresses
 from comparisons.writing import write
 from cprbm_scene import Answer, OffsetQuestion, Scene, read
 from cprbm_scene.answer import Array
@@ -50,7 +49,7 @@ def thumbnail(question: Scene | OffsetQuestion, answer: Answer | None) -> bytes:
             _draw_offset(axes, question)
         elif answer is not None:
             _draw_mechanism(axes, question, answer)
-        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_aspect("equal", adjustable="box")
         axes.set_axis_off()
         return _png(figure)
 
@@ -64,16 +63,17 @@ def _draw_offset(axes: Axes, question: OffsetQuestion) -> None:
 
 
 def _draw_mechanism(axes: Axes, scene: Scene, answer: Answer) -> None:
-    last = answer.stations[-1]
-    reach = max(length(beam.curve) for beam in scene.beams.values())
-    for obstacle in obstacles(scene, last, 0.6 * reach, 0.02 * reach):
-        around = obstacle.outline if obstacle.round else np.concatenate([obstacle.outline, obstacle.solid[::-1]])
-        axes.fill(*around.T, facecolor="#b9bfc6", linewidth=0.0)
+    view = view_of(scene, answer.stations[-1])
+    draw_parts(axes, view.of("rigid"))
     for name, beam in scene.beams.items():
         drawn = points(beam.curve, np.linspace(0.0, length(beam.curve), 120))
         axes.plot(*drawn.T, "-", color="#c4c9cf", linewidth=2.2)
-        axes.plot(last.shapes[name].x, last.shapes[name].y, "-", color=RED, linewidth=2.2)
-    draw_bodies(axes, scene, places_at(scene, last), "-", "black")
+        axes.plot(*view.strips[name].line.T, "-", color=RED, linewidth=2.2)
+    draw_parts(axes, view.of("body", "weld", "pin", "pivot"), "black")
+    beams = np.concatenate([strip.line for strip in view.strips.values()])
+    margin = 0.1 * float(np.ptp(beams, axis=0).max())
+    axes.set_xlim(beams[:, 0].min() - margin, beams[:, 0].max() + margin)
+    axes.set_ylim(beams[:, 1].min() - margin, beams[:, 1].max() + margin)
 
 
 def _normals(line: Array) -> Array:
@@ -83,11 +83,7 @@ def _normals(line: Array) -> Array:
 
 
 def _png(figure: Figure) -> bytes:
-    from io import BytesIO
-
-    stream = BytesIO()
-    figure.savefig(stream, format="png", dpi=120, metadata={"Software": None})
-    return stream.getvalue()
+    return image(figure, "png", 120)
 
 
 def draw_tutorials() -> None:

@@ -48,7 +48,7 @@ from typing import Literal
 import numpy as np
 
 from cprbm_scene.answer import Array, Ints
-from cprbm_scene.check_overlaps import overlap_at_rest
+from cprbm_scene.clearance import overlap_at_rest
 from cprbm_scene.statement import BeamContact, BeamEnd, FreeEnd, Scene, SelfContact
 from fea_reference.carrying import cut_off, joined, shared_out
 from fea_reference.edge import edge_of

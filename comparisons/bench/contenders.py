@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from comparisons.choices import Choices, Count
-from comparisons.converging.families import at
 from comparisons.crew import Solver
 from comparisons.pairing import Solvers, prepared
+from comparisons.studies.families import at
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict

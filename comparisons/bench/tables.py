@@ -8,19 +8,19 @@ from comparisons.bench.question import MEASURES
 from comparisons.bench.running import FIT_FROM, NO_WORSE, Benchmark, Clock, LeftOut, Timing, trend
 from comparisons.bench.standings import Ratios, Standing, ratios, standings
 from comparisons.choices import Count
-from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent
-from comparisons.sheet import Sheet, without_empty
+from comparisons.plain import Plain, plain
+from comparisons.present.columns import Table, without_empty
 
 _OF_CLOCK: dict[Clock, str] = {"wall": "", "cpu": " of the processor"}
 _CLOCKED: dict[Clocked, str] = {"both": "set-up and solve", "solve": "solve alone"}
 
 
-def sheets(measured: Benchmark) -> tuple[Sheet, ...]:
+def tables_of(measured: Benchmark) -> tuple[Table, ...]:
     """All tables: times and errors, who is fastest, ratios, growth, and what was left out."""
-    peers = without_empty(_ratios(measured))
-    found = [_timings(measured), *_fastest(measured), peers, _trends(measured), _left_out(measured)]
-    return tuple(sheet for sheet in found if sheet.rows)
+    ratio = without_empty(_ratios(measured))
+    found = [_timings(measured), *_fastest(measured), ratio, _trends(measured), _left_out(measured)]
+    return tuple(table for table in found if table.rows)
 
 
 def sized(count: Count) -> str:
@@ -33,7 +33,7 @@ def ended(timing: Timing) -> str:
     return "WORSE" if timing.worse else timing.outcome.ended
 
 
-def _timings(measured: Benchmark) -> Sheet:
+def _timings(measured: Benchmark) -> Table:
     body = tuple(
         (
             timing.contender.label,
@@ -53,7 +53,7 @@ def _timings(measured: Benchmark) -> Sheet:
     what = "the whole scene" if measured.plan.whole else "the last load, from the state without stress"
     off = {measure: percent(u) for measure, u in uncertainties(measured.scene, measured.reference).items() if u > 0.0}
     known = f"; itself known to {', '.join(f'{u} ({measure})' for measure, u in off.items())}" if off else ""
-    return Sheet(
+    return Table(
         f"{measured.scene.title or measured.scene.name}: time against error",
         ("method", "N", "set-up", "solve", "spread", "repeats", *MEASURES, "iterations", "per station", "ended"),
         body,
@@ -76,11 +76,11 @@ def _of_peers(tolerance: float) -> str:
     )
 
 
-def _fastest(measured: Benchmark) -> tuple[Sheet, ...]:
+def _fastest(measured: Benchmark) -> tuple[Table, ...]:
     found = standings(measured)
     taking_part = measured.contenders
     return tuple(
-        Sheet(
+        Table(
             f"Fastest at an error, {_CLOCKED[clocked]}",
             ("error", "fastest", "times ahead", *(contender.label for contender in taking_part)),
             tuple(
@@ -100,9 +100,9 @@ def _fastest(measured: Benchmark) -> tuple[Sheet, ...]:
     )
 
 
-def _ratios(measured: Benchmark) -> Sheet:
+def _ratios(measured: Benchmark) -> Table:
     labels = [_ratio_label(method, clocked) for method in measured.contenders for clocked in method.ratios]
-    return Sheet(
+    return Table(
         "How many times longer than CPRBM paper on the same problem",
         ("N", *labels, "iterations per station"),
         tuple(
@@ -119,7 +119,7 @@ def _ratio_label(method: Contender, clocked: Clocked) -> str:
     return method.label if len(method.ratios) == 1 else f"{method.label}, {clocked}"
 
 
-def _trends(measured: Benchmark) -> Sheet:
+def _trends(measured: Benchmark) -> Table:
     body = []
     for contender in measured.contenders:
         found = trend(measured.of(contender.name))
@@ -144,7 +144,7 @@ def _trends(measured: Benchmark) -> Sheet:
         )
         if name in machine
     )
-    return Sheet(
+    return Table(
         "How it grows",
         ("method", "N", "exponent of time", "iterations, last to first"),
         tuple(body),
@@ -154,11 +154,11 @@ def _trends(measured: Benchmark) -> Sheet:
     )
 
 
-def _left_out(measured: Benchmark) -> Sheet:
+def _left_out(measured: Benchmark) -> Table:
     by_reason: dict[tuple[Name, str], list[LeftOut]] = {}
     for one in measured.left_out:
         by_reason.setdefault((one.name, one.why), []).append(one)
-    return Sheet(
+    return Table(
         "Left out",
         ("method", "N", "why"),
         tuple(

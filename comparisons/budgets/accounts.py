@@ -8,8 +8,8 @@ from comparisons.budgets.parts import Budget, budgets_of
 from comparisons.budgets.poisson import ClaimedRatio, claimed_ratios, rerun, with_ratio
 from comparisons.budgets.runs import BudgetRuns, budgeted
 from comparisons.choices import Choices
+from comparisons.sentences import problem_sentences
 from comparisons.store import AnswerMemory
-from comparisons.verdict.completeness import problems
 from cprbm_scene import Scene
 
 
@@ -48,7 +48,9 @@ def accounted(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
         SceneError: a solver refuses the question.
     """
     runs = budgeted(scene, choices, memory)
-    missing = tuple(f"{name}: {what}" for name, answer in runs.everything() for what in problems(scene, answer))
+    missing = tuple(
+        f"{name}: {what}" for name, answer in runs.everything() for what in problem_sentences(scene, answer)
+    )
     if missing:
         return Account(scene, choices, runs, (), (), missing)
     budgets = budgets_of(scene, runs)

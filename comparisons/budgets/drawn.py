@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 from comparisons.budgets.accounts import Account
 from comparisons.budgets.parts import PARTS, Budget
 from comparisons.budgets.poisson import last_budgets
-from comparisons.figures import GREY, Picture, canvas, picture
 from comparisons.formats import percent
+from comparisons.present.canvas import GREY, canvas, finished
+from comparisons.present.columns import Figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,7 +33,7 @@ _TOLD_OF_SOLID = (
 )
 
 
-def of_account(account: Account) -> tuple[Picture, ...]:
+def of_account(account: Account) -> tuple[Figure, ...]:
     """The figure at the last station; none where there is no budget."""
     budgets = [each for each in last_budgets(account.scene, account.budgets) if each.all_parts > 0.0]
     if not budgets:
@@ -50,7 +51,7 @@ def of_account(account: Account) -> tuple[Picture, ...]:
         )
         stage = account.scene.stages[-1]
         return (
-            picture(
+            finished(
                 figure,
                 "budget",
                 f"What the difference of the CPRBM from the finite elements in {account.runs.kinematics} is made of at "

@@ -8,9 +8,9 @@ from comparisons.budgets.poisson import ClaimedRatio, last_budgets
 from comparisons.choices import Count
 from comparisons.claims import claim_difference
 from comparisons.display_units import at_station
-from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent
-from comparisons.sheet import Sheet
+from comparisons.plain import Plain, plain
+from comparisons.present.columns import Table
 from cprbm_scene import Scene
 
 _HEADERS = {
@@ -27,7 +27,7 @@ _LISTED = 0.02
 """Share of a difference below which parts are summed in a sentence."""
 
 
-def sheets_of(account: Account) -> tuple[Sheet, ...]:
+def sheets_of(account: Account) -> tuple[Table, ...]:
     """The budgets of the last station, and what claims about it would need."""
     return tuple(sheet for sheet in (_budgets(account), _claims(account)) if sheet.rows)
 
@@ -90,7 +90,7 @@ def _solid(budget: Budget) -> Plain:
     return {"missed": row.fraction(budget.missed), "missed_uncertainty": row.fraction(budget.missed_uncertainty)}
 
 
-def _budgets(account: Account) -> Sheet:
+def _budgets(account: Account) -> Table:
     rows = last_budgets(account.scene, account.budgets)
     chosen = any(budget.parts.contact != 0.0 for budget in rows)
     beside = not chosen and any(budget.paper is not None for budget in rows)
@@ -131,7 +131,7 @@ def _budgets(account: Account) -> Sheet:
             "extrapolated value, in the same sense, and how far that may be off; with it the sum would lead from the "
             "CPRBM to the solid."
         )
-    return Sheet(
+    return Table(
         f"Error budget at {stage.name} {stage.stations[-1]:g} with {_count(account.choices.links)} links and "
         f"{_count(account.choices.elements)} elements per beam, %",
         (
@@ -145,7 +145,7 @@ def _budgets(account: Account) -> Sheet:
     )
 
 
-def _claims(account: Account) -> Sheet:
+def _claims(account: Account) -> Table:
     body = tuple(
         (
             found.claim.text or found.claim.probe,
@@ -158,7 +158,7 @@ def _claims(account: Account) -> Sheet:
         )
         for found in account.claims
     )
-    return Sheet(
+    return Table(
         "Claims and Poisson's ratio",
         ("claim", "theirs", "ours", "without shear", "ν = 1/2", "as theirs at ν", "run there"),
         body,

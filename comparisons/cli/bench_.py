@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from comparisons.bench.contenders import Contender
     from comparisons.bench.errors import Reference
     from comparisons.bench.running import Clock, Session
-    from comparisons.documents import Plain
+    from comparisons.present.columns import Section
 
 NOT_COMPLETED = 1
 OURS = ("auto", "paper", "fea")
@@ -129,7 +129,8 @@ def command(
     Exit code 1 means an incomplete run of a solver of this project.
     """
     from comparisons import cases, provenance
-    from comparisons.bench import contenders, errors, question, running, tables
+    from comparisons.bench import contenders, errors, question, running
+    from comparisons.bench.section import bench_section
     from comparisons.choices import Choices, check
     from comparisons.cli import output
     from comparisons.pairing import solvers_of
@@ -172,7 +173,7 @@ def command(
         for job in output.progress(session.jobs(), shown=not quiet):
             session.do(job)
             if session.seconds:
-                _write(tables.document(session.done(known)), json_file, out, scene.name)
+                _write(bench_section(session.done(known)), json_file, out, scene.name)
     except KeyboardInterrupt:
         if session.seconds:
             _report(session, known, json_file, out, quiet=quiet)
@@ -187,21 +188,17 @@ def _report(session: Session, known: Reference, json_file: Path | None, out: Pat
         SceneError: every method refused the question.
         OSError: a file cannot be written.
     """
-    from comparisons.bench import drawn, tables
+    from comparisons.bench import tables
+    from comparisons.bench.section import bench_section
     from comparisons.cli import output
-    from comparisons.writing import write
 
     done = session.done(known)
-    data = tables.document(done)
-    _write(data, json_file, out, done.scene.name)
+    found = bench_section(done)
+    _write(found, json_file, out, done.scene.name)
     if json_file is not None and str(json_file) == "-":
-        output.json(json_file, data)
-    if out is not None:
-        for picture in drawn.pictures(done):
-            write(out / done.scene.name / f"{picture.name}.svg", picture.svg)
-            write(out / done.scene.name / f"{picture.name}.png", picture.png)
+        output.json(json_file, dict(found.data))
     if str(json_file) != "-" and not quiet:
-        output.tables(tables.sheets(done))
+        output.tables(found.tables)
     failed = [one for one in done.timings if one.contender.name in OURS and not one.outcome.completed]
     for one in failed:
         who = f"{one.contender.label} at N = {tables.sized(one.count)}"
@@ -209,20 +206,19 @@ def _report(session: Session, known: Reference, json_file: Path | None, out: Pat
     return NOT_COMPLETED if failed else 0
 
 
-def _write(data: Plain, json_file: Path | None, out: Path | None, name: str) -> None:
+def _write(found: Section, json_file: Path | None, out: Path | None, name: str) -> None:
     """Write the numbers of the finished runs.
 
     Raises:
         OSError: a file cannot be written.
     """
-    from comparisons import documents
     from comparisons.cli import output
-    from comparisons.writing import write
+    from comparisons.present.page import own_folder, put_section
 
     if json_file is not None and str(json_file) != "-":
-        output.json(json_file, data)
+        output.json(json_file, dict(found.data))
     if out is not None:
-        write(out / name / "bench.json", documents.text(data))
+        put_section(own_folder(out, name), found)
 
 
 def _peer(name: str) -> Contender:

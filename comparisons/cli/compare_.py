@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from comparisons.choices import Choices
     from comparisons.cli.output import Steps
     from comparisons.crew import Crew
-    from comparisons.documents import Plain
     from comparisons.offset_verdict import OffsetComparison
     from comparisons.pairing import Runs, Solvers
     from comparisons.tolerances.search import Tolerance
@@ -71,12 +70,12 @@ def command(
 
     The verdict of a scene is AGREE, DIFFER or UNDECIDED, with a reason.
     """
-    from comparisons import report
-    from comparisons.brief import WIDTH, summary
     from comparisons.choices import Choices, check
     from comparisons.cli import output
     from comparisons.cli.questions import read_questions
     from comparisons.pairing import solvers_of, with_solid, workers_for
+    from comparisons.present.brief import WIDTH, summary
+    from comparisons.present.page import Chapter, case_chapter, document_of, figures_of, put_case, put_page, report_page
     from comparisons.store import run_into
     from cprbm_scene import OffsetQuestion
 
@@ -93,7 +92,7 @@ def command(
         output.room_for(file, out)
     printing = str(json_file) != "-"
     finished: list[Comparison | OffsetComparison] = []
-    chapters: tuple[report.Chapter, ...] = ()
+    chapters: tuple[Chapter, ...] = ()
     names = tuple(scene.name for scene in scenes)
     with run_into(out, taking_part, names, workers_for(planted)) as run:
         # with a tolerance a status line with N replaces the bar
@@ -101,18 +100,20 @@ def command(
         for comparison in _compared(steps, choices, tol, run.solvers, run.crew, shown=not quiet):
             finished.append(comparison)
             if out is not None:
-                chapters = (*chapters, report.added(out, comparison))
+                figures = figures_of(comparison)
+                put_case(out, comparison, figures)
+                chapters = (*chapters, case_chapter(comparison, figures))
             run.mark_shown(names[len(finished) - 1])
             if run.covers(names[: len(finished)]):
                 if out is not None:
-                    report.put_page(out, chapters)
+                    put_page(out, report_page(chapters))
                 if json_file is not None and printing:
-                    output.json(json_file, {"cases": [_document(comparison) for comparison in finished]})
+                    output.json(json_file, {"cases": [document_of(comparison) for comparison in finished]})
             steps.clear()
             if printing:
                 _show(comparison, scenes[len(finished) - 1], quiet=quiet, full=logs.level() != NOTSET)
     if json_file is not None and not printing:
-        output.json(json_file, {"cases": [_document(comparison) for comparison in finished]})
+        output.json(json_file, {"cases": [document_of(comparison) for comparison in finished]})
     _export(finished, csv_file, plot_file)
     if printing and not quiet:
         if len(finished) > 1:
@@ -153,37 +154,37 @@ def _compared(
 
 def _export(finished: Sequence[Comparison | OffsetComparison], csv_file: Path | None, plot_file: Path | None) -> None:
     """Write the table and the drawing of all comparisons; without common stations standard error reports the reason."""
-    from comparisons.figures import of_designs
     from comparisons.offset_verdict import OffsetComparison
-    from comparisons.tidy import csv_of_comparisons
+    from comparisons.present.csv_table import csv_of_comparisons
+    from comparisons.present.figures import designs_figure
     from comparisons.writing import write
 
     compared = [comparison for comparison in finished if not isinstance(comparison, OffsetComparison)]
     if csv_file is not None:
         write(csv_file, csv_of_comparisons(compared))
     if plot_file is not None and compared and all(comparison.rows for comparison in compared):
-        of_designs(compared).save(plot_file)
+        designs_figure(compared).save(plot_file)
     elif plot_file is not None:
         click.echo(f"cprbm: {plot_file} is not drawn: a case has no station of both solvers.", err=True)
 
 
 def _show(comparison: Comparison | OffsetComparison, question: Question, *, quiet: bool, full: bool) -> None:
     """Print a case: in brief, in full with all tables, or quietly with the verdict alone."""
-    from comparisons import cases, offset_pages, sheets
-    from comparisons.brief import brief, headline
+    from comparisons import cases
     from comparisons.cli import output
     from comparisons.offset_verdict import OffsetComparison
+    from comparisons.present.brief import brief, headline
+    from comparisons.present.case_tables import case_sections
+    from comparisons.present.offset import offset_sections
 
     if not quiet and not full:
         values = [text for name, value in settings().items() for text in ("--set", f"{name}={value}")]
         click.echo(brief(comparison, shlex.join([cases.argument(question), *values])) + "\n")
         return
-    if not quiet and isinstance(comparison, OffsetComparison):
-        output.tables(offset_pages.sheets_of(comparison))
-    elif not quiet and not isinstance(comparison, OffsetComparison):
-        output.tables(sheets.of_comparison(comparison))
-        for sentence in sheets.explanation(comparison):
-            click.echo(sentence + "\n")
+    if not quiet:
+        output.sections(
+            offset_sections(comparison) if isinstance(comparison, OffsetComparison) else case_sections(comparison)
+        )
     verdict = comparison.verdict
     click.echo(headline(question.name, verdict, verdict.sentence))
     if not isinstance(comparison, OffsetComparison):
@@ -211,14 +212,3 @@ def _beyond(comparison: Comparison | OffsetComparison) -> tuple[Tolerance, ...]:
 
     searches = () if isinstance(comparison, OffsetComparison) else comparison.tolerances
     return tuple(tolerance for tolerance in searches if not tolerance.met)
-
-
-def _document(comparison: Comparison | OffsetComparison) -> Plain:
-    from comparisons import documents, offset_pages
-    from comparisons.offset_verdict import OffsetComparison
-
-    return (
-        offset_pages.document(comparison)
-        if isinstance(comparison, OffsetComparison)
-        else documents.comparison(comparison)
-    )

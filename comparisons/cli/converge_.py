@@ -13,8 +13,8 @@ from comparisons.cli.completion import candidates
 from comparisons.cli.options import exactness, family_sizes, folder, opinions, output_options, parameters, variants
 
 if TYPE_CHECKING:
-    from comparisons.converging.report import ConvergenceResult
-    from comparisons.documents import Plain
+    from comparisons.plain import Plain
+    from comparisons.present.columns import Section
     from cprbm_scene import Question
 
 NOT_COMPLETED = 1
@@ -57,10 +57,10 @@ def command(
     from comparisons.choices import Choices
     from comparisons.cli import output
     from comparisons.cli.questions import read_questions
-    from comparisons.converging import report
-    from comparisons.converging.results import result_of
     from comparisons.pairing import solvers_of, with_solid, workers_for
+    from comparisons.present.page import Chapter, convergence_page, own_folder, put_page, put_section, section_chapter
     from comparisons.store import run_into
+    from comparisons.studies.convergence import convergence_section
 
     wanted = read_questions(arguments)
     if out is None and "all" in arguments:
@@ -69,25 +69,26 @@ def command(
     taking_part = with_solid(solvers_of(planted, exact=exact)) if asking_solid else solvers_of(planted, exact=exact)
     choices = Choices(formulation=formulation, kinematics=kinematics)
     printing = str(json_file) != "-"
-    finished: list[ConvergenceResult] = []
-    chapters: tuple[report.Chapter, ...] = ()
+    finished: list[Section] = []
+    chapters: tuple[Chapter, ...] = ()
     names = tuple(question.name for question in wanted)
     with run_into(out, taking_part, names, workers_for(planted)) as run:
         steps = output.progress(wanted, shown=not quiet, share=0.8)
         for place, question in enumerate(steps):
-            result = result_of(question, sizes, choices, run.solvers, run.crew)
+            result = convergence_section(question, sizes, choices, run.solvers, run.crew)
             finished.append(result)
             if out is not None:
-                chapters = (*chapters, report.added(out, result))
+                put_section(own_folder(out, question.name), result)
+                chapters = (*chapters, section_chapter(question, [result]))
             run.mark_shown(question.name)
             if run.covers(names[: place + 1]):
                 if out is not None:
-                    report.put_page(out, chapters)
+                    put_page(out, convergence_page(chapters))
                 if json_file is not None and printing:
                     output.json(json_file, _document(finished, wanted))
             steps.clear()
             if printing and not quiet:
-                output.tables(result.sheets)
+                output.tables(result.tables)
             if printing:
                 for sentence in result.sentences:
                     click.echo(f"{question.name}: {sentence}")
@@ -95,9 +96,9 @@ def command(
         output.json(json_file, _document(finished, wanted))
     if out is not None and printing and not quiet:
         click.echo(f"report: {out / 'index.html'}")
-    return 0 if all(result.completed for result in finished) else NOT_COMPLETED
+    return 0 if all(result.complete for result in finished) else NOT_COMPLETED
 
 
-def _document(finished: Sequence[ConvergenceResult], wanted: Sequence[Question]) -> Plain:
+def _document(finished: Sequence[Section], wanted: Sequence[Question]) -> Plain:
     """The document of a single question, or the documents of several as ``cases``."""
-    return finished[0].data if len(wanted) == 1 else {"cases": [result.data for result in finished]}
+    return dict(finished[0].data) if len(wanted) == 1 else {"cases": [result.data for result in finished]}

@@ -49,7 +49,7 @@ def command(quiet: bool) -> int:  # noqa: FBT001 - click passes a keyword
     said = f"{'single':<12} process for all work: {alone}" if alone else f"{'several':<12} can share the work"
     click.echo(f"{'processes':<14} {said}")
     if drawing and not alone:
-        from comparisons.viewing.space import tried
+        from comparisons.present.space import tried
 
         trouble = tried()
         said = "works        for pictures in space by 'view'"

@@ -1,4 +1,4 @@
-"""``cprbm import``: a scene from the tagged curves of a drawing."""
+"""``cprbm import``: a scene from the curves of a drawing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import click
 from comparisons.cli.options import fraction, positive
 
 if TYPE_CHECKING:
-    from comparisons.importing.written import Unit
+    from comparisons.importing.scene_text import Unit
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]{0,63}")
 
@@ -31,13 +31,14 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]{0,63}")
 def command(
     drawing: Path, thickness: float, width: float, unit: Unit, within: float, name: str | None, out: Path
 ) -> int:
-    """Write a scene from the tagged curves of a drawing.
+    """Write a scene from the curves of a drawing.
 
-    gmsh reads the .geo, .step or .msh FILE. Lines and circular arcs stay exact; other curves become splines with a
-    stated distance. gmsh runs a .geo file as a program: import trusted files only.
+    FILE is a table of points (.csv), a .dxf (read by ezdxf), or a .geo, .step, .msh, .brep or .iges (read by gmsh).
+    Lines and circular arcs stay exact; other curves become splines with a stated distance. Wrong curves are left out
+    and named. gmsh runs a .geo file as a program: import trusted files only.
     """
-    from comparisons.importing.gmshed import read
-    from comparisons.importing.written import Wish, text
+    from comparisons.importing.formats import read_drawing
+    from comparisons.importing.scene_text import Choices, scene_text
     from comparisons.writing import write
 
     named = re.sub(r"[^A-Za-z0-9_-]", "_", drawing.stem) if name is None else name
@@ -48,7 +49,7 @@ def command(
     if path.exists():
         raise click.UsageError(f"found {path}, an existing file; allowed: another --name.")
     try:
-        drawn = read(drawing)
+        drawn = read_drawing(drawing, unit)
     except ImportError as error:
         from comparisons.starting.system import line_for
 
@@ -58,6 +59,9 @@ def command(
         raise click.ClickException(
             f"gmsh cannot be loaded ({error}). On Debian and Ubuntu install its libraries with: {line}"
         ) from None
-    write(path, text(drawn, drawing, Wish(named, unit, thickness, width, within)))
+    text, notes = scene_text(drawn, drawing, Choices(named, unit, thickness, width, within))
+    write(path, text)
+    for note in notes:
+        click.echo(f"{drawing}: {note}", err=True)
     click.echo(f"{path}: change load and probes, then run 'cprbm compare {path}'.")
     return 0

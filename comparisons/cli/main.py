@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from comparisons.pairing import Solvers
 
 GROUPS = {
-    "Your mechanism": ("new", "import", "solve", "compare", "converge", "view", "report"),
+    "Your mechanism": ("new", "import", "solve", "compare", "converge", "sweep", "view", "report"),
     "Built-in cases and evidence": ("list", "bench", "study"),
     "Development": ("schema", "doctor", "robustness"),
 }
@@ -52,6 +52,8 @@ class _SubCommands(Commands):
                 from comparisons.cli.compare_ import command
             case "converge":
                 from comparisons.cli.converge_ import command
+            case "sweep":
+                from comparisons.cli.sweep_ import command
             case "view":
                 from comparisons.cli.view_ import command
             case "report":

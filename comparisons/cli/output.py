@@ -14,9 +14,9 @@ from typing import Generic, TypeVar
 import click
 
 from comparisons import logs
-from comparisons.documents import Plain, text
 from comparisons.logs import RUNS, SOLVERS, steps_from
-from comparisons.sheet import Sheet
+from comparisons.plain import Plain, text_of
+from comparisons.present.columns import Section, Table
 
 T = TypeVar("T")
 
@@ -24,13 +24,21 @@ _PLAIN_WIDTH = 140
 """Columns of tables outside a terminal."""
 
 
-def tables(sheets: Iterable[Sheet], most: int = 10_000) -> None:
+def tables(found: Iterable[Table], most: int = 10_000) -> None:
     """Print tables with at most ``most`` columns; colours appear on a terminal only."""
-    from comparisons.tables import drawn
+    from comparisons.present.table import screen_text
 
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else _PLAIN_WIDTH
-    for sheet in sheets:
-        click.echo(drawn(sheet, width=min(width, most)))
+    for table in found:
+        click.echo(screen_text(table, width=min(width, most)))
+
+
+def sections(found: Iterable[Section]) -> None:
+    """Print the tables and sentences of sections."""
+    for section in found:
+        tables(section.tables)
+        for sentence in section.sentences:
+            click.echo(sentence + "\n")
 
 
 def json(file: Path, data: Plain) -> None:
@@ -40,11 +48,11 @@ def json(file: Path, data: Plain) -> None:
         OSError: the file cannot be written.
     """
     if str(file) == "-":
-        click.echo(text(data), nl=False)
+        click.echo(text_of(data), nl=False)
         return
     from comparisons.writing import write
 
-    write(file, text(data))
+    write(file, text_of(data))
 
 
 def room_for(file: Path | None, out: Path | None = None) -> None:

@@ -10,7 +10,7 @@ def main() -> None:
     """Run the command line of this process and exit."""
     try:
         from comparisons.cli import signals
-        from comparisons.executor import ONE_THREAD
+        from comparisons.threads import ONE_THREAD
 
         signals.install_handlers()
         _fill_gaps()

@@ -14,7 +14,8 @@ from comparisons.cli.options import exactness, family_sizes, folder, output_opti
 
 if TYPE_CHECKING:
     from comparisons.pairing import Runs
-    from comparisons.reporting.chapters import Chapter, Section
+    from comparisons.present.columns import Section
+    from comparisons.present.page import Chapter
 
 PARTS = ("convergence", "times")
 
@@ -57,9 +58,9 @@ def command(
     from comparisons.cli import output
     from comparisons.cli.questions import read_questions
     from comparisons.pairing import begin, solvers_of, workers_for
-    from comparisons.reporting import folder as put
-    from comparisons.reporting.gathering import Wanted, gathered, has_table, table
     from comparisons.store import run_into
+    from comparisons.studies import report_folder as put
+    from comparisons.studies.report import Parts, gathered, has_table, table_section
     from cprbm_scene import OffsetQuestion
 
     wanted = read_questions(arguments or ("all",))
@@ -69,7 +70,7 @@ def command(
             check(choices, question)
     out = out or Path("full-report")
     output.room_for(json_file, out)
-    parts = Wanted(choices, () if "convergence" in without else sizes, times="times" not in without)
+    parts = Parts(choices, () if "convergence" in without else sizes, times="times" not in without)
     made_on = provenance.page_origin()
     made_of = f"{parts!r}, exact={exact}"  # chapters with other parts are written anew
     chapters: dict[str, Chapter] = {}
@@ -101,10 +102,10 @@ def command(
             # solve the next case during the drawings, but not during the measurement of run times
             pending = begun(place + 1)
             chapters[question.name] = put.added(out, question, made_of, found)
-            put.put_page(out, so_far(), further, made_on)
+            put.put_report(out, so_far(), further, made_on)
         if with_table and not further:
-            further = (put.added_table(out, table(solvers, made_on), made_on),)
-    put.put_page(out, so_far(), further, made_on)
+            further = (put.added_table(out, table_section(solvers, made_on), made_on),)
+    put.put_report(out, so_far(), further, made_on)
     if json_file is not None:
         output.json(json_file, put.document(out, so_far(), made_on))
     if str(json_file) != "-":

@@ -56,19 +56,19 @@ def command(
 
     checked = audit(scene, answer)
     if json_file is not None:
-        from comparisons import documents
+        from comparisons.present import json_document
 
-        output.json(json_file, {"cases": [documents.solution(scene, answer, found, checked)]})
+        output.json(json_file, {"cases": [json_document.solution(scene, answer, found, checked)]})
     if csv_file is not None:
-        from comparisons.tidy import csv_of
+        from comparisons.present.csv_table import csv_of
 
         write(csv_file, csv_of(scene, answer))
     if plot_file is not None and answer.stations:
-        from comparisons.figures import of_answer
+        from comparisons.present.figures import answer_figure
 
-        of_answer(scene, answer).save(plot_file)
+        answer_figure(scene, answer).save(plot_file)
     if not quiet and str(json_file) != "-":
-        from comparisons import sheets
+        from comparisons.present.answer_tables import answer_tables
 
-        output.tables(sheets.of_answer(scene, answer, found))
+        output.tables(answer_tables(scene, answer, found))
     return report_problems(scene, answer, found, checked.complaints)

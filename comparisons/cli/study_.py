@@ -14,7 +14,7 @@ from comparisons.cli.commands import Commands, ToolCommand
 from comparisons.cli.options import folder, output_options, timed
 
 if TYPE_CHECKING:
-    from comparisons.studies.result import StudyResult
+    from comparisons.present.columns import Section
 
 Found = TypeVar("Found")
 Step = TypeVar("Step")
@@ -117,32 +117,31 @@ class StudyOutput:
         """True with an output file or folder."""
         return self.out is not None or (self.json_file is not None and str(self.json_file) != "-")
 
-    def write(self, result: StudyResult) -> None:
+    def write(self, result: Section) -> None:
         """Write the files.
 
         Raises:
             OSError: a file cannot be written.
         """
         from comparisons.cli import output
-        from comparisons.studies.result import write_result
+        from comparisons.present.page import Page, put_page, put_section
 
         if self.json_file is not None and str(self.json_file) != "-":
-            output.json(self.json_file, result.data)
+            output.json(self.json_file, dict(result.data))
         if self.out is not None:
-            write_result(self.out, result)
+            put_section(self.out, result)
+            put_page(self.out, Page(result.heading, "", further=(result,)), result.name)
 
-    def show(self, result: StudyResult) -> None:
+    def show(self, result: Section) -> None:
         """Print the result on standard output."""
         from comparisons.cli import output
 
         if str(self.json_file) == "-":
-            output.json(Path("-"), result.data)
+            output.json(Path("-"), dict(result.data))
             return
         if self.quiet:
             return
-        output.tables(result.sheets)
-        for sentence in result.words:
-            click.echo(sentence + "\n")
+        output.sections([result])
         if self.out is not None:
             click.echo(f"report: {self.out / result.name}.html")
 
@@ -151,11 +150,11 @@ def run_steps(
     found: Found,
     steps: Iterable[Step],
     taken: Callable[[Found, Step], Found],
-    result_of: Callable[[Found], StudyResult],
+    result_of: Callable[[Found], Section],
     shown: StudyOutput,
 ) -> Found:
     """The finished study; every step writes the partial result, and an interrupted study shows its result."""
-    last: StudyResult | None = None
+    last: Section | None = None
     try:
         for step in steps:
             found, last = taken(found, step), None

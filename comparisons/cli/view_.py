@@ -15,7 +15,7 @@ from comparisons.cli.completion import candidates
 from comparisons.cli.options import numerical, parameters, refuse_sizes_with, settings, verbose
 
 if TYPE_CHECKING:
-    from comparisons.viewing.frames import Coloured
+    from comparisons.present.strips import Coloured
     from cprbm_scene import Answer, Scene
 
 _ROUNDING = 1e-9
@@ -63,9 +63,9 @@ def command(
     from comparisons.choices import Choices, check
     from comparisons.cli import output
     from comparisons.display_units import at_station
-    from comparisons.viewing.shown import KINDS, files, kind_of
-    from comparisons.viewing.space import DrawingError
-    from comparisons.viewing.strips import with_stresses
+    from comparisons.present.animation import KINDS, files, kind_of
+    from comparisons.present.space import DrawingError
+    from comparisons.present.strips import with_stresses
     from comparisons.writing import write
 
     refuse_sizes_with(tol)

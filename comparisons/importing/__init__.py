@@ -1,1 +1,1 @@
-"""A scene from geometry that was drawn elsewhere: the tagged curves of a file that gmsh reads become beams."""
+"""A scene from geometry that was drawn elsewhere: the curves of a drawing become beams."""

@@ -69,6 +69,7 @@ LIBRARIES = (
         "threads",
     ),
     Library("gmsh", "gmsh", "meshes of the solid by gmsh, and 'import' of geometry", ">=4.13", "solid"),
+    Library("ezdxf", "ezdxf", "'import' of DXF drawings", ">=1.3", "dxf"),
     Library("meshio", "meshio", "those meshes, and files for ParaView", ">=5.3", "solid"),
     Library("pyvista", "pyvista", "pictures in space by 'view'", ">=0.44", "view"),
 )

@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-from comparisons.documents import Plain
+import numpy as np
+
 from comparisons.formats import number, percent
-from comparisons.sheet import Sheet
+from comparisons.plain import Plain
+from comparisons.present.canvas import GREY, canvas, finished
+from comparisons.present.columns import Figure, Section, Table
 from comparisons.studies.calibration import Calibration, Trial, tallies
-from comparisons.studies.calibration_drawn import stated_against_true
-from comparisons.studies.result import StudyResult
 from comparisons.verdict.calibration import LARGEST_MEDIAN, SHARE_WITHIN, SOLVERS, ErrorRatio, Tally
 from comparisons.verdict.words import Word
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA in bending"}
 
 
-def result_of(found: Calibration) -> StudyResult:
+def result_of(found: Calibration) -> Section:
     """Result of the measurements so far."""
-    return StudyResult(
-        name="calibration",
-        title="Stated uncertainties beside true errors",
-        words=_words(found),
-        sheets=tuple(sheet for sheet in (_tallies(found), _worst(found)) if sheet.rows),
-        pictures=(stated_against_true(found),) if any(trial.held for trial in found.trials) else (),
-        data=_data(found),
+    return Section(
+        "Stated uncertainties beside true errors",
+        _words(found),
+        (stated_against_true(found),) if any(trial.held for trial in found.trials) else (),
+        tuple(table for table in (_tallies(found), _worst(found)) if table.rows),
+        "calibration",
+        _data(found),
     )
 
 
@@ -53,7 +54,7 @@ def _words(found: Calibration) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def _tallies(found: Calibration) -> Sheet:
+def _tallies(found: Calibration) -> Table:
     body = []
     for case in found.cases:
         trials = found.of_case(case)
@@ -61,7 +62,7 @@ def _tallies(found: Calibration) -> Sheet:
             for trial in trials:
                 body.append((case, _NAMES[solver], str(trial.size(solver)), *_figures(tallies((trial,))[place])))
             body.append((case, _NAMES[solver], "all", *_figures(tallies(trials)[place])))
-    return Sheet(
+    return Table(
         "Calibration",
         ("case", "solver", "N", "rows", "within", "share", "stated over true", "largest true over stated", "rule"),
         tuple(body),
@@ -81,7 +82,7 @@ def _figures(mine: Tally) -> tuple[str, ...]:
     )
 
 
-def _worst(found: Calibration) -> Sheet:
+def _worst(found: Calibration) -> Table:
     body = []
     for case in found.cases:
         for mine in tallies(found.of_case(case)):
@@ -100,7 +101,7 @@ def _worst(found: Calibration) -> Sheet:
                         each.word,
                     )
                 )
-    return Sheet(
+    return Table(
         "The least well stated",
         ("case", "solver", "N", "probe", "at", "true", "stated", "true over stated", ""),
         tuple(body),
@@ -152,3 +153,44 @@ def _held(each: ErrorRatio) -> Plain:
         "stated": each.stated / each.row.scale,
         "true_over_stated": each.ratio,
     }
+
+
+_COLOURS = ("#1f5fa8", "#c8321e", "#2c8a4b", "#a05fb4", "#c98a12", "#3aa6a6", "#555555")
+_TITLES = {"cprbm": "CPRBM", "fea": "FEA in bending"}
+
+
+def stated_against_true(found: Calibration) -> Figure:
+    """Stated against true errors of every row, a panel for each solver and a colour for each case."""
+    with canvas(9.6, 5.2) as figure:
+        panels = figure.subplots(1, 2, sharex=True, sharey=True)
+        both = [(each.true / each.row.scale, each.stated / each.row.scale) for t in found.trials for each in t.held]
+        low, high = 0.5 * float(np.min(both)), 2.0 * float(np.max(both))
+        for axes, solver in zip(panels, SOLVERS, strict=True):
+            for place, name in enumerate(found.cases):
+                mine = [each for t in found.of_case(name) for each in t.held if each.solver == solver]
+                axes.plot(
+                    [each.true / each.row.scale for each in mine],
+                    [each.stated / each.row.scale for each in mine],
+                    "o",
+                    color=_COLOURS[place % len(_COLOURS)],
+                    markersize=2.5,
+                    alpha=0.6,
+                    label=name if solver == SOLVERS[0] else None,
+                )
+            axes.plot([low, high], [low, high], "-", color="black", linewidth=1.0)
+            axes.plot([low, high], [LARGEST_MEDIAN * low, LARGEST_MEDIAN * high], "--", color=GREY, linewidth=1.0)
+            axes.set_xscale("log")
+            axes.set_yscale("log")
+            axes.set_xlim(low, high)
+            axes.set_ylim(low, high)
+            axes.set_aspect("equal")
+            axes.set_title(_TITLES[solver], loc="left")
+            axes.set_xlabel("true error / scale")
+        panels[0].set_ylabel("stated error / scale")
+        figure.legend(loc="outside lower center", ncols=4, markerscale=2.0)
+        return finished(
+            figure,
+            "calibration",
+            "Each row's stated error against its true one. On the line they are equal; below it the statement is not "
+            "true. Dashed: stated ten times the true one, which the median is not to exceed.",
+        )

@@ -98,7 +98,7 @@ class Times:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class TimeTable:
     """All times so far, by cell, and the machine they were measured on."""
 
     machine: Mapping[str, str | int]
@@ -110,11 +110,11 @@ class Table:
         return any(times.ending not in (None, Ending.COMPLETED) for times in self.times.values())
 
 
-def begun(solvers: Solvers, machine: Mapping[str, str | int], cells: tuple[Cell, ...] = CELLS) -> Table:
+def begun(solvers: Solvers, machine: Mapping[str, str | int], cells: tuple[Cell, ...] = CELLS) -> TimeTable:
     """A table without times; each of the solvers has been loaded and has solved once."""
     for method in dict.fromkeys(cell.method for cell in cells):
         _solve(next(cell for cell in cells if cell.method == method), solvers)
-    return Table(machine, frozendict({cell: Times() for cell in cells}))
+    return TimeTable(machine, frozendict({cell: Times() for cell in cells}))
 
 
 def runs(repeat: int, cells: tuple[Cell, ...] = CELLS) -> tuple[Cell, ...]:
@@ -122,7 +122,7 @@ def runs(repeat: int, cells: tuple[Cell, ...] = CELLS) -> tuple[Cell, ...]:
     return repeat * cells
 
 
-def solved(table: Table, cell: Cell, solvers: Solvers, at_most: float) -> Table:
+def solved(table: TimeTable, cell: Cell, solvers: Solvers, at_most: float) -> TimeTable:
     """The table after one more solve of a cell; the same where the cell is refused or takes longer than ``at_most``."""
     before = table.times[cell]
     if (before.why and not before.seconds) or max(before.seconds, default=0.0) > at_most:

@@ -1,29 +1,26 @@
-"""Result of the paper's Table 1 beside ours: tables, sentences and the documented JSON."""
+"""Result of the paper's Table 1 beside ours: a table, sentences, a figure, and the documented JSON."""
 
 from __future__ import annotations
 
-from comparisons.documents import Plain, plain
+import numpy as np
+
 from comparisons.formats import number
-from comparisons.sheet import Sheet
-from comparisons.studies.drawn import run_times
-from comparisons.studies.result import StudyResult
-from comparisons.studies.table1 import THEIR_MACHINE, Cell, Table, Times
+from comparisons.plain import Plain, plain
+from comparisons.present.canvas import BLUE, RED, canvas, finished
+from comparisons.present.columns import Figure, Section, Table
+from comparisons.studies.table1 import THEIR_MACHINE, Cell, Times, TimeTable
 
 
-def result_of(table: Table) -> StudyResult:
+def result_of(table: TimeTable) -> Section:
     """Result of the measurements so far."""
     measured = any(times.seconds for times in table.times.values())
-    return StudyResult(
-        name="table1",
-        title="Run times, beside Table 1 of the paper",
-        words=_words(table),
-        sheets=(_sheet(table),),
-        pictures=(run_times(table),) if measured else (),
-        data=_data(table),
+    figures = (run_times(table),) if measured else ()
+    return Section(
+        "Run times, beside Table 1 of the paper", _words(table), figures, (_table(table),), "table1", _data(table)
     )
 
 
-def _sheet(table: Table) -> Sheet:
+def _table(table: TimeTable) -> Table:
     body = tuple(
         (
             cell.case,
@@ -39,7 +36,7 @@ def _sheet(table: Table) -> Sheet:
         for cell, times in table.times.items()
     )
     machine = table.machine
-    return Sheet(
+    return Table(
         "Seconds to the last load, in one load",
         ("case", "method", "elements or links", "ours", "spread", "repeats", "theirs", "theirs / ours", "ended"),
         body,
@@ -59,7 +56,7 @@ def _ended(times: Times) -> str:
     return times.ending.name
 
 
-def _words(table: Table) -> tuple[str, ...]:
+def _words(table: TimeTable) -> tuple[str, ...]:
     return (
         "Times of different programs on different machines: the paper's CPRBM is interpreted code round a general "
         "optimiser, its finite elements are a commercial program with all that it does besides. What can be compared "
@@ -73,7 +70,7 @@ def _words(table: Table) -> tuple[str, ...]:
     )
 
 
-def _data(table: Table) -> Plain:
+def _data(table: TimeTable) -> Plain:
     return {
         "study": "table1",
         "machine": dict(table.machine),
@@ -95,3 +92,31 @@ def _data(table: Table) -> Plain:
             for cell, times in table.times.items()
         ],
     }
+
+
+def run_times(table: TimeTable) -> Figure:
+    """Our median times with their quartiles and the paper's, a line for each cell."""
+    cells = list(table.times)
+    with canvas(7.2, 1.2 + 0.26 * len(cells)) as figure:
+        axes = figure.add_subplot()
+        for place, cell in enumerate(cells):
+            times = table.times[cell]
+            if times.seconds:
+                low, middle, high = np.percentile(times.seconds, (25.0, 50.0, 75.0))
+                bars = [[middle - low], [high - middle]]
+                axes.errorbar(middle, place, xerr=bars, fmt="o", color=BLUE, markersize=5, capsize=3)
+            if cell.theirs is not None:
+                axes.plot(cell.theirs, place, "x", color=RED, markersize=6)
+        axes.plot([], [], "o", color=BLUE, label="ours")
+        axes.plot([], [], "x", color=RED, label="the paper's")
+        axes.set_yticks(range(len(cells)), [f"{cell.case}, {cell.label}, {cell.sized}" for cell in cells])
+        axes.invert_yaxis()
+        axes.set_xscale("log")
+        axes.grid(visible=True, which="major", axis="x", color="#e4e4e4", linewidth=0.6)
+        axes.set_xlabel("seconds")
+        figure.legend(loc="outside upper right", ncols=2)
+        return finished(
+            figure,
+            "table1",
+            "Seconds to the last load: ours as medians with the quartiles, and the paper's, on another machine.",
+        )

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 from comparisons.choices import Choices, Kinematics
 from comparisons.crew import Solver
 from comparisons.pairing import Runs, may_be_uneven
+from comparisons.sentences import problem_sentences
 from comparisons.store import AnswerMemory
 from comparisons.tolerances.search import FIRST, Estimate, Stated
 from comparisons.tolerances.settled import Settled, settled
-from comparisons.verdict.completeness import problems
 from comparisons.verdict.rows import Row, rows_of
 from comparisons.verdict.station_events import Place
 from comparisons.verdict.uncertainty import STANDARD
@@ -83,7 +83,7 @@ class SceneLevels:
         """The values settled on n/2, n and 2n, with these probes extrapolated."""
         answers = dict(zip(self._sizes(n), self._three(theory, n), strict=True))
         beside = self.beside_it(n)
-        if beside is not None and not problems(self.scene, beside):
+        if beside is not None and not problem_sentences(self.scene, beside):
             answers[round(n / self.ratio(n))] = beside
         return settled(self.scene, answers, probes)
 
@@ -129,7 +129,7 @@ class SceneLevels:
             trouble
             for theory in self.theories
             for answer in self._three(theory, n)
-            for trouble in problems(self.scene, answer)
+            for trouble in problem_sentences(self.scene, answer)
         ]
         if troubles:
             return Estimate((), troubles[0])
@@ -164,7 +164,7 @@ class SceneLevels:
 def stated(scene: Scene, runs: Runs, variant: str) -> Estimate:
     """What is stated of every row that has a value, of the first solver in ``runs``."""
     for _, answer in runs.everything():
-        found = problems(scene, answer)
+        found = problem_sentences(scene, answer)
         if found:
             return Estimate((), found[0])
     rows = []

@@ -29,12 +29,12 @@ from comparisons.choices import Choices
 from comparisons.crew import Solver
 from comparisons.pairing import Runs
 from comparisons.quantities import norm
+from comparisons.sentences import problem_sentences
 from comparisons.solid_limits import solid_limit
 from comparisons.stations import station_of
 from comparisons.store import AnswerMemory
 from comparisons.tolerances.search import Estimate, Stated, Tolerance
 from comparisons.tolerances.settled import extrapolation_note
-from comparisons.verdict.completeness import problems
 from comparisons.verdict.rows import Row, rows_of
 from comparisons.verdict.uncertainty import OWN, STANDARD, largest
 from cprbm_scene import Answer, Scene
@@ -84,7 +84,7 @@ def meshed(
     while True:
         solved.append(along)
         (answer,) = memory.answers([(solver, scene, replace(choices, elements=along, across=across))])
-        trouble = problems(scene, answer)
+        trouble = problem_sentences(scene, answer)
         answers = () if trouble else (*answers, answer)
         if len(answers) > 1:
             estimate = stated(scene, answers, rows)

@@ -6,7 +6,7 @@ number is finite and has the shape of its probe, and branches end at critical po
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -67,8 +67,19 @@ def ends_at_critical(answer: Answer) -> bool:
     return answer.ending is Ending.BRANCH_ENDS and len(answer.critical) == last + 1
 
 
-def problems(scene: Scene, answer: Answer) -> tuple[str, ...]:
-    """Problems of an answer in sentences; empty if the answer is complete."""
+def _station_name(stage: str, value: float) -> str:
+    """Name of a station with the load or drive in SI units."""
+    return f"{stage} {value:g}"
+
+
+def problems(scene: Scene, answer: Answer, name: Callable[[str, float], str] = _station_name) -> tuple[str, ...]:
+    """Problems of an answer in sentences; empty if the answer is complete.
+
+    Args:
+        scene: the question.
+        answer: the answer.
+        name: name of a station by stage and value.
+    """
     found: list[str] = []
     if not answer.completed:
         found.append(f"it ended early: {answer.sentence or answer.ending.value}")
@@ -79,12 +90,12 @@ def problems(scene: Scene, answer: Answer) -> tuple[str, ...]:
         except KeyError:
             if not answer.completed:
                 break
-            found.append(f"it has no station {stage} {value:g}")
+            found.append(f"it has no station {name(stage, value)}")
             continue
-        found.extend(f"at {stage} {value:g} {problem}" for problem in _station_problems(scene, station))
+        found.extend(f"at {name(stage, value)} {problem}" for problem in _station_problems(scene, station))
     if len(answer.stations) > len(asked):
         found.append(f"it has {len(answer.stations)} stations where {len(asked)} were asked")
-    return (*found, *_branch_problems(scene, answer))
+    return (*found, *_branch_problems(scene, answer, name))
 
 
 def _station_problems(scene: Scene, station: StationAnswer) -> Iterator[str]:
@@ -119,7 +130,7 @@ def _shapes(probe: Probe) -> tuple[tuple[int, ...], ...]:
     return (closed, (0,)) if probe.quantity in ABSENT_WHILE_OPEN else (closed,)
 
 
-def _branch_problems(scene: Scene, answer: Answer) -> Iterator[str]:
+def _branch_problems(scene: Scene, answer: Answer, name: Callable[[str, float], str]) -> Iterator[str]:
     """Critical points without finite loads, and branches without a critical point at the end."""
     for one in answer.critical:
         if not np.isfinite((one.value, one.uncertainty, one.energy)).all():
@@ -137,7 +148,7 @@ def _branch_problems(scene: Scene, answer: Answer) -> Iterator[str]:
             one.stage == station.stage and least <= one.value <= most for one in ends
         ):
             yield (
-                f"at {station.stage} {station.value:g} it is on branch {station.branch} after branch {branch}, and its "
-                "critical values say otherwise"
+                f"at {name(station.stage, station.value)} it is on branch {station.branch} after branch {branch}, and "
+                "its critical values say otherwise"
             )
         values[station.stage], branch = station.value, station.branch

@@ -45,6 +45,7 @@ from cprbm.contact.settling import (
     new_counters,
     separations,
     settle,
+    settle_near,
 )
 
 __all__ = [
@@ -86,6 +87,7 @@ __all__ = [
     "open_contacts",
     "separations",
     "settle",
+    "settle_near",
     "sides_at_rest",
     "taken",
     "touching_as_drawn",

@@ -19,12 +19,12 @@ polyline.  There the steps of both pieces lead to the corner, and the closest po
 
 from __future__ import annotations
 
-from math import hypot
+from math import hypot, sqrt
 
 import numpy as np
 
 from cprbm.chain.compiled import compiled
-from cprbm.contact.curve import CUBIC_POWERS, STENCIL, CurveArrays
+from cprbm.contact.curve import STENCIL, CurveArrays
 from cprbm_scene.answer import Array
 
 STEPS = 60
@@ -32,6 +32,9 @@ STEPS = 60
 
 ARRIVED = 1e-13
 """Change of the parameter at which the search ends: round-off of a piece."""
+
+ROUNDED = 2e-15
+"""Change of the place, over the longest beam, at which the search ends on short pieces: round-off of positions."""
 
 LEAST_CURVATURE = 0.1
 """Share of |C'|² below which the second derivative is replaced by |C'|²: a step of descent far from the minimum."""
@@ -43,13 +46,15 @@ TURNED_BACK = 2.6
 @compiled
 def write_weights(curves: CurveArrays, piece: int, xi: float, order: int, weights: Array) -> None:  # pragma: no cover
     """Write the real and imaginary parts (2, STENCIL) of the weights, or of a derivative by ξ."""
+    a, b, c, d = 1.0, xi, xi * xi, xi * xi * xi
+    if order == 1:
+        a, b, c, d = 0.0, 1.0, 2.0 * xi, 3.0 * xi * xi
+    elif order == 2:
+        a, b, c, d = 0.0, 0.0, 2.0, 6.0 * xi
     for i in range(STENCIL):
-        a = b = 0.0
-        for k in range(CUBIC_POWERS - 1, order - 1, -1):
-            factor = 1.0 if order == 0 else (k if order == 1 else k * (k - 1.0))
-            a = a * xi + factor * curves.real[piece, i, k]
-            b = b * xi + factor * curves.imaginary[piece, i, k]
-        weights[0, i], weights[1, i] = a, b
+        w, v = curves.real[piece, i], curves.imaginary[piece, i]
+        weights[0, i] = a * w[0] + b * w[1] + c * w[2] + d * w[3]
+        weights[1, i] = a * v[0] + b * v[1] + c * v[2] + d * v[3]
 
 
 @compiled
@@ -74,6 +79,30 @@ def lost_at(curves: CurveArrays, piece: int, xi: float, order: int) -> float:  #
         factor = 1.0 if order == 0 else (k if order == 1 else k * (k - 1.0))
         value = value * xi + factor * curves.lost[piece, k]
     return value
+
+
+@compiled
+def curve_jet(
+    z: Array, curves: CurveArrays, piece: int, xi: float, weights: Array, slopes: Array
+) -> tuple[float, float, float, float, float, float]:  # pragma: no cover
+    """C, C' and C'' at once; writes the weights (2, STENCIL) of C and of C'."""
+    x = y = u = v = k = m = 0.0
+    for i in range(STENCIL):
+        node, p, q = curves.stencil[piece, i], curves.real[piece, i], curves.imaginary[piece, i]
+        zx, zy = z[node], z[node + 1]
+        a = p[0] + xi * (p[1] + xi * (p[2] + xi * p[3]))
+        b = q[0] + xi * (q[1] + xi * (q[2] + xi * q[3]))
+        weights[0, i], weights[1, i] = a, b
+        x += a * zx - b * zy
+        y += b * zx + a * zy
+        a, b = p[1] + xi * (2.0 * p[2] + 3.0 * xi * p[3]), q[1] + xi * (2.0 * q[2] + 3.0 * xi * q[3])
+        slopes[0, i], slopes[1, i] = a, b
+        u += a * zx - b * zy
+        v += b * zx + a * zy
+        a, b = 2.0 * p[2] + 6.0 * xi * p[3], 2.0 * q[2] + 6.0 * xi * q[3]
+        k += a * zx - b * zy
+        m += b * zx + a * zy
+    return x, y, u, v, k, m
 
 
 @compiled
@@ -146,9 +175,7 @@ def closest_point(
     if rests:
         return piece, 0.0, True
     for _ in range(STEPS):
-        px, py = curve_point(z, curves, piece, eta, 0, weights)
-        tx, ty = curve_point(z, curves, piece, eta, 1, weights)
-        kx, ky = curve_point(z, curves, piece, eta, 2, weights)
+        px, py, tx, ty, kx, ky = curve_jet(z, curves, piece, eta, weights, weights)
         px, py = px - x, py - y
         R, square = hypot(px, py), tx * tx + ty * ty
         if side * (ty * px - tx * py) < 0.0:
@@ -162,7 +189,7 @@ def closest_point(
             if behind != before and is_corner(z, curves, behind, before, x, y, weights):
                 return behind, 0.0, True
         piece, eta, rests = moved_along(curves, curve, piece, eta, step)
-        if abs(step) < ARRIVED or (rests and abs(step) < 1.0):
+        if abs(step) < max(ARRIVED, ROUNDED / sqrt(square)) or (rests and abs(step) < 1.0):
             break
     return piece, eta, rests
 

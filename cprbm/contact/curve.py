@@ -27,7 +27,6 @@ from math import comb
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from cprbm.chain import BeamChain, Mechanism
 from cprbm.contact.compliance import POWERS, lost_compliance
@@ -242,6 +241,8 @@ class Frames:
             tangents: unit tangents (k, 2) at the points.
             length: arc length of the edge.
         """
+        from scipy.interpolate import CubicSpline  # scenes without smooth edges do not load it
+
         places, slopes = points @ np.array([1.0, 1.0j]), tangents @ np.array([1.0, 1.0j])
         pieces = len(points) - 1
         step = length / pieces

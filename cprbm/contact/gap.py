@@ -48,7 +48,7 @@ from math import hypot, sqrt
 from typing import NamedTuple
 
 from cprbm.chain.compiled import compiled
-from cprbm.contact.closest import curve_point, lost_at
+from cprbm.contact.closest import curve_jet, lost_at
 from cprbm.contact.curve import STENCIL, CurveArrays
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -145,13 +145,8 @@ class Row(NamedTuple):
 def gap_frame(z: Array, curves: CurveArrays, places: Places, k: int, weights: Array) -> Frame:  # pragma: no cover
     """Derivatives at a place with known foot; ``weights`` (4, 2, STENCIL) keeps the weights of C_A, C_B, C_A', C_B'."""
     piece, xi, foot, eta, side = places.piece[k], places.xi[k], places.foot[k], places.eta[k], places.side[k]
-    # second derivatives first: the weights are not kept
-    wx, wy = curve_point(z, curves, piece, xi, 2, weights[0])
-    kx, ky = curve_point(z, curves, foot, eta, 2, weights[1])
-    ax, ay = curve_point(z, curves, piece, xi, 0, weights[0])
-    bx, by = curve_point(z, curves, foot, eta, 0, weights[1])
-    ux, uy = curve_point(z, curves, piece, xi, 1, weights[2])
-    vx, vy = curve_point(z, curves, foot, eta, 1, weights[3])
+    ax, ay, ux, uy, wx, wy = curve_jet(z, curves, piece, xi, weights[0], weights[2])
+    bx, by, vx, vy, kx, ky = curve_jet(z, curves, foot, eta, weights[1], weights[3])
     rx, ry = ax - bx, ay - by
     force = places.force[k] if places.moves[k] else 0.0
     own, own1, own2, other, other1, other2 = _lost(curves, places, k)

@@ -74,6 +74,44 @@ def is_unturned(z: Array, curves: CurveArrays, places: Places, k: int) -> bool: 
 
 
 @compiled
+def _settle_place(
+    z: Array,
+    curves: CurveArrays,
+    places: Places,
+    k: int,
+    gaps: Array,
+    curvatures: Array,
+    counters: Ints,
+    steps: int,
+    weights: Array,
+) -> None:  # pragma: no cover
+    """Move the foot of a place, and in at most ``steps`` a moving place; write gap and curvature."""
+    gaps[k], curvatures[k] = np.inf, 0.0
+    for _ in range(max(steps, 1)):
+        x, y = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights[0])
+        force = places.force[k] if places.moves[k] else 0.0
+        foot, eta, side = places.foot[k], places.eta[k], places.side[k]
+        places.foot[k], places.eta[k], places.at_point[k] = closest_point(
+            z, curves, places.other[k], x, y, foot, eta, force, side, weights[0]
+        )
+        if is_unturned(z, curves, places, k):
+            break
+        f = gap_frame(z, curves, places, k, weights)
+        counters[GAPS] += 1
+        gaps[k], curvatures[k] = f.gap, f.curvature / curves.span[places.piece[k]] ** 2
+        if not places.moves[k] or f.curvature == 0.0:
+            break
+        if steps == 0:
+            gaps[k] -= 0.5 * f.slope * f.slope / abs(f.curvature)
+            break
+        step = -f.slope / abs(f.curvature)
+        step = min(LONGEST_STEP, max(-LONGEST_STEP, step))
+        places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], step)
+        if abs(step) < ARRIVED:
+            break
+
+
+@compiled
 def settle(
     z: Array, curves: CurveArrays, places: Places, gaps: Array, curvatures: Array, counters: Ints, steps: int
 ) -> None:  # pragma: no cover
@@ -83,29 +121,37 @@ def settle(
     """
     weights = np.empty((4, 2, STENCIL))
     for k in range(places.piece.size):
-        gaps[k], curvatures[k] = np.inf, 0.0
-        for _ in range(max(steps, 1)):
-            x, y = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights[0])
-            force = places.force[k] if places.moves[k] else 0.0
-            foot, eta, side = places.foot[k], places.eta[k], places.side[k]
-            places.foot[k], places.eta[k], places.at_point[k] = closest_point(
-                z, curves, places.other[k], x, y, foot, eta, force, side, weights[0]
-            )
-            if is_unturned(z, curves, places, k):
-                break
-            f = gap_frame(z, curves, places, k, weights)
-            counters[GAPS] += 1
-            gaps[k], curvatures[k] = f.gap, f.curvature / curves.span[places.piece[k]] ** 2
-            if not places.moves[k] or f.curvature == 0.0:
-                break
-            if steps == 0:
-                gaps[k] -= 0.5 * f.slope * f.slope / abs(f.curvature)
-                break
-            step = -f.slope / abs(f.curvature)
-            step = min(LONGEST_STEP, max(-LONGEST_STEP, step))
-            places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], step)
-            if abs(step) < ARRIVED:
-                break
+        _settle_place(z, curves, places, k, gaps, curvatures, counters, steps, weights)
+
+
+@compiled
+def settle_near(
+    z: Array,
+    curves: CurveArrays,
+    places: Places,
+    closed: Flags,
+    gaps: Array,
+    curvatures: Array,
+    room: Array,
+    counters: Ints,
+    steps: int,
+) -> None:  # pragma: no cover
+    """Settle closed places and open places without ``room``: the way that nodes may go before the place can close.
+
+    A place and the curve beneath move by at most the sum of the weights' sizes times the nodes' way.  The weights grow
+    along a rigid curve; half the gap leaves them room.  Moving and sharing places and beams with themselves have none.
+    """
+    weights, sharing = np.empty((4, 2, STENCIL)), np.zeros(closed.size, np.bool_)
+    for k in range(closed.size):
+        if places.shares[k] != 0:
+            sharing[k], sharing[k + places.shares[k]] = True, True
+    for k in range(closed.size):
+        if room[k] > 0.0 and not closed[k]:
+            continue
+        _settle_place(z, curves, places, k, gaps, curvatures, counters, steps, weights)
+        room[k] = 0.0
+        if not (places.moves[k] or sharing[k] or places.curve[k] == places.other[k]):
+            room[k] = 0.5 * gaps[k] / np.sum(np.abs(weights[:2]))
 
 
 @compiled

@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from cprbm.contact import Contacts, Geometry, Places, may_move, settle, taken
-from cprbm.equilibrium.contact_set import FINDING, arc_of, beside_points, with_fixed_places
+from cprbm.equilibrium.contact_set import FINDING, arc_of, with_fixed_places
+from cprbm.equilibrium.iteration import beside_points
 from cprbm.equilibrium.newton import Solved
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -82,7 +83,7 @@ def contact_measures(solved: Solved) -> ContactMeasures:
     if geometry is None or contacts is None or not len(contacts.closed):
         return ContactMeasures(0.0, 0.0, 0.0)
     places, closed = contacts.places, contacts.closed
-    beside, depth = beside_points(geometry, places, closed)
+    beside, depth = beside_points(geometry.arrays, places, closed)
     gaps, leaders = solved.gaps.copy(), np.arange(len(closed)) + places.shares
     follows = places.shares != 0
     np.add.at(gaps, leaders[follows], solved.gaps[follows])

@@ -21,15 +21,14 @@ from cprbm.contact import Contacts, Geometry, Places, joined, may_move, settle, 
 from cprbm.equilibrium.contact_gaps import as_point, joints_of, minima
 from cprbm.equilibrium.contact_set import (
     FINDING,
-    OVERLAP,
     Touched,
     arc_of,
-    beside_points,
     passed_through,
     solve_set,
     with_fixed_places,
 )
 from cprbm.equilibrium.factors import Springs
+from cprbm.equilibrium.iteration import OVERLAP, beside_points
 from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
@@ -151,7 +150,7 @@ def _points(geometry: Geometry, solved: Touched) -> tuple[Places, Flags]:
     replaced = np.zeros(len(contacts.closed), dtype=bool)
     created = taken(places, replaced)
     arcs, span = arc_of(geometry, places), geometry.arrays.span[places.piece]
-    depth = beside_points(geometry, places, contacts.closed)[1]
+    depth = beside_points(geometry.arrays, places, contacts.closed)[1]
     for run in _runs(geometry, solved):
         given_up = any((int(places.pair[k]), int(places.piece[k])) in contacts.given_up for k in run)
         if len(run) > LONGEST_RUN or given_up:

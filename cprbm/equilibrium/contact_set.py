@@ -18,29 +18,22 @@ from cprbm.contact import (
     choose_sides,
     fixed_places,
     joined,
-    move_places,
     near_pairs,
     separations,
-    settle,
+    settle_near,
     taken,
 )
-from cprbm.equilibrium.factors import Factors, SingularError, Springs, factorise
-from cprbm.equilibrium.newton import NotConvergedError, correction, has_converged
+from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_of, new_work, pulls, solved_border
+from cprbm.equilibrium.iteration import begin_iteration, change_set, end_iteration
+from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
-from cprbm.equilibrium.touching import Touching, contact_terms, touching
-from cprbm_scene.answer import Array, Flags
-
-OVERLAP = 1e-12
-"""Overlap, over the longest beam, from which an open place closes: round-off."""
+from cprbm_scene.answer import Array
 
 FREE_CHANGES = 12
 """Iterations with any change of the set; later iterations change one place at a time."""
 
 RETURNS = 2
 """Returns of a set after which the iteration counts as a cycle."""
-
-LONGEST_MOVE = 2.0
-"""Largest change of a moving place in an iteration, pieces."""
 
 ARRIVED = 1e-6
 """Largest last change of a moving place, pieces."""
@@ -58,7 +51,7 @@ class Touched:
 
     state: State
     contacts: Contacts
-    factors: Factors | Touching
+    factors: Factors
     gaps: Array
     curvatures: Array
     iterations: int
@@ -126,101 +119,41 @@ def solve_set(
     """
     z, driven = start.z.copy(), start.driven
     z[system.rows.first :][~driven] = start.target[~driven] * ~start.repeated[~driven]
-    state = replace(start, z=z)
+    m, work, curves = system.numbers, new_work(system), geometry.arrays
     places, closed = taken(contacts.places, np.ones(len(contacts.closed), dtype=bool)), contacts.closed.copy()
-    gaps, curvatures = np.empty(len(closed)), np.empty(len(closed))
-    settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, FINDING)
+    gaps, curvatures, room = np.empty(len(closed)), np.empty(len(closed)), np.zeros(len(closed))
+    linear = z, m, driven, start.target, *pulls(system, springs), work
+    settling = curves, places, closed, gaps, curvatures, room, contacts.counters
+    settle_near(z, *settling, FINDING)
     seen: dict[bytes, int] = {}
     last = np.inf
     for iteration in range(1, iterations + 1):
-        settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, 0)
-        changed = iteration > 1 and update_set(
-            geometry, places, closed, gaps, len(closed) if iteration <= FREE_CHANGES else 1
-        )
+        most = 0 if iteration == 1 else len(closed) if iteration <= FREE_CHANGES else 1
+        changed, bordered, change, reduced = begin_iteration(*linear, *settling, geometry.columns, most)
         if changed:
             seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
             if seen[closed.tobytes()] > RETURNS:
                 raise NotConvergedError("the set of closed places returns")
-        factors, size = _iterate(system, geometry, state, places, closed, springs)
+        try:
+            factors = factors_of(system, driven, work, bordered)
+        except SingularError as singular:
+            raise NotConvergedError("the system is singular") from singular
+        moving = m.beams, m.border, m.turns, m.motions, curves, places, closed, bordered.reached, change
+        size, moved = end_iteration(z, *moving, solved_border(factors.factored, factors.order, reduced), room)
+        if not np.isfinite(size):
+            raise NotConvergedError("the correction is not finite")
+        size = size if moved < ARRIVED else max(size, moved)
         arrived = has_converged(size, last)
         last = size
         if arrived and not changed:
-            settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, FINDING)
-            if not update_set(geometry, places, closed, gaps, len(closed)):
+            room[:] = 0.0
+            settle_near(z, *settling, FINDING)
+            if not change_set(curves, places, closed, gaps, geometry.columns, len(closed)):
                 settled = replace(contacts, places=places, closed=closed)
-                return Touched(state, settled, factors, gaps, curvatures, iteration)
+                return Touched(replace(start, z=z), settled, factors, gaps, curvatures, iteration)
     raise NotConvergedError(f"{iterations} iterations did not converge")
-
-
-def _iterate(
-    system: System, geometry: Geometry, state: State, places: Places, closed: Flags, springs: Springs | None
-) -> tuple[Factors | Touching, float]:
-    """One Newton iteration in place: factors before the change, and the size of the change."""
-    z, force = state.z, np.zeros(len(closed))
-    try:
-        free, gradient = factorise(system, state, springs)
-        factors: Factors | Touching = free
-        if closed.any():
-            terms = contact_terms(geometry, z, places, closed)
-            factors = touching(free, terms)
-            change, by_force = factors.solve(-gradient - terms.gradient, terms.values)
-            force[closed & (places.shares == 0)] = by_force
-            force[:] = force[np.arange(len(force)) + places.shares] * closed
-        else:
-            change = free.solve(-gradient)
-    except (SingularError, np.linalg.LinAlgError) as singular:
-        raise NotConvergedError("the system is singular") from singular
-    size, share = correction(system, change)
-    moved = move_places(z, geometry.arrays, places, change, force, share, LONGEST_MOVE)
-    change[system.rows.first :][~state.driven] = 0.0
-    z += share * change
-    places.force[:] += share * force
-    return factors, size if moved < ARRIVED else max(size, moved)
-
-
-def update_set(geometry: Geometry, places: Places, closed: Flags, gaps: Array, most: int) -> bool:
-    """Close overlapping places, open pulling places, in place; True if the set changed.
-
-    With more changes than ``most`` only the worst overlap closes, or without overlaps the largest pull opens.
-    """
-    own = places.shares == 0
-    leaders = np.arange(len(closed)) + places.shares
-    gap = gaps.copy()
-    np.add.at(gap, leaders[~own], gaps[~own])
-    beside, depth = beside_points(geometry, places, closed)
-    itself = places.curve == places.other
-    thick = geometry.arrays.thickness[places.piece] + geometry.arrays.thickness[places.foot] > 0.0
-    # the foot on an end of the first curve is the foot of that end's own place
-    doubled = places.at_point & ((places.curve != geometry.columns[places.pair, 0]) | (itself & (places.xi == 1.0)))
-    opens = closed & own & ((places.force < 0.0) | beside)
-    closes = own & ~closed & ~beside & (gap < -OVERLAP - depth) & (thick | ~places.at_point) & ~doubled
-    if opens.sum() + closes.sum() > most:
-        worst = int(np.argmin(np.where(closes, gap, 0.0))) if closes.any() else int(np.argmin(places.force * opens))
-        only = np.arange(len(closed)) == worst
-        opens, closes = opens & only, closes & only
-    closed[opens], closed[closes] = False, True
-    closed[:] = closed[leaders]
-    places.force[~closed] = 0.0
-    return bool(opens.any() or closes.any())
 
 
 def arc_of(geometry: Geometry, places: Places) -> Array:
     """Arc lengths of places on their own curves."""
     return np.asarray(geometry.arrays.arc[places.piece] + places.xi * geometry.arrays.span[places.piece])
-
-
-def beside_points(geometry: Geometry, places: Places, closed: Flags) -> tuple[Flags, Array]:
-    """Fixed places within a piece of a closed moving place, and the overlap of every pair's point contact.
-
-    Outside of the point the other places of the pair may overlap by as much without contact.
-    """
-    beside, depth, arcs = np.zeros(len(closed), dtype=bool), np.zeros(len(closed)), arc_of(geometry, places)
-    arrays = geometry.arrays
-    middle = 0.5 ** np.arange(arrays.lost.shape[1])
-    for k in np.flatnonzero(places.moves & closed):
-        pair = ~places.moves & (places.pair == places.pair[k])
-        near = np.abs(arcs - arcs[k]) < arrays.span[places.piece[k]]
-        beside |= pair & (places.curve == places.curve[k]) & near
-        lost = (arrays.lost[places.piece[k]] + arrays.lost[places.foot[k]]) @ middle
-        depth[pair] = np.maximum(depth[pair], lost * places.force[k])
-    return beside, depth

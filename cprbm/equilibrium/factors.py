@@ -1,6 +1,6 @@
 """Factors of the Hessian at a state, inertia and solutions.
 
-The chains are eliminated by :mod:`cprbm.equilibrium.elimination`; LAPACK factors the border after Bunch and Kaufman;
+The chains are eliminated by :mod:`cprbm.equilibrium.linear`; LAPACK factors the border after Bunch and Kaufman;
 a block of two has a single negative eigenvalue.
 """
 
@@ -11,10 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg.lapack import dsytrf, dsytrs
 
-from cprbm.chain import Blocks, add_row_gradient, empty_blocks, evaluate_chains, row_values
-from cprbm.equilibrium.elimination import border_block, eliminate, negative_pivots, reduce_load, restore
+from cprbm.chain import Blocks, empty_blocks
+from cprbm.equilibrium.columns import Columns
+from cprbm.equilibrium.elimination import negative_pivots
+from cprbm.equilibrium.linear import NO_COLUMNS, Bordered, Work, add_gradient, linearise, reduced_load, restored
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
+
+PANEL = 32
+"""Columns that LAPACK eliminates together from a large border."""
 
 
 class SingularError(ArithmeticError):
@@ -31,64 +36,98 @@ class Springs:
 
 @dataclass(frozen=True, eq=False)
 class Factors:
-    """Factors at a state; ``lost`` is the number of independent directions with falling energy."""
+    """Factors at a state.
+
+    Attributes:
+        system, driven: mechanism, and rows with a prescribed value.
+        work: factors of the chains.
+        bordered: border with the columns of the closed places.
+        factored, order: factors of the border.
+        lost: number of independent directions with falling energy while the closed places stay closed.
+    """
 
     system: System
     driven: Flags
-    blocks: Blocks
-    pivot: Array
-    ratio: Array
-    columns: Array
-    border: Array
+    work: Work
+    bordered: Bordered
+    factored: Array
     order: Ints
     lost: int
 
     def solve(self, load: Array) -> Array:
-        """Solution (size,) of the Hessian's system; the multipliers of rows with prescribed force stay unchanged."""
-        system, border = self.system, self.system.border
-        solution = np.array(load)
-        reduced = np.zeros(border.size)
-        reduced[: system.size - border.first] = solution[border.first :]
-        reduced[border.rows : border.rows + len(self.driven)][~self.driven] = 0.0
-        of_chains = (system.beams, self.blocks, self.pivot, self.ratio)
-        reduce_load(*of_chains, self.driven, border, solution, reduced)
-        within = dsytrs(self.border, self.order, reduced, lower=1)[0]
-        restore(system.beams, border, self.columns, within, solution)
-        solution[border.first :] = within[: system.size - border.first]
-        return solution
+        """Solution (size,) of the Hessian's system; closed places stay closed, prescribed multipliers unchanged."""
+        return self.solve_both(load, np.zeros(0))[0]
+
+    def solve_both(self, load: Array, values: Array) -> tuple[Array, Array]:
+        """Solution (size,), and changes of the contact forces (forces,) for loads of their rows (at most forces,)."""
+        m, size, solution = self.system.numbers, self.system.border.size, np.array(load)
+        reduced = reduced_load(m, self.work, self.driven, self.bordered, values, solution)
+        within = solved_border(self.factored, self.order, reduced)
+        restored(m.beams, m.border, self.bordered.reached, within, solution)
+        return solution, within[size : size + len(self.bordered.columns.values)]
+
+
+def new_work(system: System) -> Work:
+    """Arrays for the chains' factors, to write into."""
+    count = len(system.metric)
+    blocks = empty_blocks(count, count - len(system.beams.first))
+    return Work(blocks, np.zeros(count), np.zeros(count))
+
+
+def pulls(system: System, springs: Springs | None) -> tuple[Array, Array]:
+    """Stiffness and anchor (links,) of springs, zeros without springs."""
+    if springs is None:
+        nothing = np.zeros(len(system.metric))
+        return nothing, nothing
+    return springs.strength * system.metric, springs.anchor
 
 
 def gradient_of(system: System, state: State, blocks: Blocks, springs: Springs | None = None) -> Array:
     """Gradient (size,) of the Lagrangian; writes the blocks of the Hessian."""
     gradient = np.zeros(system.size)
-    evaluate_chains(state.z, system.links, system.joints, blocks, gradient)
-    add_row_gradient(state.z, system.rows, state.multipliers(system), gradient)
-    if springs is not None:
-        stiffness = springs.strength * system.metric
-        blocks.turn[:] += stiffness
-        gradient[system.angles] += stiffness * (state.z[system.angles] - springs.anchor)
-    violation = row_values(state.z, system.rows) - state.target
-    gradient[system.rows.first :] = np.where(state.driven, violation, 0.0)
+    add_gradient(state.z, system.numbers, state.driven, state.target, *pulls(system, springs), blocks, gradient)
     return gradient
 
 
-def factorise(system: System, state: State, springs: Springs | None = None) -> tuple[Factors, Array]:
-    """Factors at a state, and the gradient there.
+def factorise(
+    system: System, state: State, springs: Springs | None = None, columns: Columns = NO_COLUMNS
+) -> tuple[Factors, Array]:
+    """Factors at a state with the columns of closed places, and the gradient there without the contact forces.
 
     Raises:
         SingularError: no number is left to divide by.
     """
-    count = len(system.metric)
-    blocks = empty_blocks(count, count - len(system.beams.first))
-    gradient = gradient_of(system, state, blocks, springs)
-    border = system.border
-    G = np.zeros((border.size, border.size), order="F")
-    border_block(state.z, system.rows, state.driven, border, G)
-    pivot, ratio, columns = np.zeros(count), np.zeros(count), np.empty(border.pair_offset[-1])
-    negative = eliminate(system.beams, blocks, pivot, ratio, state.driven, border, columns, G)
-    factored, order, info = dsytrf(G, lower=1, overwrite_a=1)
-    of_border = negative_pivots(factored, order)
-    if info > 0 or of_border < 0:
+    m, work, gradient, pulled = system.numbers, new_work(system), np.zeros(system.size), pulls(system, springs)
+    bordered = linearise(state.z, m, state.driven, state.target, *pulled, work, columns, gradient)
+    return factors_of(system, state.driven, work, bordered), gradient
+
+
+def factored_border(border: Array) -> tuple[Array, Ints]:
+    """Factors of a symmetric matrix, given by the lower triangle, and LAPACK's record of the pivots.
+
+    Raises:
+        SingularError: no number is left to divide by.
+    """
+    factored, order, info = dsytrf(border.T, lwork=PANEL * len(border))
+    if info > 0:
         raise SingularError("the border has a pivot of zero")
-    lost = negative + of_border - int(state.driven.sum())
-    return Factors(system, state.driven, blocks, pivot, ratio, columns, factored, order, lost), gradient
+    return factored, order
+
+
+def solved_border(factored: Array, order: Ints, load: Array) -> Array:
+    """Solution of the border's system."""
+    return np.asarray(dsytrs(factored, order, load)[0])
+
+
+def factors_of(system: System, driven: Flags, work: Work, bordered: Bordered) -> Factors:
+    """Factors from a border.
+
+    Raises:
+        SingularError: no number is left to divide by.
+    """
+    factored, order = factored_border(bordered.border)
+    of_border, columns = negative_pivots(factored, order), bordered.columns
+    if of_border < 0:
+        raise SingularError("the border has a pivot of zero")
+    equalities = int(np.count_nonzero(driven)) + len(columns.values) + columns.negative
+    return Factors(system, driven, work, bordered, factored, order, bordered.negative + of_border - equalities)

@@ -14,7 +14,6 @@ import numpy as np
 from cprbm.chain import row_values
 from cprbm.equilibrium.factors import Factors, SingularError, Springs, factorise
 from cprbm.equilibrium.system import State, System
-from cprbm.equilibrium.touching import Touching
 from cprbm_scene.answer import Array
 
 CLOSE = 1e-9
@@ -47,7 +46,7 @@ class Solved:
 
     system: System
     state: State
-    factors: Factors | Touching
+    factors: Factors
     gradient: Array
     iterations: int
     contact_values: Array = field(default_factory=lambda: np.zeros(0))
@@ -65,8 +64,6 @@ class Solved:
 
     def response(self, load: Array) -> Array:
         """Change (size,) of the unknowns under a ``load`` (size,), the closed places kept closed."""
-        if isinstance(self.factors, Touching):
-            return self.factors.solve(load, np.zeros(0))[0]
         return self.factors.solve(load)
 
     @cached_property

@@ -10,12 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.contact_points import touched_equilibrium
-from cprbm.equilibrium.factors import Factors, SingularError, Springs, factorise
+from cprbm.equilibrium.factors import SingularError, Springs, factorise
+from cprbm.equilibrium.linear import NO_COLUMNS
 from cprbm.equilibrium.newton import NotConvergedError, Solved, newton
 from cprbm.equilibrium.rank import repeated_rows
 from cprbm.equilibrium.system import State, System
-from cprbm.equilibrium.touching import Touching, contact_terms, touching
 
 REPEATED = 1e-9
 """Largest violation of a row that repeats others, in units of length or rad."""
@@ -64,17 +65,14 @@ def at_state(system: System, state: State, springs: Springs | None = None, itera
     Raises:
         NotConvergedError: the Hessian is singular.
     """
+    columns, pressing, contacts = NO_COLUMNS, np.zeros(system.size), state.contacts
+    if system.geometry is not None and contacts is not None:
+        columns, pressing = contact_terms(system.geometry, state.z, contacts.places, contacts.closed)
     try:
-        free, gradient = factorise(system, state, springs)
-        factors: Factors | Touching = free
-        values, contacts = np.zeros(0), state.contacts
-        if system.geometry is not None and contacts is not None and contacts.closed.any():
-            terms = contact_terms(system.geometry, state.z, contacts.places, contacts.closed)
-            factors, values = touching(free, terms), terms.values
-            gradient = gradient + terms.gradient
-    except (SingularError, np.linalg.LinAlgError) as singular:
+        factors, gradient = factorise(system, state, springs, columns)
+    except SingularError as singular:
         raise NotConvergedError("the system is singular") from singular
-    return Solved(system, state, factors, gradient, iterations, values)
+    return Solved(system, state, factors, gradient + pressing, iterations, columns.values)
 
 
 def _contradicted(solved: Solved) -> int | None:

@@ -8,6 +8,7 @@ multiplier μ* of a row with prescribed force.  Repeated rows are left out
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from cprbm.chain import Joints, Links, Mechanism, RowArrays, hidden_flexibility,
 from cprbm.chain.mechanism import PER_LINK
 from cprbm.contact import Contacts, Geometry, open_contacts
 from cprbm.equilibrium.elimination import Beams, Border
+from cprbm.equilibrium.linear import Numbers
 from cprbm_scene.answer import Array, Flags, Ints
 
 
@@ -58,6 +60,12 @@ class System:
     def size(self) -> int:
         """Number of unknowns, multipliers included."""
         return self.rows.first + len(self.rows.constant)
+
+    @cached_property
+    def numbers(self) -> Numbers:
+        """The arrays for the kernels."""
+        of_chains = self.links, self.joints, self.rows, self.beams, self.border
+        return Numbers(*of_chains, self.angles, self.turns, self.motions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,18 +160,17 @@ def _border(m: Mechanism, rows: RowArrays, beams: Beams) -> Border:
     row = np.concatenate([rows.linear_row[inner], np.full(len(springs), -1)])
     value = np.concatenate([rows.linear_factor[inner], np.sqrt(beams.springs).ravel()])
     beam = np.searchsorted(beams.first, index, side="right") - 1
-    pairs, entry_pair = np.unique(np.column_stack([beam, columns]), axis=0, return_inverse=True)
-    sizes = 2 + PER_LINK * beams.links[pairs[:, 0]]
+    pairs, pair = np.unique(np.column_stack([beam, columns]), axis=0, return_inverse=True)
+    begin = np.searchsorted(pairs[:, 0], np.arange(len(beams.first) + 1)).astype(np.int64)
     return Border(
         first=first,
         size=size,
         rows=column,
-        pair_column=pairs[:, 1].astype(np.int64),
-        pair_beam=pairs[:, 0].astype(np.int64),
-        pair_offset=np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64),
-        beam_pairs=np.searchsorted(pairs[:, 0], np.arange(len(beams.first) + 1)).astype(np.int64),
-        entry_pair=entry_pair.ravel().astype(np.int64),
-        entry_index=index.astype(np.int64),
+        begin=begin,
+        column=pairs[:, 1].astype(np.int64),
+        entry_beam=beam.astype(np.int64),
+        entry_slot=(pair.ravel() - begin[beam]).astype(np.int64),
+        entry_local=(index - beams.first[beam]).astype(np.int64),
         entry_row=row.astype(np.int64),
         entry_value=value,
     )

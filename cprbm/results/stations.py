@@ -24,8 +24,8 @@ from cprbm.results.view import View
 from cprbm.settings import Settings
 from cprbm_scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Scene, Shape, Stage, StationAnswer
 from cprbm_scene.answer import Array, PointForces, frozen_array
+from cprbm_scene.progress import station_reached
 from cprbm_scene.threads import one_thread
-from cprbm_scene.told import station_reached
 
 LOGGER = logging.getLogger("cprbm.stations")
 """Its first part is the solver's name in the message of progress."""

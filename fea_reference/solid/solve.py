@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from cprbm_scene.answer import Answer, Ending, Event, StationAnswer, frozen_array
 from cprbm_scene.contact_states import openings
+from cprbm_scene.progress import station_reached
 from cprbm_scene.statement import Scene, Stage
 from cprbm_scene.threads import one_thread
-from cprbm_scene.told import station_reached
 from fea_reference.solid import answer_sheet
 from fea_reference.solid.assembly import assemble_ends
 from fea_reference.solid.certificates import certify

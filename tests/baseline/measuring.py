@@ -21,9 +21,9 @@ import numpy as np
 import comparisons
 import cprbm
 import fea_reference
-from comparisons import documents
 from comparisons.case import Comparison
 from comparisons.choices import Choices
+from comparisons.present import json_document
 from comparisons.verdict.events import mechanism
 from cprbm_scene import Answer, Critical, Scene, SceneError
 from tests.baseline.runs import Run, Theory, open_scene
@@ -107,7 +107,7 @@ def numbers_of_answer(scene: Scene, answer: Answer) -> Entry:
 
 def numbers_of_comparison(comparison: Comparison) -> Entry:
     """The numbers of a comparison, by the keys of the documented JSON."""
-    document = documents.comparison(comparison)
+    document = json_document.comparison(comparison)
     runs = [answer for _, answer in comparison.runs.everything()]
     return {
         "outcome": "answered",

@@ -8,14 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons import cases, documents, geometry, provenance
-from comparisons.bench import drawn, errors, question, tables
+from comparisons import cases, geometry, provenance
+from comparisons.bench import errors, question, section, tables
 from comparisons.bench.contenders import Contender, Outcome, Run, contenders
 from comparisons.bench.running import Plan, Session, sizes_of, trend
 from comparisons.bench.standings import TARGETS, ratios, reached, standings
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
+from comparisons.plain import text_of
 from cprbm_scene import Ending, Mistake, SceneError
 from cprbm_scene.frozendict import frozendict
 from tests.verdict.made_up import MadeUp
@@ -158,7 +159,7 @@ def test_what_does_not_complete_is_shown_with_its_reason_and_counts_for_nothing(
     assert trend(found.of("ipopt")).sizes == (40, 160)
     row = next(row for row in tables.document(found)["rows"] if (row["method"], row["n"]) == ("ipopt", 80))
     assert (row["ended"], row["why"], row["counts"]) == ("GAVE_UP", "why not", False)
-    assert any("GAVE_UP" in line for line in tables.sheets(found)[0].rows)
+    assert any("GAVE_UP" in line for line in tables.tables_of(found)[0].rows)
     assert [one.count for one in ratios(found)] == [40, 160]
 
 
@@ -183,7 +184,7 @@ def test_a_size_that_is_refused_is_left_out_and_the_rest_goes_on(bent):
     assert [timing.n for timing in found.timings] == [80, 160]
     why = "contacts.contact.paper: found 2 joints; allowed: 3"
     assert [(one.count, one.why) for one in found.left_out] == [(40, why)]
-    assert ("paper", "40", why) in tables.sheets(found)[-1].rows
+    assert ("paper", "40", why) in tables.tables_of(found)[-1].rows
 
 
 def test_what_everybody_refuses_is_refused(bent):
@@ -265,7 +266,9 @@ def test_ratios_are_of_solves_and_of_both(bent):
     assert {f"{name}_{clocked}": ratio for (name, clocked), ratio in one.of.items()} == expected
     assert one.iterations == 5.0
     assert tables.document(found)["ratios"] == [{"n": 40, **expected, "iterations_per_station": 5.0}]
-    headers = next(sheet.headers for sheet in tables.sheets(found) if sheet.title.startswith("How many times longer"))
+    headers = next(
+        sheet.headers for sheet in tables.tables_of(found) if sheet.title.startswith("How many times longer")
+    )
     assert headers == ("N", "AUTO", "SLSQP", "IPOPT, solve", "IPOPT, both", "iterations per station")
 
 
@@ -320,7 +323,7 @@ def test_a_question_keeps_the_last_loads_and_what_errors_are_told_by():
 
 
 def test_the_document_has_the_documented_keys(bent):
-    data = json.loads(documents.text(tables.document(Clock(bent, auto=power(1.2), fea=power(0.9)).benchmark(repeat=2))))
+    data = json.loads(text_of(tables.document(Clock(bent, auto=power(1.2), fea=power(0.9)).benchmark(repeat=2))))
     assert {"case", "machine", "rows", "trends", "fastest", "ratios", "left_out", "reference", "tolerance"} <= set(data)
     assert data["machine"]["cpu"] == "made up"
     assert len(data["rows"]) == 6
@@ -334,14 +337,14 @@ def test_the_document_has_the_documented_keys(bent):
 
 def test_the_figures_are_the_same_bytes_every_time(bent):
     ends = lambda n: (0.0, 0.1, 5, "GAVE_UP", 0.0) if n == 80 else power(1.0)(n)  # noqa: E731
-    again = [drawn.pictures(Clock(bent, paper=power(1.1), ipopt=ends).benchmark(repeat=2)) for _ in range(2)]
+    again = [section.pictures(Clock(bent, paper=power(1.1), ipopt=ends).benchmark(repeat=2)) for _ in range(2)]
     assert again[0] == again[1]
     assert [picture.name for picture in again[0]] == ["bench-precision", "bench"]
     assert b"<dc:date>" not in again[0][0].svg
 
 
 def test_nothing_that_counts_has_no_figure(bent):
-    assert drawn.pictures(Clock(bent, auto=lambda n: (0.0, 0.1, 5, "GAVE_UP", 0.0)).benchmark(repeat=1)) == ()
+    assert section.pictures(Clock(bent, auto=lambda n: (0.0, 0.1, 5, "GAVE_UP", 0.0)).benchmark(repeat=1)) == ()
 
 
 def test_the_machine_is_described():

@@ -12,8 +12,8 @@ from comparisons.budgets.parts import Budget, budgets_of
 from comparisons.budgets.runs import budgeted
 from comparisons.choices import Choices
 from comparisons.cli.main import run
-from comparisons.documents import text
 from comparisons.pairing import Solvers
+from comparisons.plain import text_of
 from comparisons.store import AnswerMemory
 from cprbm_scene import Ending, Material, Stage
 from cprbm_scene.frozendict import frozendict
@@ -274,7 +274,7 @@ def test_the_table_has_every_probe_with_a_value_at_the_last_station(hinge, right
 
 def test_json_has_every_station_and_sums(hinge, right):
     account = accounted(hinge, Choices(), AnswerMemory(solvers=right))
-    data = json.loads(text(tables.data_of(account)))
+    data = json.loads(text_of(tables.data_of(account)))
     assert len({row["station"] for row in data["budget"]}) == 10
     for row in data["budget"]:
         assert sum(row["parts"].values()) == pytest.approx(row["difference"], rel=1e-9, abs=1e-15)

@@ -5,15 +5,16 @@ from dataclasses import replace
 
 import pytest
 
-from comparisons import documents, sheets
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.claims import claim_difference, claim_met, claim_of, standings
 from comparisons.pairing import paired
+from comparisons.present import json_document
 from comparisons.verdict.rows import Row
 from cprbm_scene import Claim, Probe
 from cprbm_scene.answer import frozen_array
-from cprbm_scene.checks import mistakes_in
+from cprbm_scene.reading import mistakes_in
+from tests.tables import sentences_of, tables_of
 
 
 def row(value, reference, *, station=1.0, quantity="reaction", scale=100.0):
@@ -33,7 +34,7 @@ EVERYWHERE = Claim(probe="BD.rotation", bound=0.005, text="rotation within 0.5 %
 
 def test_a_claim_without_a_station_stands_at_every_row_of_its_probe(hinge, right):
     comparison = compare(claiming(hinge, EVERYWHERE), paired(hinge, Choices(), right))
-    found = documents.comparison(comparison)["rows"]
+    found = json_document.comparison(comparison)["rows"]
     mine = [each for each in found if each["probe"] == "BD.rotation"]
     assert len(mine) == 10
     for each in mine:
@@ -48,14 +49,14 @@ def test_it_has_one_line_with_the_worst_station_and_how_often_it_is_met(hinge, r
     fractions = {row.station: claim_difference(row) for row in comparison.rows if row.probe.name == "BD.rotation"}
     worst = max(fractions, key=fractions.get)
     met = sum(fraction <= 0.005 for fraction in fractions.values())
-    sheet = next(sheet for sheet in sheets.of_comparison(comparison) if sheet.title == "Claims of the source")
+    sheet = next(sheet for sheet in tables_of(comparison) if sheet.title == "Claims of the source")
     ((text, theirs, _, at, how_often, word),) = sheet.rows
     assert text == EVERYWHERE.text
     assert theirs == "0.500 %"
     assert at == f"load {worst:g} N·m"
     assert how_often == f"{met} of 10"
     assert word == ("met" if met == 10 else "not met")
-    (sentence,) = sheets.explanation(comparison)
+    (sentence,) = sentences_of(comparison)
     assert f"at load {worst:g} N·m" in sentence
 
 
@@ -111,8 +112,8 @@ def test_a_row_without_a_difference_meets_nothing(hinge):
 def test_the_sentence_and_the_table_say_the_same_number(hinge, right):
     scene = claiming(hinge, Claim(probe="contact.force", station=0.335, bound=0.01))
     comparison = compare(scene, paired(hinge, Choices(), right))
-    sheet = next(sheet for sheet in sheets.of_comparison(comparison) if sheet.title == "Claims of the source")
-    (sentence,) = sheets.explanation(comparison)
+    sheet = next(sheet for sheet in tables_of(comparison) if sheet.title == "Claims of the source")
+    (sentence,) = sentences_of(comparison)
     assert f"our difference of {sheet.rows[0][2]} " in sentence
     (small,) = (each for each in comparison.rows if each.probe.name == "contact.force" and each.station == 0.335)
     assert small.fraction(small.difference) != claim_difference(small)

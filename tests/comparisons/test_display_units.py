@@ -9,8 +9,8 @@ import pytest
 
 from comparisons import display_units
 from comparisons.cli.main import run
-from comparisons.sheets import of_answer
-from comparisons.tidy import csv_of, numbers
+from comparisons.present.answer_tables import answer_tables
+from comparisons.present.csv_table import csv_of, numbers
 from cprbm import Settings, answer
 from cprbm_scene import scene_from
 from cprbm_scene.units import Units
@@ -77,7 +77,7 @@ def test_without_a_stated_unit_a_table_has_one_prefix_for_the_largest_value(hing
 
 def test_pure_bending_is_told_in_the_units_of_the_file(scene, bent):
     """M = EIφ/L and σ = Etφ/(2L) of a beam bent to a circle: 45° of 210 GPa, 1 mm by 10 mm, 100 mm."""
-    sheet = of_answer(scene, bent)[0]
+    sheet = answer_tables(scene, bent)[0]
     rows = [dict(zip(sheet.headers, row, strict=True)) for row in sheet.rows]
     assert [row["turn, °"] for row in rows] == ["15", "45"]
     last = rows[-1]

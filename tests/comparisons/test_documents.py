@@ -5,11 +5,12 @@ import math
 
 import pytest
 
-from comparisons import documents
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from cprbm_scene import Certificate
+from comparisons.plain import plain, text_of
+from comparisons.present import json_document
+from cprbm_scene import Answer, Certificate, Ending, StationAnswer
 from tests.verdict.made_up import CERTIFICATE, MadeUp
 
 NUMBER = (int, float)
@@ -17,8 +18,8 @@ NUMBER = (int, float)
 
 @pytest.fixture
 def case(hinge, right):
-    data = documents.comparison(compare(hinge, paired(hinge, Choices(), right)))
-    return json.loads(documents.text(data), parse_constant=lambda constant: pytest.fail(constant))
+    data = json_document.comparison(compare(hinge, paired(hinge, Choices(), right)))
+    return json.loads(text_of(data), parse_constant=lambda constant: pytest.fail(constant))
 
 
 def test_a_case_has_the_documented_keys(case):
@@ -74,14 +75,14 @@ def test_fractions_are_of_the_denominator(case):
 
 def test_a_case_that_did_not_complete_has_no_rows_and_still_its_solvers(hinge, right):
     early = Solvers(MadeUp("cprbm", 0.0, until=0), right.fea)
-    data = documents.comparison(compare(hinge, paired(hinge, Choices(), early)))
+    data = json_document.comparison(compare(hinge, paired(hinge, Choices(), early)))
     assert data["verdict"] == "UNDECIDED"
     assert data["rows"] == []
     assert data["solvers"]["cprbm"]["certificate"] is None
 
 
 def test_solve_has_one_column_and_no_verdict(hinge, right):
-    data = documents.solution(hinge, right.cprbm(hinge, Choices()))
+    data = json_document.solution(hinge, right.cprbm(hinge, Choices()))
     assert set(data) == {"case", "solvers", "rows"}
     assert set(data["solvers"]) == {"cprbm"}
     assert all("fea" not in row and "verdict" not in row and "cprbm" in row for row in data["rows"])
@@ -89,7 +90,8 @@ def test_solve_has_one_column_and_no_verdict(hinge, right):
 
 def test_the_worst_of_certificates_is_taken_number_by_number():
     other = Certificate(1e-9, 1e-14, 0.0, 0.0, 0.0, 0.0, 0.0, -0.1, 7, ("turned over",))
-    worst = documents.worst((CERTIFICATE, other))
+    stations = tuple(StationAnswer("load", 1.0, {}, {}, {}, each) for each in (CERTIFICATE, other))
+    worst = json_document.worst_certificate(Answer("cprbm", "hinge", {}, Ending.COMPLETED, "", stations))
     assert worst is not None
     assert worst["residual"] == 1e-9
     assert worst["residual_floor"] == 1e-13
@@ -100,6 +102,6 @@ def test_the_worst_of_certificates_is_taken_number_by_number():
 
 
 def test_no_number_that_is_not_finite_leaves_as_json():
-    assert documents.plain({"a": [math.nan, math.inf, 1.0]}) == {"a": [None, None, 1.0]}
+    assert plain({"a": [math.nan, math.inf, 1.0]}) == {"a": [None, None, 1.0]}
     with pytest.raises(ValueError, match="JSON"):
-        documents.text({"a": math.nan})
+        text_of({"a": math.nan})

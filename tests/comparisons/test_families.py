@@ -6,13 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons import cases, documents
+from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.cli.main import run
-from comparisons.converging import drawn, tables
-from comparisons.converging.families import at, converged
 from comparisons.crew import ALONE
 from comparisons.pairing import Solvers
+from comparisons.plain import text_of
+from comparisons.studies import convergence
+from comparisons.studies import convergence_tables as tables
+from comparisons.studies.families import at, converged
 from cprbm_scene import Ending
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
@@ -76,8 +78,8 @@ def test_both_limits_meet_in_bending_and_another_theory_stands_by_itself(hinge, 
         ("fea", "bending"),
         ("fea", "shear"),
     ]
-    for cprbm, fea in tables.beside(found):
-        apart = tables.between(cprbm, fea)
+    for pair in tables.pairs_of(found):
+        cprbm, apart = pair.cprbm, pair.apart
         assert apart is None or apart[0] <= 1e-5 * cprbm.scale
     rotations = [
         one.found.value[0] for one in found.families if one.probe.name == "BD.rotation" and one.station == LAST
@@ -126,7 +128,7 @@ def test_a_run_that_is_not_whole_is_left_out_and_told(hinge, right):
     family = _family(found, "BD.rotation")
     assert family.used == (20, 40, 80)
     (sentence,) = tables.sentences_of(found)
-    assert sentence.startswith("CPRBM (auto) at N = 10 gave no whole answer: it ended early")
+    assert sentence.startswith("CPRBM (auto) at N = 10 gave no complete answer: it ended early")
     entry = next(one for one in tables.document(found)["families"] if one["probe"] == "BD.rotation")
     assert entry["values"][0] is None
     assert entry["errors"][0] is None
@@ -136,8 +138,8 @@ def test_nothing_is_told_of_values_where_no_run_is_whole(hinge, right):
     broken = _changed(right.cprbm, lambda answer: replace(answer, stations=answer.stations[:2]), at_most=9999)
     found = _found(hinge, Solvers(broken, _changed(right.fea, lambda a: replace(a, stations=()), at_most=9999)))
     assert found.families == ()
-    assert tables.sheets_of(found) == ()
-    assert drawn.of_convergence(found) == ()
+    assert tables.convergence_tables(found) == ()
+    assert convergence.convergence_figures(found) == ()
 
 
 def test_a_stress_is_followed_at_one_place_that_is_compared(hinge, right):
@@ -156,11 +158,11 @@ def test_the_exact_values_stand_beside_where_they_are_known(hinge, right):
     assert family.true_error(20) == pytest.approx(family.apart(20), rel=1e-6)
     assert _family(found, "BD.rotation", hinge.stages[0].stations[0]).exact is None
     assert all(one.exact is None for one in found.families if one.series.kinematics == "shear")
-    assert tables.sheets_of(found)[0].headers[-1] == "CPRBM limit from exact"
+    assert tables.convergence_tables(found)[0].headers[-1] == "CPRBM limit from exact"
 
 
 def test_the_document_has_the_keys_that_are_promised(hinge, right):
-    data = json.loads(documents.text(tables.document(_found(hinge, right))))
+    data = json.loads(text_of(tables.document(_found(hinge, right))))
     assert data["case"] == "hinge"
     entry = next(one for one in data["families"] if one["probe"] == "B.displacement" and one["component"] == "y")
     assert entry["n"] == list(SIZES)
@@ -172,13 +174,13 @@ def test_the_document_has_the_keys_that_are_promised(hinge, right):
 
 
 def test_the_same_answers_give_the_same_figure(hinge, right):
-    one, two = (drawn.of_convergence(_found(hinge, right)) for _ in range(2))
+    one, two = (convergence.convergence_figures(_found(hinge, right)) for _ in range(2))
     assert one == two
     assert len(one) == 1
 
 
 def test_every_table_has_as_many_cells_as_headers(hinge, right):
-    for sheet in tables.sheets_of(_found(hinge, right)):
+    for sheet in tables.convergence_tables(_found(hinge, right)):
         assert sheet.rows
         assert {len(row) for row in sheet.rows} == {len(sheet.headers)}
 
@@ -201,7 +203,7 @@ def test_the_command_writes_prints_and_ends_with_0(right, capsys, tmp_path):
 def test_the_command_ends_with_1_where_a_run_is_not_whole(right, capsys):
     ended = _changed(right.cprbm, lambda answer: replace(answer, stations=answer.stations[:2]), at_most=10)
     assert run(["converge", "hinge", "--sizes", "10,20", "--quiet"], Solvers(ended, right.fea)) == 1
-    assert "at N = 10 gave no whole answer" in capsys.readouterr().out
+    assert "at N = 10 gave no complete answer" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("sizes", ["40", "40,20", "20,20", "ten,20", "", "0,10"])

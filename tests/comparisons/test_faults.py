@@ -13,9 +13,10 @@ from pathlib import Path
 
 import pytest
 
-from comparisons import report, writing
+from comparisons import writing
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
+from comparisons.present import page
 from tests.comparisons.killed import NAMES, QUESTION
 from tests.verdict.made_up import MadeUp
 
@@ -64,7 +65,7 @@ def test_forty_kills_lose_nothing_and_the_next_run_goes_on(tmp_path):
 
 
 def test_an_interrupted_run_solves_nothing_again_and_a_changed_question_does(tmp_path, asked, monkeypatch, capsys):
-    monkeypatch.setattr(report, "_DRAWN", ())
+    monkeypatch.setattr(page, "figures_of", lambda compared: ())
     solved = []
 
     class Noting(MadeUp):
@@ -95,7 +96,7 @@ def test_an_interrupted_run_solves_nothing_again_and_a_changed_question_does(tmp
 
 
 def test_a_full_disk_at_any_write_is_a_sentence_and_leaves_whole_files(tmp_path, asked, monkeypatch, capsys):
-    monkeypatch.setattr(report, "_DRAWN", ())
+    monkeypatch.setattr(page, "figures_of", lambda compared: ())
     solvers = Solvers(MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4))
     whole = tmp_path / "whole"
     arguments = ["compare", *asked, "--quiet", "--out"]

@@ -1,4 +1,4 @@
-"""Scenes from drawings: lines and arcs as they are, splines with a deviation that is stated, and what is refused."""
+"""Scenes from drawings: exact lines and arcs, splines with a stated deviation, left-out curves, refused files."""
 
 import math
 
@@ -11,6 +11,7 @@ from comparisons.importing.curves import fitted
 from comparisons.starting.present import trouble_with
 from cprbm_scene import Arc, Line, Spline, read
 
+needs_ezdxf = pytest.mark.skipif(bool(trouble_with("ezdxf")), reason="ezdxf cannot be imported here")
 needs_gmsh = pytest.mark.skipif(bool(trouble_with("gmsh")), reason="gmsh cannot be imported here")
 
 FRAME = """
@@ -55,17 +56,12 @@ def test_a_drawing_becomes_a_scene_that_is_solved(tmp_path):
     [
         ("Point(1) = {0, 0", "found what gmsh does not read"),
         (
-            "Point(1) = {0, 0, 0}; Point(2) = {7, 0, 3}; Point(3) = {0, 1, 0}; Line(1) = {1, 2}; "
-            'Line(2) = {1, 3}; Physical Curve("up") = {1};',
-            "up (curve 1, Line): found points 3 mm off the plane z = 0; allowed: curves in one plane",
-        ),
-        (
             "Point(1) = {0, 0, 0}; Point(2) = {7, 1, 0}; Point(3) = {3, 5, 0}; Spline(1) = {1, 2, 3, 1}; "
             'Physical Curve("ring") = {1};',
             "ring (curve 1, Nurb): found a curve that comes back",
         ),
     ],
-    ids=["syntax", "plane", "ring"],
+    ids=["syntax", "ring"],
 )
 def test_what_is_no_beam_is_refused_by_name(tmp_path, capsys, drawing, words):
     path = tmp_path / "bad.geo"
@@ -75,6 +71,93 @@ def test_what_is_no_beam_is_refused_by_name(tmp_path, capsys, drawing, words):
     assert str(path) in said
     assert words in said
     assert not (tmp_path / "bad.toml").exists()
+
+
+def import_of(path, *more):
+    return run(["import", str(path), "--thickness", "1", "--width", "9", "--out", str(path.parent), *more])
+
+
+@needs_gmsh
+def test_a_wrong_curve_is_left_out_and_named_in_the_scene(tmp_path, capsys):
+    (tmp_path / "up.geo").write_text(
+        "Point(1) = {0, 0, 0}; Point(2) = {7, 0, 3}; Point(3) = {0, 50, 0}; Point(4) = {2, 50, 0}; Line(1) = {1, 2};"
+        'Line(2) = {1, 3}; Line(3) = {3, 4}; Physical Curve("up") = {1}; Physical Curve("leg") = {2};'
+        'Physical Curve("toe") = {3};\n',
+        encoding="utf-8",
+    )
+    assert import_of(tmp_path / "up.geo") == 0
+    assert list(read(tmp_path / "up.toml").beams) == ["leg"]
+    said, text = capsys.readouterr().err, (tmp_path / "up.toml").read_text(encoding="utf-8")
+    for words in (
+        "up (curve 1, Line): found points 3 mm off the plane z = 0; allowed: curves in one plane",
+        "toe (curve 3, Line): found 0.001 m, which is 0.5 of the beam's length",
+    ):
+        assert f"left out: {words}" in said
+        assert f"# left out: {words}" in text
+
+
+@needs_ezdxf
+def test_lines_arcs_and_polylines_of_a_dxf_drawing(tmp_path, capsys):
+    """Reference: a bulge is the tangent of a quarter of the arc's angle, so that 1 is a half circle."""
+    import ezdxf
+
+    document = ezdxf.new()
+    document.header["$INSUNITS"] = 4
+    space = document.modelspace()
+    space.add_line((0, 0), (40, 0), dxfattribs={"layer": "leg"})
+    space.add_arc((40, 20), 20, -90, 0, dxfattribs={"layer": "leg"})
+    space.add_lwpolyline([(60, 20, 0), (60, 60, 1), (20, 60, 0)], format="xyb", dxfattribs={"layer": "top"})
+    space.add_circle((9, 9), 3, dxfattribs={"layer": "hole"})
+    space.add_spline([(0, 0), (1, 2), (4, 5)])
+    space.add_point((0, 0), dxfattribs={"layer": "ground"})
+    document.saveas(tmp_path / "a.dxf")
+    assert import_of(tmp_path / "a.dxf") == 0
+    scene = read(tmp_path / "a.toml")
+    assert list(scene.beams) == ["leg-1", "leg-2", "top-1", "top-2"]
+    line, arc, side, half = (beam.curve for beam in scene.beams.values())
+    assert line == Line(kind="line", start=(0.0, 0.0), end=(0.04, 0.0))
+    assert (arc.center, arc.direction) == (pytest.approx((0.04, 0.02), rel=1e-12), "counterclockwise")
+    assert (side.start, side.end) == ((0.06, 0.02), (0.06, 0.06))
+    assert (half.center, half.end) == (pytest.approx((0.04, 0.06)), pytest.approx((0.02, 0.06)))
+    assert half.direction == "counterclockwise"
+    assert scene.bodies["ground"].points == {"ground-1": (0.0, 0.0)}
+    said = capsys.readouterr().err
+    assert "left out: CIRCLE on the layer 'hole'" in said
+    assert "left out: SPLINE on the layer '0'" in said
+    assert import_of(tmp_path / "a.dxf", "--unit", "m", "--name", "b") == 2
+    assert "a drawing in mm ($INSUNITS = 4), read in m; allowed: --unit mm" in capsys.readouterr().err
+
+
+def test_a_table_of_points_is_a_curve(tmp_path, capsys):
+    (tmp_path / "arch.csv").write_text("x [mm],y [cm]\n0,0\n30,0.8\n70,0.4\n100,0\n", encoding="utf-8")
+    assert import_of(tmp_path / "arch.csv") == 0
+    curve = read(tmp_path / "arch.toml").beams["arch"].curve
+    assert curve.points == ((0.0, 0.0), (0.03, 0.008), (0.07, 0.004), (0.1, 0.0))
+    (tmp_path / "bad.csv").write_text("x,y\n0,0\n30,a\n", encoding="utf-8")
+    assert import_of(tmp_path / "bad.csv") == 2
+    assert "'a' in bad.csv, row 3, column y" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        (
+            "m.msh",
+            'Printf("x") > "ran";',
+            "a file of another format; allowed: a drawing: STEP (.step, .stp), gmsh mesh",
+        ),
+        ("m.step", 'Printf("x") > "ran";', "a file of another format"),
+        ("m.txt", 'Printf("x") > "ran";', "a file of another format"),
+        ("m.txt", "ISO-10303-21;", "a STEP file with the ending '.txt'; allowed: the ending .step"),
+        ("m.geo", "$MeshFormat", "a gmsh mesh file with the ending '.geo'; allowed: the ending .msh"),
+        pytest.param("m.geo", "0\nSECTION\n2\n", "a file that ezdxf does not read", marks=needs_ezdxf),
+    ],
+)
+def test_only_a_geo_file_is_run_as_a_program(tmp_path, capsys, name, text, words):
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    assert import_of(tmp_path / name) == 2
+    assert words in capsys.readouterr().err
+    assert sorted(file.name for file in tmp_path.iterdir()) == [name]
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path, capsys):

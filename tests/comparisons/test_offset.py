@@ -8,11 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from comparisons import cases, offset_drawn, offset_pages
+from comparisons import cases
 from comparisons.cli.main import run
 from comparisons.offset_exact import offset_curve, ordinates
 from comparisons.offset_verdict import compared_offset
 from comparisons.pairing import Solvers, cprbm_offset_points
+from comparisons.present import offset
 from comparisons.verdict.words import Word
 from cprbm_scene import Arc, OffsetQuestion, SceneError
 from cprbm_scene.reading import offset_from
@@ -112,7 +113,7 @@ def test_the_wrong_side_differs(question):
 
 
 def test_the_json_says_what_is_documented(compared):
-    case = offset_pages.document(compared)
+    case = offset.document(compared)
     assert case["case"] == "offset"
     assert case["verdict"] == "AGREE"
     assert set(case["solvers"]) == {"cprbm", "exact"}
@@ -150,7 +151,7 @@ def test_what_needs_an_equilibrium_says_so(command, capsys):
 
 def test_figures_are_the_same_bytes_every_time(small):
     compared = compared_offset(cases.asked(small))
-    first, again = offset_drawn.of_comparison(compared), offset_drawn.of_comparison(compared)
+    first, again = offset.offset_figures(compared), offset.offset_figures(compared)
     assert [picture.svg for picture in first] == [picture.svg for picture in again]
 
 

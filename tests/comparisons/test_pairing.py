@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from comparisons import cases, sheets
+from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.crew import ALONE, crew_of
@@ -27,6 +27,7 @@ from comparisons.pairing import (
 )
 from comparisons.verdict.words import Word
 from cprbm_scene import Critical, Ending, Loss, Mistake, SceneError
+from tests.tables import tables_of
 from tests.verdict.made_up import MadeUp
 
 
@@ -134,7 +135,7 @@ def test_a_scene_beyond_the_rule_has_no_exact_values_and_says_so(hinge, right):
     assert runs.exact is None
     assert runs.exact_absence.startswith("3 pieces of beams at 101 stations are beyond the rule")
     assert "--exact" in runs.exact_absence
-    notes = [sheet.note for sheet in sheets.of_comparison(compare(long, runs))]
+    notes = [sheet.note for sheet in tables_of(compare(long, runs))]
     assert sum(f"No exact values: {runs.exact_absence}" in note for note in notes) == 1
 
 

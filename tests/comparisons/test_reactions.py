@@ -11,12 +11,14 @@ from math import radians
 import numpy as np
 import pytest
 
-from comparisons import cases, documents, reactions_drawn, sheets
+from comparisons import cases
 from comparisons import reactions as module
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.reaction_sheets import summary
+from comparisons.plain import text_of
+from comparisons.present import curves, json_document
+from comparisons.present.reaction_tables import summary
 from comparisons.reactions import (
     EQUILIBRIUM_ALLOWANCE,
     MESH_ALLOWANCE,
@@ -31,6 +33,7 @@ from cprbm_scene.answer import frozen_array
 from cprbm_scene.freedoms import unit
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import DisplacementDrive
+from tests.tables import tables_of
 from tests.together.driven import GAP, gripper_like, punched, snapping
 from tests.verdict.jumping import Jumping
 from tests.verdict.made_up import MadeUp
@@ -124,8 +127,8 @@ def test_without_a_reaction_probe_of_a_moved_drive_there_is_no_perturbed_scene(h
         assert perturbed_scene(scene) is None
     comparison = compare(hinge, paired(hinge, Choices(), right))
     assert comparison.reactions == ()
-    assert documents.comparison(comparison)["work_energy"] == []
-    assert reactions_drawn.of_comparison(comparison) == ()
+    assert json_document.comparison(comparison)["work_energy"] == []
+    assert list(curves.reaction_figures(comparison)) == []
 
 
 def test_the_neighbouring_stations_of_a_long_stage_give_the_derivative_without_a_further_run():
@@ -334,7 +337,7 @@ def test_stations_behind_the_end_of_the_perturbed_run_say_so():
 
     comparison = comparison_of(scene, early)
     assert [at.absence for at in comparison.reactions] == [None, Absence.NOT_REACHED, Absence.NOT_REACHED]
-    (table,) = [sheet for sheet in sheets.of_comparison(comparison) if sheet.title.startswith("Reaction at the drive")]
+    (table,) = [sheet for sheet in tables_of(comparison) if sheet.title.startswith("Reaction at the drive")]
     assert table.note.endswith(f"The perturbed run ended early: {Ending.STEP_TOO_SMALL.value}.")
     assert [row[-1] for row in table.rows] == ["", "perturbed stations not reached", "perturbed stations not reached"]
 
@@ -354,7 +357,7 @@ def test_an_energy_that_is_no_number_leaves_no_value():
 
 def test_json_table_and_figure_show_it():
     comparison = comparison_of(driven(("push", (0.002, STOP_AT)), ("turn", (0.003,))))
-    known, without, moment = json.loads(documents.text(documents.comparison(comparison)))["work_energy"]
+    known, without, moment = json.loads(text_of(json_document.comparison(comparison)))["work_energy"]
     assert (known["stage"], known["station"], known["drive"], known["unit"]) == ("push0", 0.002, "push", "N")
     assert (moment["drive"], moment["unit"]) == ("turn", "N·m")
     assert known["difference"] == pytest.approx(known["work_energy"] / known["multiplier"] - 1.0, abs=1e-12)
@@ -362,10 +365,10 @@ def test_json_table_and_figure_show_it():
     assert (known["absence"], known["energies"], known["branch"]) == (None, None, 0)
     assert (without["absence"], without["changes_nearby"]) == ("CONTACT", ["stop"])
     assert [without[key] for key in ("work_energy", "difference", "allowed", "round_off", "truncation")] == 5 * [None]
-    tables = [sheet for sheet in sheets.of_comparison(comparison) if sheet.title.startswith("Reaction at the drive")]
+    tables = [sheet for sheet in tables_of(comparison) if sheet.title.startswith("Reaction at the drive")]
     assert [len(sheet.rows) for sheet in tables] == [2, 1]
     assert tables[0].rows[1][-1] == "contact or stop changes: stop"
-    pictures = reactions_drawn.of_comparison(comparison)
+    pictures = list(curves.reaction_figures(comparison))
     assert [picture.name for picture in pictures] == ["reaction-push"]  # a single station has no curve
     assert all(picture.png.startswith(b"\x89PNG") for picture in pictures)
 

@@ -6,15 +6,16 @@ import json
 import numpy as np
 import pytest
 
-from comparisons import documents, store
+from comparisons import store
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, Solvers, paired
+from comparisons.plain import text_of
 from tests.verdict.made_up import MadeUp
 
 
 def there_and_back(answer):
-    return store.unpacked(json.loads(documents.text(store.packed(answer))))
+    return store.unpacked(json.loads(text_of(store.packed(answer))))
 
 
 def test_an_answer_survives(hinge, right):

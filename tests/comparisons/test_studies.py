@@ -93,9 +93,9 @@ def test_every_cell_is_solved_as_often_as_asked_and_a_refusal_is_said():
             assert times.median > 0.0
     assert not table.unfinished
     result = result_of(table)
-    assert [row[-1] for row in result.sheets[0].rows].count("refused") == 3
-    assert sum("found nothing" in sentence for sentence in result.words) == 3
-    assert "i5-8500" in result.sheets[0].note
+    assert [row[-1] for row in result.tables[0].rows].count("refused") == 3
+    assert sum("found nothing" in sentence for sentence in result.sentences) == 3
+    assert "i5-8500" in result.tables[0].note
     # one solve warms up, and a refused cell is not tried again
     assert solvers.cprbm.solves == 1 + 2 * 7 + 3
 

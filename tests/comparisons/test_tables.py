@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from comparisons.formats import number, percent
-from comparisons.sheet import Sheet
-from comparisons.tables import drawn
+from comparisons.present.columns import Column, Table, table_of
+from comparisons.present.table import html_cells, screen_text, word_columns
 
-SHEET = Sheet(
+SHEET = Table(
     "Strip: press 20",
     ("probe", "unit", "CPRBM", "FEA", "exact (bending)", "difference", "u CPRBM", "u FEA", "says"),
     (
@@ -33,7 +33,7 @@ COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 
 
 def plain(sheet, width):
-    return COLOURS.sub("", drawn(sheet, width=width)).splitlines()
+    return COLOURS.sub("", screen_text(sheet, width=width)).splitlines()
 
 
 def tables(lines):
@@ -79,7 +79,7 @@ def test_every_part_is_aligned():
 
 def test_sentences_fold_between_words():
     claim = "displacement of B within 0.62 % of ANSYS, 80 elements per beam"
-    sheet = Sheet("Claims", ("claim", "theirs", "ours at worst"), ((claim, "0.620 %", "0.718 %"),))
+    sheet = Table("Claims", ("claim", "theirs", "ours at worst"), ((claim, "0.620 %", "0.718 %"),))
     lines = plain(sheet, 50)
     assert max(map(len, lines)) <= 50
     assert tables(lines) == 1
@@ -90,7 +90,7 @@ def test_sentences_fold_between_words():
 
 def test_a_name_longer_than_the_screen_is_told_whole():
     name = "x" * 60 + ".displacement"
-    lines = plain(Sheet("Long", ("probe", "CPRBM"), ((name, "1.2345"),)), 40)
+    lines = plain(Table("Long", ("probe", "CPRBM"), ((name, "1.2345"),)), 40)
     assert max(map(len, lines)) <= 40
     assert "1.2345" in "".join(lines)
     assert "".join(re.sub(r"[^x.a-z]", "", line.split("1.2345")[0]) for line in lines[4:]) == name
@@ -102,9 +102,53 @@ VALUES = st.floats(min_value=-1e9, max_value=1e9, allow_nan=False)
 @given(st.lists(st.tuples(VALUES, VALUES, st.floats(1e-300, 1.0)), min_size=1, max_size=4), st.integers(40, 120))
 def test_whatever_the_numbers_each_is_there_and_no_error_reads_as_nothing(rows, width):
     cells = tuple((f"probe{n}", number(a, 5), number(b, 5), percent(c)) for n, (a, b, c) in enumerate(rows))
-    lines = plain(Sheet("Any", ("probe", "CPRBM", "FEA", "difference"), cells), width)
+    lines = plain(Table("Any", ("probe", "CPRBM", "FEA", "difference"), cells), width)
     assert max(map(len, lines)) <= width
     for name, *texts in cells:
         found = [line for line in lines if line.split()[:1] == [name]]
         assert all(any(text in line for line in found) for text in texts)
     assert not any(re.search(r"(?<![\d.])0\.0+ %", line) for line in lines)
+
+
+CELLS = Table(
+    "",
+    ("probe", "difference", "value", "says", "N"),
+    (
+        ("a", "0.72 %", "(-1.2, 3)", "met", "-40"),
+        ("b", "0.0017 %", "-4.5", "not met", "7"),
+        ("c", "–", "max 5", "–", "open"),
+        ("d", "7.9e-13 %", "open", "met", "1.25"),
+    ),
+)
+
+
+def test_what_is_behind_the_point_has_the_same_room_in_a_column():
+    rows = html_cells(CELLS)
+    assert [row[1].before for row in rows] == ["0", "0", "–", "7"]
+    assert [row[1].behind for row in rows] == [".72 %", ".0017 %", "", ".9e-13 %"]
+    assert [row[1].room for row in rows] == [8, 8, 0, 8]
+    assert [(row[4].before, row[4].behind, row[4].room) for row in rows] == [
+        ("−40", "", 3),
+        ("7", "", 3),
+        ("open", "", 0),
+        ("1", ".25", 3),
+    ]
+
+
+def test_columns_of_words_and_of_vectors_are_left_whole():
+    assert word_columns(CELLS) == [True, False, False, True, False]
+    rows = html_cells(CELLS)
+    assert [row[2].before for row in rows] == ["(−1.2, 3)", "−4.5", "max 5", "open"]
+    assert all(row[2].room == row[3].room == 0 for row in rows)
+    assert [row[3].text for row in rows] == ["met", "not met", "–", "met"]
+
+
+def test_a_column_without_a_value_is_left_out_and_a_missing_value_is_a_dash():
+    columns = [
+        Column("N", lambda item: item[0]),
+        Column("IPOPT", lambda item: None),
+        Column("ours", lambda item: item[1], lambda value: f"{value:.1f}"),
+    ]
+    assert table_of("ratios", columns, [(10, 1.3), (20, None)], "medians") == Table(
+        "ratios", ("N", "ours"), (("10", "1.3"), ("20", "–")), "medians"
+    )

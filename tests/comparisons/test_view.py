@@ -14,13 +14,12 @@ from PIL import Image
 import cprbm
 from comparisons import cases
 from comparisons.cli.main import run
+from comparisons.present import animation, picture, space
+from comparisons.present.picture import bounds_of, views_of
+from comparisons.present.strips import SECTIONS, with_stresses
+from comparisons.present.vtu import ACROSS, beam_block, force_block, obstacle_block
 from comparisons.starting.present import trouble_with
-from comparisons.viewing import moved, shown, space
-from comparisons.viewing.animated import animation
-from comparisons.viewing.frames import bounds_of, frames_of
-from comparisons.viewing.solids import ACROSS, beams, contact_forces, obstacles
-from comparisons.viewing.strips import SECTIONS, with_stresses
-from cprbm_scene import CircleContact, FunctionContact, HalfPlaneContact, LineContact
+from cprbm_scene import CircleContact, FunctionContact, HalfPlaneContact, LineContact, StationAnswer
 
 needs_meshio = pytest.mark.skipif(bool(trouble_with("meshio")), reason="meshio, of the extra 'view', is not there")
 needs_pyvista = pytest.mark.skipif(bool(trouble_with("pyvista")), reason="pyvista, of the extra 'view', is not there")
@@ -39,8 +38,8 @@ def tapered():
 
 
 def written(asked, tmp_path, name, quantity="bending_stress"):
-    kind = shown.kind_of(tmp_path / name)
-    return dict(shown.files(*asked, tmp_path / name, kind, quantity))
+    kind = animation.kind_of(tmp_path / name)
+    return dict(animation.files(*asked, tmp_path / name, kind, quantity))
 
 
 def volume(places, cells):
@@ -62,13 +61,13 @@ def test_the_cells_of_beams_have_the_beams_volume(hinge):
         math.pi * math.dist(beam.curve.center, beam.curve.start) * beam.thickness * beam.width
         for beam in scene.beams.values()
     )
-    frames = frames_of(scene, answer)
-    block = beams(frames[0])
+    views = views_of(scene, answer)
+    block = beam_block(views[0])
     assert len(block.cells) == 2 * (SECTIONS - 1) * ACROSS
     # chords in the place of arcs that turn by δ = π/240: sin δ/δ of the area, and as much again for the solver's line
     assert volume(block.places, block.cells) == pytest.approx(expected, rel=2.0 * (math.pi / 240) ** 2 / 6.0)
     # its places at 19 links, two to a link, and what bends between them where a contact presses
-    last = beams(frames[-1])
+    last = beam_block(views[-1])
     assert volume(last.places, last.cells) == pytest.approx(expected, rel=1e-3)
 
 
@@ -81,7 +80,7 @@ def test_a_beam_that_varies_has_the_volume_of_its_pieces(tapered):
         t, w = (size(np.array([a, 0.5 * (a + b), b])) for size in (beam.thickness_at, beam.width_at))
         expected += (b - a) / 6.0 * float(np.array([1.0, 4.0, 1.0]) @ (t * w))
     expected *= math.dist(beam.curve.start, beam.curve.end)
-    block = beams(frames_of(scene, answer)[-1])
+    block = beam_block(views_of(scene, answer)[-1])
     # knots between two sections are cut off
     assert volume(block.places, block.cells) == pytest.approx(expected, rel=1e-3)
 
@@ -89,7 +88,7 @@ def test_a_beam_that_varies_has_the_volume_of_its_pieces(tapered):
 def test_edges_bear_the_stress_that_the_answer_states(hinge):
     scene, answer = hinge
     station = answer.stations[-1]
-    values = beams(frames_of(scene, answer)[-1]).values
+    values = beam_block(views_of(scene, answer)[-1]).values
     stress = values["bending_stress"].reshape(2, SECTIONS, ACROSS + 1, 2)
     for number, name in enumerate(scene.beams):
         stated = station.values[f"{name}.bending_stress"]
@@ -105,7 +104,7 @@ def test_edges_bear_the_stress_that_the_answer_states(hinge):
 
 def test_displacements_are_those_of_the_points(hinge):
     scene, answer = hinge
-    moved_by = beams(frames_of(scene, answer)[-1]).values["displacement"].reshape(2, SECTIONS, ACROSS + 1, 2, 3)
+    moved_by = beam_block(views_of(scene, answer)[-1]).values["displacement"].reshape(2, SECTIONS, ACROSS + 1, 2, 3)
     middle = moved_by[:, :, ACROSS // 2, 0, :2]
     for number, (beam, point) in enumerate((("beam1", "B"), ("beam2", "D"))):
         end = scene.beams[beam].end
@@ -116,16 +115,16 @@ def test_displacements_are_those_of_the_points(hinge):
 
 def test_contact_forces_sum_to_the_probe(hinge):
     scene, answer = hinge
-    frame = frames_of(scene, answer)[-1]
+    view = views_of(scene, answer)[-1]
     (stated,) = answer.stations[-1].values["contact.force"]
-    assert [push.on for push in frame.pushes] == ["beam1", "beam2"]
-    for push in frame.pushes:
+    assert [push.on for push in view.pushes] == ["beam1", "beam2"]
+    for push in view.pushes:
         assert math.hypot(*push.resultant) == pytest.approx(stated, rel=1e-9)
-    both = contact_forces(frame).values["contact_force"]
+    both = force_block(view).values["contact_force"]
     assert np.abs(both.sum(axis=0)).max() < 1e-9 * stated
-    assert contact_forces(frames_of(scene, answer)[0]) is None  # nothing touches yet
+    assert force_block(views_of(scene, answer)[0]) is None  # nothing touches yet
     # both press at the edges, which are in one place
-    first, second = (push.middle for push in frame.pushes)
+    first, second = (push.middle for push in view.pushes)
     assert math.dist(first, second) < 0.01 * scene.beams["beam1"].thickness
 
 
@@ -151,7 +150,7 @@ def test_an_animation_rests_at_its_end(kind):
         picture = Image.new("RGB", (31, 17), "white")
         picture.putpixel((5 + 7 * place, 9), (200, 10, 10))
         picture.save(stream, "PNG")
-    made = Image.open(io.BytesIO(animation([stream.getvalue() for stream in streams], kind)))
+    made = Image.open(io.BytesIO(animation.animation([stream.getvalue() for stream in streams], kind)))
     assert made.n_frames == 3
     stays = []
     for place in range(3):
@@ -174,13 +173,13 @@ def test_a_series_can_be_read_back(hinge, tmp_path):
     assert all((tmp_path / file).is_file() for *_, file in listed)
     assert listed[-1][2] == "contacts"
     mesh = meshio.read(tmp_path / "h" / "beams-0009.vtu")
-    block = beams(frames_of(scene, answer)[-1])
+    block = beam_block(views_of(scene, answer)[-1])
     assert np.array_equal(mesh.points, block.places)
     assert np.array_equal(mesh.cells_dict["hexahedron"], block.cells)
     for name, values in block.values.items():
         assert np.array_equal(mesh.point_data[name], values)
     forces = meshio.read(tmp_path / listed[-1][3]).point_data["contact_force"]
-    assert forces.shape == (len(contact_forces(frames_of(scene, answer)[-1]).cells), 3)
+    assert forces.shape == (len(force_block(views_of(scene, answer)[-1]).cells), 3)
     assert written(hinge, tmp_path, "h.pvd") == written(hinge, tmp_path, "h.pvd")
 
 
@@ -193,7 +192,7 @@ def test_what_reads_vtk_files_sees_the_same_volume(tapered, tmp_path):
     (tmp_path / "t.vtu").write_bytes(content)
     grid = pyvista.read(tmp_path / "t.vtu")
     sizes = grid.compute_cell_sizes()["Volume"]
-    block = beams(frames_of(*tapered)[-1])
+    block = beam_block(views_of(*tapered)[-1])
     assert sizes.min() > 0.0
     # where the width varies a cell is no prism
     assert sizes.sum() == pytest.approx(volume(block.places, block.cells), rel=1e-3)
@@ -266,7 +265,7 @@ BELOW = [
 
 @pytest.mark.parametrize("contact", BELOW, ids=lambda contact: f"{contact.kind}")
 def test_what_is_rigid_lies_behind_its_edge(contact):
-    outline, solid, goes_round = moved._outline(contact, 3.0, 0.11)
+    outline, solid, goes_round = picture._outline(contact, 3.0, 0.11)
     assert not goes_round
     assert outline[:, 1] == pytest.approx(0.0, abs=1e-15)
     assert solid[:, 1] == pytest.approx(-0.11, rel=1e-12)
@@ -276,26 +275,29 @@ def test_a_function_of_y_is_rigid_on_its_own_side():
     contact = FunctionContact(
         kind="beam-function", axis="y", coefficients=(0.3, 0.0), range=(0.0, 0.9), side="above", **RIGID
     )  # fmt: skip
-    outline, solid, _ = moved._outline(contact, 3.0, 0.11)
+    outline, solid, _ = picture._outline(contact, 3.0, 0.11)
     assert outline[:, 0] == pytest.approx(0.3)
     assert solid[:, 0] == pytest.approx(0.19)  # the beam lies where x is larger
 
 
-def test_a_body_carries_what_is_fixed_to_it():
-    motion = moved.Motion(np.array([0.3, 0.1]), np.array([0.02, -0.07]), 0.5 * math.pi)
+def test_a_body_carries_its_points_and_edges():
+    scene = cases.opened("hinge")
+    (x, y), *_ = scene.bodies["BD"].points.values()
+    station = StationAnswer("load", 1.0, {}, {}, {}, None, bodies={"BD": np.array([0.02, -0.07, 0.5 * math.pi])})
     # a quarter turn about the first point takes (0.7, 0) beside it to (0, 0.7)
-    assert motion.carried(np.array([[1.0, 0.1]]))[0] == pytest.approx([0.32, 0.73])
+    place = picture.carried(scene, station, "BD", np.array([[x + 0.7, y]]))[0]
+    assert place == pytest.approx([x + 0.02, y - 0.07 + 0.7])
     contact = CircleContact(kind="beam-circle", center=(0.5, 0.4), radius=0.13, **RIGID)
-    outline, solid, goes_round = moved._outline(contact, 1.0, 0.1)
+    outline, solid, goes_round = picture._outline(contact, 1.0, 0.1)
     assert goes_round
-    assert np.hypot(*(motion.carried(outline) - motion.carried(solid)).T) == pytest.approx(0.13)
+    assert np.hypot(*(outline - solid).T) == pytest.approx(0.13)
 
 
 def test_a_wrapped_circle_has_its_cylinders_volume():
     scene = with_stresses(cases.opened("wrapped"))
     answer = cprbm.answer(scene, cprbm.Settings(links=10))
     (contact,) = scene.contacts.values()
-    block = obstacles(frames_of(scene, answer)[0])
+    block = obstacle_block(views_of(scene, answer)[0])
     cylinder = math.pi * contact.radius**2 * scene.beams[contact.beam].width
     corners = block.places[block.cells]
     assert corners[:, 4:, 2].min() > corners[:, :4, 2].max()
@@ -305,8 +307,8 @@ def test_a_wrapped_circle_has_its_cylinders_volume():
 
 def test_colours_span_what_is_shown(hinge):
     scene, answer = hinge
-    frames = frames_of(scene, answer)
+    views = views_of(scene, answer)
     largest = max(np.abs(answer.stations[-1].values[f"{beam}.bending_stress"]).max() for beam in scene.beams)
-    bounds = bounds_of(scene, frames, "bending_stress")
+    bounds = bounds_of(scene, views, "bending_stress")
     assert (bounds.least, bounds.most) == (-largest, largest)
-    assert bounds_of(scene, frames, "combined_stress").least == 0.0
+    assert bounds_of(scene, views, "combined_stress").least == 0.0

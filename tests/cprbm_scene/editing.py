@@ -6,7 +6,7 @@ import numpy as np
 
 from comparisons import cases
 from cprbm_scene import Beam, FreeEnd, SceneError, scene_from
-from cprbm_scene.closest import closest_pair
+from cprbm_scene.clearance import beam_gap
 from cprbm_scene.curves import least
 from cprbm_scene.geometry import points_on
 
@@ -79,9 +79,9 @@ def beam_on(curve, thickness):
 
 def line_distance(first, second, near=0.0):
     """Least distance of two neutral lines, m, that is ``near`` a value; a distance far above is not refined."""
-    return near + closest_pair(beam_on(first, near), beam_on(second, near), thick=near > 0.0).gap
+    return near + beam_gap(beam_on(first, near), beam_on(second, near), thick=near > 0.0).gap
 
 
 def distance_to(curve, point):
     """Least distance of a neutral line from a point, m."""
-    return least(lambda u: np.hypot(*(points_on(curve, u) - point).T), np.linspace(0.0, 1.0, 2001))
+    return least(lambda u: np.hypot(*(points_on(curve, u) - point).T), np.linspace(0.0, 1.0, 2001))[0]

@@ -7,7 +7,7 @@ from contextlib import suppress
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cprbm_scene import Scene, SceneError, checks, read, scene_from
+from cprbm_scene import Scene, SceneError, read, reading, scene_from
 from tests.cprbm_scene.conftest import HINGE as FILE
 from tests.cprbm_scene.editing import HINGE
 from tests.cprbm_scene.fuzzing import followed
@@ -192,7 +192,7 @@ def test_a_planted_fault_is_seen(monkeypatch):
         raise KeyError("planted")
 
     assert followed(FILE)[1] == ""
-    monkeypatch.setattr(checks, "_CHECKS", (faulty,))
+    monkeypatch.setattr(reading, "_CHECKS", (faulty,))
     assert followed(FILE)[1] == "KeyError: 'planted'"
 
 

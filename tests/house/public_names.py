@@ -86,8 +86,9 @@ DOCUMENTED = {
     "comparisons.case": ("Comparison", "Verdict"),
     "comparisons.verdict.bounds": ("Bounds",),
     "comparisons.verdict.rows": ("Row",),
+    "comparisons.sweeps.running": ("Sweep",),
     "comparisons.reactions": ("Absence", "WorkEnergyReaction"),
-    "comparisons.tidy": ("Number",),
+    "comparisons.present.csv_table": ("Number",),
     "comparisons.audit": ("audit",),
 }
 """Names on the pages of ``docs/api`` but not in ``__all__`` of a package, by module."""

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
-from comparisons.documents import Plain
 from comparisons.formats import number
-from comparisons.sheet import Sheet
-from comparisons.studies.result import StudyResult
+from comparisons.plain import Plain
+from comparisons.present.columns import Section, Table
 from tests.relations.measured import TARGET
 from tests.relations.relations import RELATIONS
 from tests.relations.study import Relations, Seen
@@ -15,16 +14,10 @@ from tests.relations.study import Relations, Seen
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
 
 
-def result_of(found: Relations) -> StudyResult:
+def result_of(found: Relations) -> Section:
     """Result of the measurements so far."""
-    return StudyResult(
-        name="relations",
-        title="What must not change an answer",
-        words=_words(found),
-        sheets=tuple(sheet for sheet in (_worst(found), _broken(found)) if sheet.rows),
-        pictures=(),
-        data=_data(found),
-    )
+    tables = tuple(table for table in (_worst(found), _broken(found)) if table.rows)
+    return Section("What must not change an answer", _words(found), (), tables, "relations", _data(found))
 
 
 def _words(found: Relations) -> tuple[str, ...]:
@@ -38,13 +31,13 @@ def _words(found: Relations) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def _worst(found: Relations) -> Sheet:
+def _worst(found: Relations) -> Table:
     body = []
     for relation in RELATIONS:
         for solver, name in _NAMES.items():
             if seen := found.of(relation.name, solver):
                 body.append((relation.name, name, str(len(seen)), *_figures(seen[0])))
-    return Sheet(
+    return Table(
         "Worst violations",
         ("relation", "solver", "images", "worst", "allowed", "case", "what", "probe", "at"),
         tuple(body),
@@ -53,13 +46,13 @@ def _worst(found: Relations) -> Sheet:
     )
 
 
-def _broken(found: Relations) -> Sheet:
+def _broken(found: Relations) -> Table:
     body = [
         (each.violation.relation, _NAMES[each.solver], *_figures(each), each.violation.worst.why)
         for each in found.broken
     ]
     head = ("relation", "solver", "worst", "allowed", "case", "what", "probe", "at", "")
-    return Sheet("More than they may", head, tuple(body), "Images whose answer is another.")
+    return Table("More than they may", head, tuple(body), "Images whose answer is another.")
 
 
 def _figures(seen: Seen) -> tuple[str, ...]:

@@ -18,7 +18,8 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
 
-from comparisons.executor import COLLECTED, ONE_THREAD, interrupts_ignored
+from comparisons.executor import COLLECTED, interrupts_ignored
+from comparisons.threads import ONE_THREAD
 from tests.robustness.apart import Crashed, End, Limits, apart
 
 A = TypeVar("A")

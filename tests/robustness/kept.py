@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from comparisons.documents import Plain
+from comparisons.plain import Plain
 from comparisons.provenance import program
 from tests.robustness.outcomes import Outcome, packed, unpacked
 

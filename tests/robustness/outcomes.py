@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from enum import Enum
 from typing import Any
 
-from comparisons.documents import Plain, plain
+from comparisons.plain import Plain, plain
 
 
 class Way(Enum):

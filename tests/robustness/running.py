@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
-from comparisons.documents import Plain
 from comparisons.pairing import Solvers
+from comparisons.plain import Plain
 from comparisons.writing import write
 from cprbm_scene import Scene, SceneError, scene_from
 from tests.robustness.apart import Crashed, End, Limits, OutOfTime, Returned, apart

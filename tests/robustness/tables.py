@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent
-from comparisons.sheet import Sheet
+from comparisons.plain import Plain, plain
+from comparisons.present.columns import Table
 from tests.robustness.outcomes import Outcome, Way, in_bending, packed, shares, totals
 from tests.robustness.running import Stress
 
@@ -50,7 +50,7 @@ def document(there: Stress) -> Plain:
     }
 
 
-def sheets_of(there: Stress) -> tuple[Sheet, ...]:
+def sheets_of(there: Stress) -> tuple[Table, ...]:
     """How many ended in which way; what came nearest to another; what the scenes have; every one that failed."""
     outcomes = list(there.outcomes.values())
     every = max(len(outcomes), 1)
@@ -69,14 +69,14 @@ def sheets_of(there: Stress) -> tuple[Sheet, ...]:
     )
     strata = tuple((feature, percent(share)) for feature, share in shares(outcomes).items())
     sheets = [
-        Sheet(f"{len(outcomes)} scenes of seed {there.plan.seed}", ("ended", "scenes", "share"), ways),
-        Sheet("The largest of", ("what", "", "scene"), worst, note="The first four of the scenes that agree."),
-        Sheet(
+        Table(f"{len(outcomes)} scenes of seed {there.plan.seed}", ("ended", "scenes", "share"), ways),
+        Table("The largest of", ("what", "", "scene"), worst, note="The first four of the scenes that agree."),
+        Table(
             "What the scenes have", ("feature", "share"), strata, note="What only answers show, of those that agree."
         ),
     ]
     if others:
-        sheets.append(Sheet("Ended otherwise", ("scene", "ended", "why", "file"), others))
+        sheets.append(Table("Ended otherwise", ("scene", "ended", "why", "file"), others))
     return tuple(sheets)
 
 

@@ -14,10 +14,10 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.converging.families import Convergence, Family, converged
-from comparisons.converging.tables import beside, between
 from comparisons.crew import ALONE
 from comparisons.pairing import Solvers
+from comparisons.studies.convergence_tables import pairs_of
+from comparisons.studies.families import Convergence, Family, converged
 from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Scene
 from tests.references import hinge as exact
@@ -140,9 +140,10 @@ def test_the_limits_of_the_wrapped_cantilever_are_the_exact_ones(wrapped):
 
 
 def test_the_limits_of_the_gripper_meet(gripper):
-    for cprbm, fea in beside(gripper):
+    for pair in pairs_of(gripper):
+        cprbm = pair.cprbm
         if cprbm.probe.quantity in ("displacement", "force"):
-            apart, _ = between(cprbm, fea)
+            apart, _ = pair.apart
             assert apart <= (2e-4 if cprbm.probe.quantity == "displacement" else 5e-4) * cprbm.scale, cprbm.probe.name
 
 

@@ -5,15 +5,19 @@ from math import hypot
 
 import pytest
 
-from comparisons import figures
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, cprbm_answer, paired
+from comparisons.present.curves import curve_figures
 from comparisons.quantities import load_unit
 from comparisons.verdict.scales import natural_value
 from comparisons.verdict.words import Word
 from tests.cprbm.driven import driven_hinge
 from tests.together.driven import GAP, gripper_like, punched, snapping
+
+
+def curves_of(compared):
+    return curve_figures(compared.scene, compared.runs.reference, compared.runs.cprbm[0])
 
 
 @pytest.fixture(scope="module")
@@ -68,11 +72,13 @@ def test_units_and_natural_scales_of_what_stages_step(scene):
     assert natural == pytest.approx([ell, 1.0, EI / ell**2], rel=1e-12)
 
 
-def test_a_figure_has_one_axis_of_load(scene):
-    """Stages that step different things are not drawn over one axis; the last one's is drawn."""
+def test_curves_against_different_loads_are_figures_of_their_own(scene):
     found = compare(scene, paired(scene, Choices(kinematics="bending", links=8, elements=8), Solvers()))
-    pictures = {picture.name: picture for picture in figures.of_comparison(found)}
-    assert "against pull" in pictures["rotation"].caption
+    names = [figure.name for figure in curves_of(found)]
+    stations = {}
+    for stage in scene.stages:
+        stations.setdefault(stage.steps, set()).update(stage.stations)
+    assert names == [f"path-{steps}" for steps, values in stations.items() if len(values) > 1]
 
 
 def test_a_driven_circle_presses_a_beam_and_lets_it_go():

@@ -14,7 +14,7 @@ from comparisons.cli.main import run
 from cprbm_scene import Ending, SceneError, scene_from
 from fea_reference import solid
 from tests.cprbm_scene.editing import edited, two_lines
-from tests.cprbm_scene.test_pins import LINKAGE
+from tests.cprbm_scene.scenes import LINKAGE
 from tests.together.features import CIRCLE, held_by, probes
 
 HINGE = Path(cases.__file__).parent / "hinge.toml"

@@ -5,9 +5,10 @@ import pytest
 
 from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.documents import comparison
 from comparisons.pairing import Solvers, paired, with_solid
-from comparisons.third import of_thirds, sentence, thirds_of
+from comparisons.present.difference_tables import solid_table
+from comparisons.present.json_document import comparison
+from comparisons.third import sentence, thirds_of
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
 
 
@@ -37,7 +38,7 @@ def test_the_stress_of_a_straight_cantilever_is_the_beams(thick):
 
 
 def test_three_columns_are_told(thick):
-    sheet = of_thirds(thick)
+    sheet = solid_table(thick)
     assert {"CPRBM", "FEA", "solid"} <= set(sheet.headers)
     assert len(sheet.rows) == 2
     assert "bending alone" in sentence(thick)

@@ -74,7 +74,7 @@ def test_a_station_with_a_problem_is_not_reached(hinge, solver, change, problem)
     pair[solver] = altered(pair[solver], change, 0.603)
     found = compared(asked, pair["cprbm"], pair["fea"])
     assert (word_of(found), found.verdict.completed) == ("UNDECIDED RUN_ENDED", False)
-    assert found.verdict.sentence.count(f"at load 0.603 {problem}") == 1
+    assert found.verdict.sentence.count(f"at load 0.603 N·m {problem}") == 1
     assert len({row.station for row in found.rows}) == 9
 
 
@@ -90,8 +90,8 @@ def repeated(scene, choices):
 @pytest.mark.parametrize(
     ("cprbm", "problem", "stations"),
     [
-        (replace(C, until=7), "it has no station load 0.536 (and 2 more)", 7),
-        (replace(C, until=0), "it has no station load 0.067 (and 9 more)", 0),
+        (replace(C, until=7), "it has no station load 0.536 N·m (and 2 more)", 7),
+        (replace(C, until=0), "it has no station load 0.067 N·m (and 9 more)", 0),
         (ended, "it ended early: The step is too small.", 10),
         (ending(C, 4), "it ended early: It stuck.", 4),
         (repeated, "it has 11 stations where 10 were asked", 10),

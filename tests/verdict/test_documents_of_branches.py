@@ -9,15 +9,19 @@ from math import radians
 
 import pytest
 
-from comparisons import documents, sheets, store
+from comparisons import store
 from comparisons.choices import Choices
 from comparisons.claims import standings
-from comparisons.converging import tables
-from comparisons.converging.critical import critical_families
-from comparisons.converging.families import converged
 from comparisons.crew import ALONE
 from comparisons.pairing import Solvers
+from comparisons.plain import text_of
+from comparisons.present import json_document
+from comparisons.present.answer_tables import answer_tables
+from comparisons.studies import convergence_tables as tables
+from comparisons.studies.critical_families import critical_families
+from comparisons.studies.families import converged
 from cprbm_scene import Claim, Loss
+from tests.tables import tables_of
 from tests.verdict.comparing import compared
 from tests.verdict.jumping import BACK, FORWARD, Jumping
 from tests.verdict.made_up import MadeUp
@@ -29,7 +33,7 @@ PASSING = Jumping("cprbm", over=0.29)
 
 def test_the_json_marks_every_row_and_holds_the_critical_points(crank):
     """25° lies within 0.3° of the planted 25.3°, and takes no part."""
-    data = json.loads(documents.text(documents.comparison(compared(crank, C, F))))
+    data = json.loads(text_of(json_document.comparison(compared(crank, C, F))))
     assert {row["branch"] for row in data["rows"]} == {0, 1, 2}
     without = [row for row in data["rows"] if row["verdict"] is None]
     assert {(row["stage"], round(row["station"], 4), row["uncertainty"]["cprbm"]) for row in without} == {
@@ -43,21 +47,21 @@ def test_the_json_marks_every_row_and_holds_the_critical_points(crank):
     assert [each["verdict"] for each in (forward, back, *data["branches"])] == ["AGREE"] * 6
     own = data["solvers"]["cprbm"]["critical"]
     assert [each["loss"] for each in own] == ["fold", "fold"]
-    assert documents.solution(crank, C(crank, Choices()))["solvers"]["cprbm"]["critical"] == own
+    assert json_document.solution(crank, C(crank, Choices()))["solvers"]["cprbm"]["critical"] == own
 
 
 def test_a_stop_releases_nothing(crank):
     found = compared(crank, *STOPPING)
-    assert documents.comparison(found)["critical"][0]["released"] == {"cprbm": None, "fea": None}
-    assert sheets.of_comparison(found)[0].title.startswith("Critical values")
+    assert json_document.comparison(found)["critical"][0]["released"] == {"cprbm": None, "fea": None}
+    assert any(table.title.startswith("Critical values") for table in tables_of(found))
 
 
 def test_without_critical_points_nothing_is_said_of_branches(hinge):
     found = compared(hinge, MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4))
-    data = documents.comparison(found)
+    data = json_document.comparison(found)
     assert (data["critical"], [each["verdict"] for each in data["branches"]]) == ([], ["AGREE"])
     assert "ranch" not in found.verdict.sentence
-    assert not any("ritical" in sheet.title or "ranch" in sheet.title for sheet in sheets.of_comparison(found))
+    assert not any("ritical" in sheet.title or "ranch" in sheet.title for sheet in tables_of(found))
 
 
 def test_an_answer_survives_the_archive_with_its_branches(crank):
@@ -71,7 +75,7 @@ def test_an_answer_survives_the_archive_with_its_branches(crank):
 def test_a_passed_critical_point_is_in_the_json_the_table_and_the_archive(crank):
     scene = crank.model_copy(update={"stages": crank.stages[:1]})
     found = compared(scene, PASSING, STOPPING[1])
-    data = documents.comparison(found)
+    data = json_document.comparison(found)
     (end,) = data["solvers"]["cprbm"]["gone_over"]
     assert (end["stage"], end["loss"], end["what"], end["turned"]) == ("forward", "fold", None, 0.29)
     assert end["value"] == pytest.approx(FORWARD, abs=1e-3)
@@ -79,9 +83,9 @@ def test_a_passed_critical_point_is_in_the_json_the_table_and_the_archive(crank)
     assert data["solvers"]["fea"]["gone_over"] == []
     assert data["critical"][0]["gone_over"]["cprbm"] == 0.29
     answer = found.runs.cprbm[0]
-    packed = json.loads(documents.text(store.packed(answer)))
+    packed = json.loads(text_of(store.packed(answer)))
     assert store.unpacked(packed).gone_over == answer.gone_over
-    (sheet,) = (one for one in sheets.of_answer(scene, answer) if one.title.startswith("Critical values"))
+    (sheet,) = (one for one in answer_tables(scene, answer) if one.title.startswith("Critical values"))
     assert "0.290 rad" in sheet.rows[0][3]
     del packed["gone_over"]  # an archive of before there was such a record
     assert store.unpacked(packed).gone_over == ()
@@ -97,7 +101,7 @@ def test_a_claim_of_a_critical_value_is_compared_with_the_cprbms(crank):
     assert [each.holds for each in found] == [False, True, True]
     assert found[0].difference == pytest.approx((70.4 + 0.0057296 - 35.5) / 35.5, rel=1e-6)
     assert [each.stations for each in found] == [1, 1, 2]
-    forward, back = documents.comparison(comparison)["critical"]
+    forward, back = json_document.comparison(comparison)["critical"]
     assert (forward["claim"], forward["claim_value"], forward["claim_met"]) == (far.bound, far.value, False)
     assert (back["claim"], back["claim_value"]) == (0.01, None)
 
@@ -109,7 +113,7 @@ def test_a_claimed_value_of_a_probe_is_compared_with_the_cprbms(crank):
         for value, bound in ((0.0, 1e-6), (0.1, 0.5))
     )
     comparison = compared(crank.model_copy(update={"claims": claims}), C, F)
-    sheet = next(each for each in sheets.of_comparison(comparison) if each.title == "Claims of the source")
+    sheet = next(each for each in tables_of(comparison) if each.title == "Claims of the source")
     assert [row[-1] for row in sheet.rows] == ["met", "not met"]
     assert sheet.rows[1][1:3] == ("0.100 ± 50.0 %", "100 %")
 
@@ -123,7 +127,7 @@ def test_critical_values_converge_though_the_branches_end(crank):
         (solver, "forward") for solver in ("cprbm", "fea", "fea")
     ]
     assert entries[0]["limit"] == pytest.approx(FORWARD, abs=1e-8)
-    (sheet,) = tables.sheets_of(found)
+    (sheet,) = tables.convergence_tables(found)
     assert len(sheet.rows) == 3
     assert any("within bending" in sentence for sentence in tables.sentences_of(found))
 

@@ -9,13 +9,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons import documents, sheets
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers, solvers_of
+from comparisons.plain import text_of
+from comparisons.present import json_document
 from comparisons.studies import calibration as study
 from comparisons.studies.calibration_result import result_of
 from comparisons.verdict.calibration import EXACT_FACTOR, error_ratios, tally
 from cprbm_scene import Ending, Stage
+from tests.tables import tables_of
 from tests.verdict.comparing import compared, row_of, word_of
 from tests.verdict.made_up import MadeUp, with_value
 
@@ -45,8 +47,8 @@ def test_without_an_exact_answer_nothing_is_said(hinge, exact):
     assert found.runs.exact is None
     assert all(row.exact is None and row.true_errors is None for row in found.rows)
     assert "exact" not in found.verdict.sentence
-    assert "exact" not in documents.comparison(found)["solvers"]
-    assert not any("exact" in header for sheet in sheets.of_comparison(found) for header in sheet.headers)
+    assert "exact" not in json_document.comparison(found)["solvers"]
+    assert not any("exact" in header for sheet in tables_of(found) for header in sheet.headers)
 
 
 def short(scene, choices):
@@ -142,7 +144,7 @@ def test_no_error_is_no_ratio(hinge, error):
 
 
 def test_the_json_has_the_value_and_both_true_errors(hinge):
-    data = json.loads(documents.text(documents.comparison(beside(hinge, replace(EXACT, until=9)))))
+    data = json.loads(text_of(json_document.comparison(beside(hinge, replace(EXACT, until=9)))))
     assert data["solvers"]["exact"]["stations"] == 9
     rows = {(row["probe"], row["station"]): row for row in data["rows"]}
     row, missing = rows["BD.rotation", 0.603], rows["BD.rotation", 0.67]
@@ -154,8 +156,8 @@ def test_the_json_has_the_value_and_both_true_errors(hinge):
 
 
 def test_the_tables_show_the_exact_value_and_errors_far_beyond(hinge):
-    found = {sheet.title: sheet for sheet in sheets.of_comparison(beside(hinge, replace(EXACT, stiffness=1.02)))}
-    assert any("exact (bending)" in sheet.headers for sheet in found.values())
+    found = {sheet.title: sheet for sheet in tables_of(beside(hinge, replace(EXACT, stiffness=1.02)))}
+    assert any("exact" in sheet.headers for sheet in found.values())
     assert all(len(row) == len(sheet.headers) for sheet in found.values() for row in sheet.rows)
     errors = found["True errors in bending, beside the exact answer"]
     assert {row[4] for row in errors.rows} == {row[8] for row in errors.rows} == {"far beyond"}
@@ -180,18 +182,18 @@ def measured(hinge, exact):
 
 def test_the_study_says_whose_statements_hold(hinge):
     found = result_of(measured(hinge, EXACT))
-    (case,) = json.loads(documents.text(found.data))["cases"]
+    (case,) = json.loads(text_of(found.data))["cases"]
     assert [(trial["links"], trial["elements"]) for trial in case["trials"]] == [(17, 40), (40, 80)]
     for mine in (mine for trial in case["trials"] for mine in trial["solvers"].values()):
         assert (mine["within"], mine["share"]) == (mine["rows"], 1.0)
         assert mine["rows"] > 50
         assert 1.0 <= mine["stated_over_true"] <= 10.0
-    assert found.pictures[0].svg.startswith(b"<?xml")
-    assert all(len(row) == len(sheet.headers) for sheet in found.sheets for row in sheet.rows)
-    assert "broken by the CPRBM on hinge" in result_of(measured(hinge, replace(EXACT, stiffness=1.02))).words[0]
+    assert found.figures[0].svg.startswith(b"<?xml")
+    assert all(len(row) == len(sheet.headers) for sheet in found.tables for row in sheet.rows)
+    assert "broken by the CPRBM on hinge" in result_of(measured(hinge, replace(EXACT, stiffness=1.02))).sentences[0]
     silent = result_of(measured(hinge, nobody))
-    assert (silent.pictures, silent.sheets) == ((), ())
-    assert silent.words == ("hinge: an exact answer is known for no station. It is made up.",)
+    assert (silent.figures, silent.tables) == ((), ())
+    assert silent.sentences == ("hinge: an exact answer is known for no station. It is made up.",)
 
 
 def test_the_study_is_a_command(monkeypatch, capsys, hinge, tmp_path):

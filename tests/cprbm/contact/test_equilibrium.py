@@ -11,12 +11,12 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from cprbm.contact import new_counters, settle, sides_at_rest, taken
+from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.contact_points import touched_equilibrium
 from cprbm.equilibrium.contact_set import Contacts
 from cprbm.equilibrium.factors import factorise
 from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.system import rest_state, system_of
-from cprbm.equilibrium.touching import contact_terms, touching
 from cprbm_scene import read
 from tests.cprbm.contact.workshop import FINDING, geometry_of
 
@@ -93,8 +93,8 @@ def residual(system, geometry, state, places, closed):
     gaps = np.empty(len(closed))
     settle(state.z, geometry.arrays, places, gaps, gaps.copy(), new_counters(), FINDING)
     _, gradient = factorise(system, state)
-    terms = contact_terms(geometry, state.z, places, closed)
-    return np.concatenate([gradient + terms.gradient, -terms.values])
+    columns, pressing = contact_terms(geometry, state.z, places, closed)
+    return np.concatenate([gradient + pressing, -columns.values])
 
 
 @pytest.mark.parametrize(
@@ -120,10 +120,10 @@ def test_solutions_and_lost_directions_are_those_of_the_dense_matrix(name, stati
     matrix = np.array([(at(step * unit) - at(-step * unit)) / (2.0 * step) for unit in units])
     np.testing.assert_allclose(matrix, matrix.T, atol=1e-6 * np.abs(matrix).max())
     residual(system, geometry, state, places, closed)
-    factors = touching(factorise(system, state)[0], contact_terms(geometry, state.z, places, closed))
+    factors, _ = factorise(system, state, columns=contact_terms(geometry, state.z, places, closed)[0])
     load = np.zeros(size + len(own))
     load[kept] = np.random.default_rng(2).normal(size=len(kept))
-    found = np.concatenate(factors.solve(load[:size], load[size:]))[kept]
+    found = np.concatenate(factors.solve_both(load[:size], load[size:]))[kept]
     expected = np.linalg.solve(matrix, load[kept])
     np.testing.assert_allclose(found, expected, atol=1e-5 * np.abs(expected).max())
     links = sum(chain.links for chain in m.chains.values())

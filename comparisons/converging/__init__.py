@@ -1,1 +1,0 @@
-"""How numbers go with N: limits, orders and families of runs."""

@@ -1,0 +1,175 @@
+"""Brief report of a comparison: the verdict, the rows nearest their limits, and the next command."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from comparisons.case import Comparison, Verdict
+from comparisons.display_units import at_station
+from comparisons.formats import component_names, components, number, percent
+from comparisons.offset_verdict import OffsetComparison
+from comparisons.present import offset
+from comparisons.present.columns import NOTHING, Column, Table, table_of
+from comparisons.present.row_tables import Judged, judged_rows, row_units, share
+from comparisons.present.table import brief_lines
+from comparisons.sentences import pressure
+from comparisons.verdict.rows import ROUND_OFF
+from comparisons.verdict.words import SEVERITY, Word
+
+LINES, WIDTH = 30, 80
+"""Most lines of a brief report, with an empty line below, and most columns."""
+
+ROWS = 12
+"""Most rows of the table: of all rows the nearest to their limits."""
+
+_SENTENCE_LINES = 6
+_COMMAND = re.compile(r"`(-[^`]* [^`]*|solve [^`]*)`")
+
+
+def brief(compared: Comparison | OffsetComparison, argument: str) -> str:
+    """Report of at most ``LINES`` lines of ``WIDTH`` columns, with terminal colours.
+
+    Args:
+        compared: the case.
+        argument: name or path of the case with its parameters, as the shell takes them.
+    """
+    verdict = compared.verdict
+    first = _wrapped(headline(name_of(compared), verdict, verdict.because))
+    last = _next_step(argument, verdict)
+    if isinstance(compared, OffsetComparison):
+        errors = offset.error_table(compared)
+        lines = ("", *brief_lines(errors, width=WIDTH), *_wrapped(f"{errors.title}. {errors.note}"))
+        return "\n".join((*first, *lines, *last))
+    last = (*_found_sizes(compared), *last)
+    rows = last_rows_of_stages(compared)
+    lines = ()
+    for count in range(min(ROWS, len(rows)), 0, -1):
+        table = nearest_rows(compared, rows, count)
+        lines = ("", *brief_lines(table, width=WIDTH), *filter(None, (table.note,)))
+        if len(first) + len(lines) + len(last) < LINES:
+            break
+    return "\n".join((*first, *lines, *last))
+
+
+def headline(name: str, verdict: Verdict, sentence: str) -> str:
+    """Name of a case, word, reason and ``sentence``."""
+    reason = "" if verdict.reason is None else f" ({verdict.reason.value})"
+    return f"{name}: {verdict.word.value}{reason}. {sentence}".rstrip()
+
+
+def name_of(compared: Comparison | OffsetComparison) -> str:
+    """Name of a case."""
+    return compared.question.name if isinstance(compared, OffsetComparison) else compared.scene.name
+
+
+def last_rows_of_stages(compared: Comparison) -> tuple[Judged, ...]:
+    """Rows of the last station of every stage, with their words."""
+    last = {row.stage: row.station for row in compared.rows}
+    return tuple(judged for judged in judged_rows(compared) if judged[0].station == last[judged[0].stage])
+
+
+def nearest_rows(compared: Comparison, rows: Sequence[Judged], count: int) -> Table:
+    """Table of the rows nearest their limits, in the order of stages and probes; the note counts the other rows."""
+    order = sorted(range(len(rows)), key=lambda place: _nearness(rows[place]))
+    units = row_units(compared.scene, [rows[place][0] for place in order[:count]])
+    body: list[tuple[str, ...]] = []
+    stage = ""
+    for judged in (rows[place] for place in sorted(order[:count])):
+        row = judged[0]
+        if row.stage != stage:
+            stage = row.stage
+            body.append((at_station(compared.scene, *row.where), *[""] * 6))
+        body += _lines(judged, *units[row.unit])
+    others = Counter(word.value if word else "without a word" for _, word, _ in (rows[at] for at in order[count:]))
+    note = ", ".join(f"{times} more {'row' if times == 1 else 'rows'} {word}" for word, times in others.items())
+    headers = ("probe", "unit", "CPRBM", "FEA", "difference", "stated", "word")
+    return Table("", headers, tuple(body), f"{note} (-v)" if note else "")
+
+
+def summary(finished: Sequence[Comparison | OffsetComparison]) -> Table:
+    """Table with a row for every case."""
+    columns = [
+        Column("case", name_of),
+        Column("word", lambda compared: compared.verdict.word.value),
+        Column("reason", lambda compared: compared.verdict.reason.value if compared.verdict.reason else ""),
+        Column("rows agreeing", _agreeing),
+        Column("largest difference over stated", lambda compared: number(_largest_pressure(compared), 2)),
+        Column("seconds", lambda compared: number(_seconds(compared), 2)),
+    ]
+    return table_of("Summary", columns, finished, "Seconds: of all runs, by the solvers' own clocks.")
+
+
+def _agreeing(compared: Comparison | OffsetComparison) -> str:
+    words = [word for word in compared.verdict.words if word is not None]
+    return f"{words.count(Word.AGREE)} of {len(words)}"
+
+
+def _largest_pressure(compared: Comparison | OffsetComparison) -> float | None:
+    if isinstance(compared, OffsetComparison):
+        return max((row.pressure for row in compared.rows), default=None)
+    return max((pressure(row) for row in compared.rows if row.bounds is not None), default=None)
+
+
+def _seconds(compared: Comparison | OffsetComparison) -> float:
+    if isinstance(compared, OffsetComparison):
+        return sum(compared.seconds.values())
+    answers = [*dict(compared.runs.everything()).values(), compared.runs.exact]
+    return sum(answer.seconds for answer in answers if answer is not None)
+
+
+def _nearness(judged: Judged) -> tuple[int, float]:
+    """Sorting key: the worst word first, and for one word the largest share of the stated uncertainty."""
+    row, word, _ = judged
+    return (*SEVERITY, None).index(word), 0.0 if word is None else -pressure(row)
+
+
+def _lines(judged: Judged, factor: float, unit: str) -> list[tuple[str, ...]]:
+    """A line for every component of a row; the first line has difference, stated uncertainty and word.
+
+    The value of a stress is the largest magnitude along the beam.
+    """
+    row, word, _ = judged
+    floor = ROUND_OFF * row.scale
+    found = [dict(components(row.probe.quantity, values, factor, floor)) for values in (row.cprbm, row.fea)]
+    stated = share(row, row.bounds.total, digits=2) if row.bounds else None
+    measured = (
+        share(row, row.difference, digits=2) or NOTHING,
+        stated or NOTHING,
+        NOTHING if word is None else word.value,
+    )
+    names = component_names(row.probe.quantity) if any(found) else ("",)
+    return [
+        (
+            f"{row.probe.name} {name}".removesuffix("max").rstrip(),
+            unit,
+            *(values.get(name, "open") for values in found),
+            *(measured if place == 0 else ("", "", "")),
+        )
+        for place, name in enumerate(names)
+    ]
+
+
+def _wrapped(sentence: str) -> list[str]:
+    return textwrap.wrap(sentence, WIDTH, max_lines=_SENTENCE_LINES, placeholder=" … (-v)", break_on_hyphens=False)
+
+
+def _found_sizes(compared: Comparison) -> Iterator[str]:
+    """Links and elements that ``--tol`` has found, and the solvers without a sufficient size."""
+    sizes = ", ".join(f"{found.solver} {found.n}" for found in compared.tolerances)
+    if sizes:
+        yield f"N for {percent(compared.tolerances[0].asked)}: {sizes}."
+    for found in compared.tolerances:
+        if not found.met:
+            yield from _wrapped(found.sentence(compared.scene))
+
+
+def _next_step(argument: str, verdict: Verdict) -> tuple[str, ...]:
+    """The next command in a line, where the first sentence has a command or the case agrees."""
+    hint = _COMMAND.search(verdict.because)
+    if hint is not None:
+        command, options = ("compare", hint[1]) if hint[1].startswith("-") else hint[1].split(" ", 1)
+        return (f"next: cprbm {command} {argument} {options}",)
+    return (f"next: cprbm compare {argument} --out DIR",) if verdict.word is Word.AGREE else ()

@@ -1,0 +1,149 @@
+"""The door to Matplotlib, which loads at the first drawing: canvases, axes, and finished figures.
+
+The same answers give the same bytes: no dates, and identifiers from a fixed salt.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from comparisons.display_units import display_unit
+from comparisons.geometry import longest
+from comparisons.present.columns import Figure
+from comparisons.present.picture import Kind, Part
+from cprbm_scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+    from matplotlib.figure import Figure as Drawing
+
+BLUE, RED, GREY, INK, GREEN, RULE = "#1f5fa8", "#c8321e", "#8a8a8a", "#202428", "#0a7d33", "#e4e4e4"
+LINES = (("-", "o"), ("--", "s"), (":", "^"), ("-.", "D"))
+"""Lines and markers of the probes in one figure."""
+
+_STYLE: dict[Any, Any] = {  # the stubs name every key of every version
+    "svg.hashsalt": "cprbm",
+    "svg.fonttype": "path",
+    "font.family": "DejaVu Sans",
+    "font.size": 10.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "savefig.dpi": 150.0,
+    "figure.constrained_layout.h_pad": 0.1,  # inches; with less a title at the upper edge is cut
+    "figure.constrained_layout.w_pad": 0.1,
+}
+
+_LOOKS: dict[Kind, dict[str, Any]] = {
+    "rigid": {"facecolor": "#b9bfc6", "alpha": 0.55, "linewidth": 0.0, "zorder": 0.5},
+    "edge": {"color": INK, "linewidth": 0.9, "zorder": 0.6},
+    "rest": {"facecolor": "#d3d6da", "edgecolor": "#aab0b7", "linewidth": 0.5, "zorder": 1.0},
+    "beam": {"facecolor": RED, "linewidth": 0.0, "zorder": 2.0},
+    "body": {"linestyle": "-", "linewidth": 1.2},
+    "weld": {"linestyle": "", "marker": "s", "markersize": 4.0},
+    "pin": {"linestyle": "", "marker": "o", "markersize": 5.0, "markerfacecolor": "white", "zorder": 3.0},
+    "pivot": {"linestyle": "", "marker": "o", "markersize": 8.0, "markerfacecolor": "none"},
+    "stop": {"linestyle": "-.", "linewidth": 0.8},
+    "contact": {"linestyle": "", "marker": ".", "markersize": 3.0, "color": GREEN, "zorder": 5.0},
+}
+"""Matplotlib's keywords by kind of part; parts with a ``facecolor`` are areas."""
+
+
+@contextmanager
+def canvas(width: float, height: float) -> Iterator[Drawing]:
+    """Context with an empty drawing of ``width`` and ``height``, inches; draw and finish it inside the context."""
+    import matplotlib as mpl
+    from matplotlib.figure import Figure as Drawing
+
+    with mpl.rc_context(_STYLE):
+        yield Drawing(figsize=(width, height), layout="constrained")
+
+
+def finished(drawing: Drawing, name: str, caption: str) -> Figure:
+    """The figure of a drawing."""
+    layout = drawing.get_layout_engine()
+    if layout is not None:  # made once, it serves both formats
+        layout.execute(drawing)
+        drawing.set_layout_engine("none")
+    return Figure(name, caption, image(drawing, "svg"), image(drawing, "png"))
+
+
+def image(drawing: Drawing, kind: str, dots: float | None = None) -> bytes:
+    """The drawing as ``svg`` or ``png`` without dates, with ``dots`` to the inch."""
+    stream = io.BytesIO()
+    nothing = {"Date": None} if kind == "svg" else {"Software": None}
+    drawing.savefig(stream, format=kind, metadata=nothing, dpi=_STYLE["savefig.dpi"] if dots is None else dots)
+    return stream.getvalue()
+
+
+def draw_parts(axes: Axes, parts: Iterable[Part], colour: str = INK) -> None:
+    """Draw parts of the drawing list; lines and marks without a colour of their own take ``colour``."""
+    for part in parts:
+        look = _LOOKS[part.kind]
+        if "facecolor" in look:
+            axes.fill(*part.points.T, **look)
+        else:
+            line = np.concatenate([part.points, part.points[:1]]) if part.closed else part.points
+            axes.plot(*line.T, **{"color": colour, **look})
+
+
+def draw_names(axes: Axes, scene: Scene) -> None:
+    """Names of all points as drawn, at the left, or at the right beside a close point; points in a place share it."""
+    close, named = 0.05 * longest(scene), dict[tuple[float, float], list[str]]()
+    for body in scene.bodies.values():
+        for name, place in body.points.items():
+            near = (other for other in named if np.hypot(*np.subtract(place, other)) < 1e-3 * close)
+            named.setdefault(next(near, place), []).append(name)
+    for x, y in named:
+        crowded = any(0.0 < x - left < close and abs(y - height) < close for left, height in named)
+        axes.annotate(
+            ", ".join(named[x, y]),
+            (x, y),
+            textcoords="offset points",
+            xytext=(4 if crowded else -4, 7),
+            ha="left" if crowded else "right",
+        )
+
+
+def show_lengths(scene: Scene, axis: Axis, name: str = "") -> None:
+    """Give an axis of lengths, m, ticks in the displayed unit, and a label."""
+    from matplotlib.ticker import AutoLocator, FuncFormatter
+
+    factor, unit = display_unit(scene, "m", longest(scene))
+
+    class Locator(AutoLocator):
+        """Ticks at round numbers of the displayed unit."""
+
+        def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
+            """Ticks between two lengths, m."""
+            return [factor * tick for tick in super().tick_values(vmin / factor, vmax / factor)]
+
+    axis.set_major_locator(Locator())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / factor:g}".replace("-", "\N{MINUS SIGN}")))
+    if name:
+        axis.set_label_text(f"{name}, {unit}")
+
+
+def logarithmic(axes: Axes, x: Sequence[float] = ()) -> None:
+    """Give both axes logarithmic scales with a grid, and ticks at the numbers ``x``."""
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    if x:
+        axes.set_xticks(x, [f"{each:g}" for each in x])
+    axes.minorticks_off()
+    axes.grid(visible=True, which="major", color=RULE, linewidth=0.6)
+
+
+def common_legend(drawing: Drawing, place: str, columns: int, size: float = 10.0) -> None:
+    """One legend outside all axes of a drawing, with every label once."""
+    pairs = [pair for axes in drawing.axes for pair in zip(*axes.get_legend_handles_labels(), strict=True)]
+    labels = {label: handle for handle, label in reversed(pairs)}
+    names = [*dict.fromkeys(label for _, label in pairs)]
+    handles = [labels[name] for name in names]
+    drawing.legend(handles, names, loc=f"outside {place}", ncols=columns, fontsize=size)  # type: ignore[call-overload]

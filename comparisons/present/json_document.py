@@ -1,0 +1,299 @@
+"""The documented JSON: plain data with stable keys, SI units, and null for a missing value."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from comparisons.audit import Audit
+from comparisons.case import Comparison
+from comparisons.claims import claim_met, claim_of, claim_of_critical, claimed_difference, critical_difference
+from comparisons.plain import Plain, plain
+from comparisons.quantities import arc_lengths, unit_of
+from comparisons.reactions import WorkEnergyReaction
+from comparisons.steps import contact_model, largest_difference, steps_of
+from comparisons.third import Third, thirds_of
+from comparisons.tolerances.search import Tolerance
+from comparisons.verdict.bounds import Bounds
+from comparisons.verdict.completeness import CERTIFICATE_NUMBERS
+from comparisons.verdict.events import CriticalRow, released
+from comparisons.verdict.rows import Row
+from comparisons.verdict.words import Reason, Word
+from cprbm_scene import Answer, Critical, Probe, Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import STRESSES
+
+
+def comparison(compared: Comparison) -> Plain:
+    """One case of ``compare``."""
+    scene, runs, verdict = compared.scene, compared.runs, compared.verdict
+    answers = {"cprbm": runs.cprbm[0], "fea": runs.reference, "exact": runs.exact}
+    answers["solid"] = None if runs.solid is None else runs.solid[-1]  # its finest mesh
+    judged = zip(compared.rows, verdict.words, verdict.reasons, strict=True)
+    return {
+        "case": scene.name,
+        "verdict": verdict.word.value,
+        "reason": name_of(verdict.reason),
+        "sentence": verdict.sentence,
+        "solvers": {
+            name: {**solver(answer, compared.audits.get(name)), **_search(compared.tolerances, name)}
+            for name, answer in answers.items()
+            if answer is not None
+        },
+        "rows": [
+            {**_row(compared, row), "verdict": name_of(word), "reason": name_of(why)} for row, word, why in judged
+        ],
+        "critical": [_critical_row(scene, each) for each in compared.criticals],
+        "branches": [
+            {
+                "stage": each.stage,
+                "branch": each.number,
+                "from": each.first,
+                "to": each.last,
+                "stations": each.stations,
+                "near_critical": each.near,
+                "verdict": name_of(each.word),
+            }
+            for each in verdict.branches
+        ],
+        "work_energy": [_reaction(each) for each in compared.reactions],
+        **({} if runs.solid is None else {"solid": [_third(each) for each in thirds_of(compared)]}),
+    }
+
+
+def solution(
+    scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = (), audited: Audit | None = None
+) -> Plain:
+    """One case of ``solve``: the shape of ``compare`` with the column of one solver and no verdict."""
+    stages = {stage.name: stage for stage in scene.stages}
+    return {
+        "case": scene.name,
+        "solvers": {answer.solver: {**solver(answer, audited), **_search(tolerances, answer.solver)}},
+        "rows": [
+            {
+                "probe": probe.name,
+                "stage": station.stage,
+                "station": station.value,
+                "branch": station.branch,
+                "unit": unit_of(scene, probe, stages[station.stage]),
+                answer.solver: values(probe, station.values[probe.name]),
+                **_places(scene, probe),
+            }
+            for station in answer.stations
+            for probe in scene.probes_in(station.stage)
+        ],
+    }
+
+
+def solver(answer: Answer, audited: Audit | None = None) -> Plain:
+    """Ending, settings, worst certificate, audit and events of an answer; the audit is null without an audit."""
+    return {
+        "ending": answer.ending.name,
+        "sentence": answer.sentence,
+        "seconds": plain(answer.seconds),
+        "settings": plain(answer.settings),
+        "certificate": worst_certificate(answer),
+        "audit": None if audited is None or not audited.stations else _audit(audited),
+        "stations": len(answer.stations),
+        "events": [
+            {"stage": event.stage, "contact": event.contact, "kind": event.kind, "value": plain(event.value)}
+            for event in answer.events
+        ],
+        "critical": [critical(each) for each in answer.critical],
+        "gone_over": [{**critical(each.end), "turned": plain(each.turned)} for each in answer.gone_over],
+        "notes": list(answer.notes),
+    }
+
+
+def worst_certificate(answer: Answer) -> Plain | None:
+    """The least reassuring value of every number over the stations; None without a station."""
+    found = [station.certificate for station in answer.stations]
+    if not found:
+        return None
+    return {
+        "holds": all(each.holds for each in found),
+        **{key: plain(max(getattr(each, key) for each in found)) for key in CERTIFICATE_NUMBERS},
+        "smallest_curvature": plain(min(each.smallest_curvature for each in found)),
+        "iterations": sum(each.iterations for each in found),
+        "failures": [failure for each in found for failure in each.failures],
+    }
+
+
+def critical(found: Critical) -> Plain:
+    """Critical point of an answer."""
+    return {
+        "stage": found.stage,
+        "value": plain(found.value),
+        "uncertainty": plain(found.uncertainty),
+        "loss": found.loss.value,
+        "what": found.what or None,
+        "curvature": plain(found.curvature),
+        "left": plain(found.left),
+        "energy": plain(found.energy),
+        "after": plain(found.after),
+        "released": plain(released(found)),
+    }
+
+
+def name_of(value: Word | Reason | None) -> str | None:
+    """Name of a word or a reason; None without either."""
+    return None if value is None else value.value
+
+
+def values(probe: Probe, found: Array) -> Any:  # noqa: ANN401 - a number, a list or None
+    """Values of a probe: a number, a list of several numbers, None without a value."""
+    if found.size == 0:
+        return None
+    if found.size == 1 and probe.quantity not in STRESSES:
+        return plain(float(found[0]))
+    return [plain(float(value)) for value in found]
+
+
+def _audit(found: Audit) -> Plain:
+    return {
+        "holds": not found.complaints,
+        "complaints": list(found.complaints),
+        "remarks": list(found.crossings),
+        "stations": found.stations,
+        "unbalance": plain(found.unbalance),
+        "scaled_unbalance": plain(found.scaled),
+        "smallest_curvature": None,
+    }
+
+
+def _search(tolerances: tuple[Tolerance, ...], name: str) -> Plain:
+    """The search for N of a solver; empty without a search."""
+    found = next((each for each in tolerances if each.solver == name), None)
+    if found is None:
+        return {}
+    row, links = found.worst, found.solver == "cprbm"
+    return {
+        "tolerance": {
+            "asked": found.asked,
+            "met": found.met,
+            "links": found.n if links else None,
+            "elements": None if links else found.n,
+            "estimate": None if row is None else plain(row.fraction),
+            "probe": None if row is None else row.probe,
+            "stage": None if row is None else row.stage,
+            "station": None if row is None else row.station,
+            "extrapolated": list(found.extrapolated) or None,
+            "extrapolated_probes": list(found.probes),
+            "solved": list(found.solved),
+        }
+    }
+
+
+def _row(compared: Comparison, row: Row) -> Plain:
+    scene, runs, bounds, true = compared.scene, compared.runs, row.bounds, row.true_errors
+    claim, steps, model = claim_of(scene, row), steps_of(runs, row), contact_model(runs, row)
+    bending = bounds is not None and bounds.bending is not None
+    return {
+        "probe": row.probe.name,
+        "stage": row.stage,
+        "station": row.station,
+        "branch": row.branch,
+        "place": row.place.value,
+        "unit": row.unit,
+        "cprbm": values(row.probe, row.cprbm),
+        "fea": values(row.probe, row.fea),
+        "difference": row.fraction(row.difference),
+        "uncertainty": {
+            "cprbm": None if bounds is None else row.fraction(bounds.cprbm),
+            "fea": None if bounds is None else row.fraction(bounds.fea),
+            "theory": row.fraction(bounds.theory) if bounds is not None and bending else None,
+            "fea_bending": row.fraction(bounds.bending or 0.0) if bounds is not None and bending else None,
+            "round_off": None if bounds is None else row.fraction(bounds.round_off),
+        },
+        "claim": None if claim is None else claim.bound,
+        "claim_value": None if claim is None else claim.value,
+        "claim_met": claim_met(claim, row),
+        "claim_difference": None if claim is None else claimed_difference(claim, row),
+        "difference_same_theory": row.fraction(row.same_theory),
+        "steps": None
+        if steps is None
+        else {name: row.fraction(getattr(steps, name)) for name in ("contact", "own", "stretch", "shear")},
+        "contact_model": None if model is None else row.fraction(model),
+        "difference_largest": row.fraction(largest_difference(row)),
+        "exact": None if row.exact is None else values(row.probe, row.exact),
+        "true_error": {
+            "cprbm": None if true is None else row.fraction(true.cprbm),
+            "fea_bending": None if true is None else row.fraction(true.bending),
+        },
+        "scale": row.scale,
+        "denominator": row.denominator,
+        **_places(scene, row.probe),
+    }
+
+
+def _third(found: Third) -> Plain:
+    """A row beside the solid: the extrapolated value, its uncertainty, and distances from it as fractions."""
+    row = found.row
+    off = {"cprbm": found.cprbm, "fea_bending": found.bending, "fea": found.chosen}
+    return {
+        "probe": row.probe.name,
+        "stage": row.stage,
+        "station": row.station,
+        "unit": row.unit,
+        "solid": values(row.probe, found.solid),
+        "uncertainty": row.fraction(found.uncertainty),
+        "off": {name: row.fraction(size) for name, size in off.items()},
+    }
+
+
+def _critical_row(scene: Scene, row: CriticalRow) -> Plain:
+    claim = claim_of_critical(scene, row)
+    off = None if claim is None else critical_difference(claim, row)
+    both = {"cprbm": row.cprbm, "fea": row.fea}
+    return {
+        "probe": "critical",
+        "stage": row.stage,
+        "place": row.place,
+        "unit": row.unit,
+        **{name: None if found is None else plain(found.value) for name, found in both.items()},
+        "loss": {name: None if found is None else found.loss.value for name, found in both.items()},
+        "what": {name: None if found is None else found.what or None for name, found in both.items()},
+        "released": {name: None if found is None else plain(released(found)) for name, found in both.items()},
+        "gone_over": {name: plain(turned) for name, turned in row.turned.items()},
+        "difference": plain(row.difference),
+        "difference_same_theory": plain(row.same_theory),
+        "uncertainty": _uncertainty(row.bounds),
+        "claim": None if claim is None else claim.bound,
+        "claim_value": None if claim is None else claim.value,
+        "claim_met": None if claim is None or off is None else off <= claim.bound,
+        "claim_difference": off,
+        "allowed": row.allowed,
+        "span": row.span,
+        "verdict": row.word.value,
+        "reason": name_of(row.judged[1]),
+    }
+
+
+def _uncertainty(bounds: Bounds | None) -> Plain:
+    parts = {"cprbm": "cprbm", "fea": "fea", "theory": "theory", "fea_bending": "bending", "round_off": "round_off"}
+    return {key: None if bounds is None else plain(getattr(bounds, name)) for key, name in parts.items()}
+
+
+def _reaction(found: WorkEnergyReaction) -> Plain:
+    without = found.work_energy is None
+    return {
+        "stage": found.stage,
+        "station": found.station,
+        "branch": found.branch,
+        "drive": found.drive,
+        "unit": found.unit,
+        "multiplier": found.multiplier,
+        "work_energy": found.work_energy,
+        "difference": found.difference,
+        "allowed": None if without else found.allowed,
+        "round_off": None if without else found.share(found.round_off),
+        "truncation": None if without else found.share(found.truncation),
+        "energies": None,  # all energies are those at perturbed stations
+        "fea": found.fea,
+        "difference_fea": found.from_fea,
+        "changes_nearby": list(found.changes),
+        "absence": None if found.absence is None else found.absence.name,
+    }
+
+
+def _places(scene: Scene, probe: Probe) -> Plain:
+    return {"arc_length": arc_lengths(scene, probe).tolist()} if probe.quantity in STRESSES else {}

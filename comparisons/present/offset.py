@@ -1,0 +1,181 @@
+"""Tables, figures and documented JSON of an offset comparison."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from comparisons.formats import number, percent
+from comparisons.offset_exact import offset_curve
+from comparisons.offset_verdict import OffsetComparison, OffsetRow, claim_of_offset
+from comparisons.plain import Plain, plain
+from comparisons.present.canvas import BLUE, RED, canvas, common_legend, finished
+from comparisons.present.columns import Column, Figure, Section, Table, table_of
+from cprbm_scene import OffsetClaim
+from cprbm_scene.offset import Shown
+
+_SHOWN = 6  # columns and rows of the short table
+
+
+@dataclass(frozen=True, slots=True)
+class OffsetStanding:
+    """A claim beside a spacing: the row with the largest error, the largest share of t, and N above the bound."""
+
+    claim: OffsetClaim
+    spacing: str
+    worst: OffsetRow
+    over_offset: float
+    missed: tuple[int, ...]
+
+
+def document(compared: OffsetComparison) -> Plain:
+    """One case of ``compare``; ``station`` is the offset t in metres, ``difference`` a fraction."""
+    return {
+        "case": compared.question.name,
+        "verdict": compared.verdict.word.value,
+        "sentence": compared.verdict.sentence,
+        "solvers": {
+            name: {"ending": "COMPLETED", "seconds": seconds, "settings": {}, "certificate": None}
+            for name, seconds in compared.seconds.items()
+        },
+        "rows": [
+            {**_row(compared, row), "verdict": word.value if word else None}
+            for row, word in zip(compared.rows, compared.verdict.words, strict=True)
+        ],
+    }
+
+
+def _row(compared: OffsetComparison, row: OffsetRow) -> Plain:
+    claim = claim_of_offset(compared.question, row.n)
+    return {
+        "probe": f"{row.spacing}.offset_points",
+        "stage": f"N = {row.n}",
+        "station": row.offset,
+        "unit": "1",
+        "difference": plain(row.difference),
+        "difference_over_offset": plain(row.over_offset),
+        "uncertainty": {"cprbm": plain(float(np.max(row.stated))), "round_off": plain(float(np.max(row.round_off)))},
+        "pressure": plain(row.pressure),
+        "claim": None if claim is None else claim.bound,
+        "claim_met": None if claim is None or not np.isfinite(row.difference) else row.difference < claim.bound,
+    }
+
+
+def offset_sections(compared: OffsetComparison) -> tuple[Section, ...]:
+    """Errors and claims; run times stand last."""
+    seconds = [Column[tuple[str, float]]("answer", lambda at: at[0]), Column("seconds", lambda at: at[1], number)]
+    note = "From the question to all points, by this machine's clock."
+    return (
+        Section("Errors against the exact offset curve", tables=(error_table(compared),)),
+        Section("What the source claims", tables=(claims_table(compared),)),
+        Section("Run time", tables=(table_of("Seconds", seconds, compared.seconds.items(), note),)),
+    )
+
+
+def error_table(compared: OffsetComparison) -> Table:
+    """The largest relative errors of the first spacing, at some N and t."""
+    question = compared.question
+    spacing = next(iter(question.spacings))
+    found = {(row.n, row.offset): row.difference for row in compared.rows if row.spacing == spacing}
+    offsets = _some(question.offsets)
+    return Table(
+        f"{question.title or question.name}: largest relative error, spacing {spacing}",
+        ("N", *(f"t = {t:g}" for t in offsets)),
+        tuple((f"{n:g}", *(percent(found[int(n), t]) for t in offsets)) for n in _some(question.numbers)),
+        f"Of the offset points to the exact offset curve along {question.axis}, over the {question.relative_to}.",
+    )
+
+
+def claims_table(compared: OffsetComparison) -> Table:
+    """Claims of the source beside the largest errors found here."""
+    columns = [
+        Column[OffsetStanding]("claim", lambda at: at.claim.text or f"from N = {at.claim.numbers_from} on"),
+        Column("spacing", lambda at: at.spacing),
+        Column("source", lambda at: percent(at.claim.bound)),
+        Column("largest here", lambda at: percent(at.worst.difference)),
+        Column("at", lambda at: f"N, t = {at.worst.n}, {at.worst.offset:g}"),
+        Column("over t", lambda at: percent(at.over_offset)),
+        Column("", lambda at: "not met" if at.missed else "met"),
+        Column("not met at N", lambda at: ", ".join(map(str, at.missed)) or None),
+    ]
+    return table_of(
+        "Claims of the source",
+        columns,
+        _standings(compared),
+        "Claims take no part in the verdict. N counts springs, and offset points; 'over t' is the largest error "
+        "relative to the offset.",
+    )
+
+
+def _standings(compared: OffsetComparison) -> Iterable[OffsetStanding]:
+    for claim in compared.question.claims:
+        for spacing in compared.question.spacings:
+            rows = tuple(row for row in compared.rows if row.spacing == spacing and row.n >= claim.numbers_from)
+            missed = sorted({row.n for row in rows if not row.difference < claim.bound})
+            worst = max(rows, key=lambda row: row.difference)
+            yield OffsetStanding(claim, spacing, worst, max(row.over_offset for row in rows), tuple(missed))
+
+
+def _some(values: Iterable[float]) -> list[float]:
+    """At most ``_SHOWN`` ascending values, first and last among them."""
+    ascending = sorted(values)
+    places = np.unique(np.linspace(0, len(ascending) - 1, min(_SHOWN, len(ascending))).round().astype(int))
+    return [ascending[place] for place in places]
+
+
+def offset_figures(compared: OffsetComparison) -> tuple[Figure, ...]:
+    """The largest relative errors over N and t, and the offset points on the exact curves."""
+    shown = compared.question.shown
+    return (_errors(compared), *(() if shown is None else (_points(compared, shown),)))
+
+
+def _errors(compared: OffsetComparison) -> Figure:
+    """A map per spacing, in the manner of the paper's Fig. 6."""
+    question = compared.question
+    numbers, offsets = sorted(question.numbers), sorted(question.offsets)
+    found = {(row.spacing, row.n, row.offset): 100.0 * row.difference for row in compared.rows}
+    positive = [value for value in found.values() if value > 0.0] or [1.0]
+    least, most = 10.0 ** np.floor(np.log10(min(positive))), 10.0 ** np.ceil(np.log10(max(positive)))
+    rows = -(-len(question.spacings) // 2)
+    with canvas(8.4, 3.3 * rows) as drawing:
+        plots = drawing.subplots(rows, 2, sharex=True, sharey=True, squeeze=False).ravel().tolist()
+        for axes in plots[len(question.spacings) :]:
+            axes.set_visible(False)
+        for axes, spacing in zip(plots, question.spacings, strict=False):
+            z = np.array([[max(found[spacing, n, t], least) for n in numbers] for t in offsets])
+            mesh = axes.pcolormesh(numbers, offsets, z, norm="log", vmin=least, vmax=most, shading="nearest")
+            bounds = sorted({bound for claim in question.claims if z.min() < (bound := 100.0 * claim.bound) < z.max()})
+            if bounds and min(z.shape) > 1:
+                lines = axes.contour(numbers, offsets, z, levels=bounds, colors="white", linewidths=1.2)
+                axes.clabel(lines, fmt=lambda value: f"{value:g} %")
+            axes.set_title(spacing, loc="left")
+            axes.set_xlabel("springs N")
+            axes.set_ylabel("offset t, m")
+        drawing.colorbar(mesh, ax=plots, label="largest relative error, %")
+        caption = f"Largest error along {question.axis}, relative to the {question.relative_to}"
+        return finished(drawing, "errors", f"{caption}; white: the claims' bounds.")
+
+
+def _points(compared: OffsetComparison, shown: Shown) -> Figure:
+    """The curve, its exact offsets and the calculated points, in the manner of the paper's Fig. 5."""
+    question, u = compared.question, np.linspace(0.0, 1.0, 400)
+    with canvas(4.6 * len(shown.numbers), 3.2) as drawing:
+        plots = drawing.subplots(1, len(shown.numbers), sharey=True, squeeze=False)[0]
+        for axes, n, points in zip(plots, shown.numbers, compared.shown, strict=True):
+            axes.plot(*offset_curve(question.curve, u, 0.0).T, color="black", linewidth=1.4, label="curve")
+            for place, (t, found) in enumerate(zip(shown.offsets, points, strict=True)):
+                exact = offset_curve(question.curve, u, float(question.sign * t))
+                labels = (None, None) if place else ("exact offset", "calculated")
+                axes.plot(*exact.T, color=RED, linewidth=1.2, label=labels[0])
+                axes.plot(*found.T, "o", color=BLUE, markersize=5, markerfacecolor="none", label=labels[1])
+                axes.annotate(f"t = {abs(t):g}", exact[200], textcoords="offset points", xytext=(0, 7), ha="center")
+            axes.set_aspect("equal", adjustable="box")
+            axes.margins(0.08)
+            axes.set_title(f"N = {n}", loc="left")
+            axes.set_xlabel("x, m")
+        plots[0].set_ylabel("y, m")
+        common_legend(drawing, "lower center", 3)
+        caption = f"Offset points on the exact offset curves, spacing {next(iter(question.spacings))}."
+        return finished(drawing, "points", caption)

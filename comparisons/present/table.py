@@ -1,0 +1,166 @@
+"""Tables on the screen and cells of tables on a page.
+
+A table wider than the screen splits between columns into several tables; the first column, and a unit beside it, stand
+in all of them.  Sentences fold between words, names fold anywhere, and numbers never fold.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from rich import box
+from rich.cells import cell_len
+from rich.console import Console
+from rich.table import Table as Grid
+from rich.text import Text
+
+from comparisons.present.columns import Table
+
+STYLES = {
+    "AGREE": "green", "met": "green", "within": "green", "UNDECIDED": "yellow", "not met": "yellow",
+    "beyond": "yellow", "DIFFER": "bold red", "far beyond": "bold red",
+}  # fmt: skip
+"""Colours of cells; a page has styles for the same words."""
+
+_GAP, _EDGES = 3, 1
+"""Columns of the screen beside every column of a table, and beside the table."""
+
+_LONG = 24
+"""Most characters of a text with spaces without a fold."""
+
+_SENTENCE = 60
+"""Characters of a text longer than all numbers."""
+
+_NUMBER = re.compile(r"(?P<before>[+-]?\d+)(?P<behind>(?:\.\d+)?(?:e[+-]?\d+)?(?: %|°)?)")
+_NUMERIC = re.compile(r"\(?[+-]?\d")
+_OTHERS = ("–", "open", "none", "all", "")
+"""Further texts in a column of numbers."""
+
+
+def screen_text(table: Table, *, width: int) -> str:
+    """The table with terminal colours, at most ``width`` columns wide."""
+    columns = [list(column) for column in zip(table.headers, *table.rows, strict=True)]
+    whole = [max(map(cell_len, column)) for column in columns]
+    leading = 2 if table.headers[1:2] == ("unit",) else 1
+    parts = [dict(enumerate(whole))] if _total(whole) <= width else _split(columns, whole, leading, width)
+    texts = []
+    for place, widths in enumerate(parts):
+        grid = Grid(
+            title=table.title if place == 0 else None,
+            caption=(table.note or None) if place == len(parts) - 1 else None,
+            title_justify="left",
+            caption_justify="left",
+            title_style="bold",
+            box=box.SIMPLE_HEAD,
+        )
+        for column, size in widths.items():
+            justify = "left" if column == 0 else "right"
+            grid.add_column(Text(table.headers[column]), justify=justify, overflow="fold", width=size)  # type: ignore[arg-type]
+        for row in table.rows:
+            grid.add_row(*(_styled(row[column]) for column in widths))
+        texts.append(_printed(grid, width))
+    return "".join(texts)
+
+
+def brief_lines(table: Table, *, width: int) -> list[str]:
+    """Lines of the table without title and note, at most ``width`` columns wide: the first column folds."""
+    grid = Grid(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
+    for place, header in enumerate(table.headers):
+        justify = "left" if place == 0 or header == "word" else "right"
+        grid.add_column(header, justify=justify, overflow="fold", no_wrap=place > 0)  # type: ignore[arg-type]
+    for row in table.rows:
+        grid.add_row(*map(_styled, row))
+    return [line.rstrip() for line in _printed(grid, width).splitlines()]
+
+
+def _styled(cell: str) -> Text:
+    return Text(cell, style=STYLES.get(cell, ""))
+
+
+def _printed(grid: Grid, width: int) -> str:
+    page = io.StringIO()
+    # without a height a "dumb" terminal would have 80 columns whatever the width
+    Console(file=page, width=width, height=25, force_terminal=True, color_system="standard").print(grid)
+    return page.getvalue()
+
+
+def _total(widths: Iterable[int]) -> int:
+    return _EDGES + sum(width + _GAP for width in widths)
+
+
+def _least(column: list[str]) -> int:
+    """Least width of a column: of long texts with spaces the longest word."""
+    prose = (max(map(cell_len, text.split())) if cell_len(text) > _LONG and " " in text else cell_len(text)
+             for text in column)  # fmt: skip
+    return max(prose)
+
+
+def _split(columns: list[list[str]], whole: list[int], leading: int, width: int) -> list[dict[int, int]]:
+    """Widths by column for every part of a table; all parts begin with the ``leading`` columns."""
+    least = [_least(column) for column in columns]
+    lead = dict(enumerate(least[:leading]))
+    lead[0] = min(lead[0], max(width - _total([*least[1:leading], max(least[leading:], default=0)]) - _GAP, 1))
+    parts = [dict(lead)]
+    for place in range(leading, len(columns)):
+        if len(parts[-1]) > leading and _total([*parts[-1].values(), least[place]]) > width:
+            parts.append(dict(lead))
+        parts[-1][place] = min(least[place], max(width - _total(lead.values()) - _GAP, 1))
+    for part in parts:
+        for place in part:  # the first columns take the rest of the width
+            part[place] += min(whole[place] - part[place], max(width - _total(part.values()), 0))
+    return parts
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """Cell on a page: ``before`` and ``behind`` the decimal point.
+
+    ``room`` is the width of the part behind the point in digits, 0 without such a part; ``words`` marks a column of
+    words.
+    """
+
+    before: str
+    behind: str = ""
+    room: int = 0
+    words: bool = False
+
+    @property
+    def text(self) -> str:
+        """The whole text."""
+        return self.before + self.behind
+
+
+def html_cells(table: Table) -> list[list[Cell]]:
+    """Cells of all rows; numbers of a column align at their decimal points."""
+    columns = [_aligned([row[place] for row in table.rows]) for place in range(len(table.headers))]
+    return [list(row) for row in zip(*columns, strict=True)]
+
+
+def word_columns(table: Table) -> list[bool]:
+    """Whether a column has words, by column: no text begins with a number, or a text is a sentence."""
+    return [_has_words([row[place] for row in table.rows]) for place in range(len(table.headers))]
+
+
+def with_minus(text: str) -> str:
+    """Text with true minus signs, as wide as a plus."""
+    return re.sub(r"(?<![\w.])-(?=\d)", "−", text)
+
+
+def _has_words(texts: list[str]) -> bool:
+    return not any(map(_NUMERIC.match, texts)) or max(map(len, texts)) > _SENTENCE
+
+
+def _aligned(texts: list[str]) -> list[Cell]:
+    if _has_words(texts):
+        return [Cell(text, words=True) for text in texts]
+    found: list[Mapping[str, str] | None] = [match and match.groupdict() for match in map(_NUMBER.fullmatch, texts)]
+    if not all(match or text in _OTHERS for match, text in zip(found, texts, strict=True)):
+        return [Cell(with_minus(text)) for text in texts]
+    room = max(len(match["behind"]) for match in found if match)
+    return [
+        Cell(with_minus(match["before"]), match["behind"], room) if match else Cell(text)
+        for text, match in zip(texts, found, strict=True)
+    ]

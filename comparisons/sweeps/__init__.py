@@ -1,0 +1,1 @@
+"""Sweeps: one scene at many values of its parameters."""

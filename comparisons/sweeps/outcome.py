@@ -1,0 +1,161 @@
+"""The outcome at a point of a sweep: an ending, a verdict and numbers, as plain records that a line of JSON holds."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass
+from time import perf_counter
+from traceback import extract_tb
+from typing import Any, Literal
+
+from comparisons.case import compare
+from comparisons.choices import Choices
+from comparisons.executor import TimeLimitError, WorkerDiedError, call_limited
+from comparisons.pairing import Solvers, paired
+from comparisons.present.csv_table import comparison_records, numbers
+from comparisons.stages import begins_at
+from cprbm_scene import Answer, Scene, SceneError
+
+Asked = Literal["cprbm", "fea", "compare"]
+"""The solver of a point, or both solvers with a verdict."""
+
+ATTEMPTS = 2
+"""Number of solves of a point that crashes or takes too long: an other program on the machine may be the reason."""
+
+Record = Mapping[str, Any]
+"""A number of an outcome: stage, station, branch, probe, component, arc length, unit and values, SI."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Outcome at a point.
+
+    Attributes:
+        solver: of the point.
+        ending: name of the solver's ending, or ``REFUSED``, ``FAULT``, ``CRASHED`` or ``TIME_LIMIT``.
+        sentence: details of the ending or of the verdict.
+        verdict, reason: of a comparison; otherwise empty.
+        iterations: sum over all stations.
+        seconds: time of the solve.
+        limit: time limit of the solve, s.
+        numbers: all numbers of the answer.
+    """
+
+    solver: str
+    ending: str
+    sentence: str
+    verdict: str = ""
+    reason: str = ""
+    iterations: int = 0
+    seconds: float = 0.0
+    limit: float = 0.0
+    numbers: tuple[Record, ...] = ()
+
+    @property
+    def completed(self) -> bool:
+        """Whether every station was reached."""
+        return self.ending == "COMPLETED"
+
+    def line(self, key: str) -> str:
+        """The outcome with its key as a line of JSON."""
+        return json.dumps({"key": key, **asdict(self)}, ensure_ascii=False)
+
+
+def outcome_of(line: str) -> tuple[str, Outcome]:
+    """Key and outcome of a line.
+
+    Raises:
+        ValueError, KeyError, TypeError: the line is damaged.
+    """
+    data = json.loads(line)
+    return data.pop("key"), Outcome(**{**data, "numbers": tuple(data["numbers"])})
+
+
+def solve_limited(scene: Scene, choices: Choices, asked: Asked, solvers: Solvers, seconds: float) -> Outcome:
+    """The outcome at a point, solved in the child of this thread; a crash or a time-out is tried again."""
+    found = Outcome(asked, "CRASHED", "")
+    for _ in range(ATTEMPTS):
+        try:
+            return call_limited(seconds, solve, scene, choices, asked, solvers)
+        except TimeLimitError:
+            found = Outcome(asked, "TIME_LIMIT", f"{ATTEMPTS} solves took more than {seconds:g} s", limit=seconds)
+        except WorkerDiedError as error:
+            found = Outcome(asked, "CRASHED", f"{ATTEMPTS} solves crashed: {error}", limit=seconds)
+    return found
+
+
+def solve(scene: Scene, choices: Choices, asked: Asked, solvers: Solvers) -> Outcome:
+    """The outcome at a point; a refusal and a fault of the program are outcomes too."""
+    begun = perf_counter()
+    try:
+        if asked == "compare":
+            return _compared(scene, choices, solvers, begun)
+        answer: Answer = getattr(solvers, asked)(scene, choices)
+    except SceneError as error:
+        return Outcome(asked, "REFUSED", "; ".join(map(str, error.mistakes)))
+    except Exception as error:
+        place = extract_tb(error.__traceback__)[-1]
+        return Outcome(asked, "FAULT", f"{type(error).__name__}: {error} (line {place.lineno} of {place.name})")
+    passed = _passed(scene, answer)
+    records = (
+        {**number, "branch": number["branch"] + passed[number["stage"], number["station"]]}
+        for number in numbers(scene, answer)
+    )
+    return Outcome(
+        asked,
+        answer.ending.name,
+        "" if answer.completed else answer.sentence,
+        iterations=_iterations([answer]),
+        seconds=perf_counter() - begun,
+        numbers=_kept(records, {"value": "value"}),
+    )
+
+
+def _compared(scene: Scene, choices: Choices, solvers: Solvers, begun: float) -> Outcome:
+    compared = compare(scene, paired(scene, choices, solvers))
+    verdict, pair = compared.verdict, (compared.runs.cprbm[0], compared.runs.reference)
+    passed = _passed(scene, pair[0])
+    records = (
+        {**each, "branch": (each["branch"] or 0) + passed[each["stage"], each["station"]]}
+        for each in comparison_records(compared)
+        if (each["stage"], each["station"]) in passed
+    )
+    endings = [answer.ending.name for answer in pair if not answer.completed]
+    columns = {"cprbm": "value", "fea": "fea", "difference": "difference", "stated": "stated", "word": "word"}
+    return Outcome(
+        "compare",
+        "COMPLETED" if verdict.completed else next(iter(endings), "NOT_CERTIFIED"),
+        verdict.because,
+        verdict.word.value,
+        "" if verdict.reason is None else verdict.reason.value,
+        iterations=_iterations(pair),
+        seconds=perf_counter() - begun,
+        numbers=_kept(records, columns),
+    )
+
+
+def _kept(records: Iterable[Mapping[str, Any]], values: Mapping[str, str]) -> tuple[Record, ...]:
+    """Records with the columns of a sweep; ``values`` has new names by old names."""
+    common = ("stage", "station", "station_unit", "branch", "probe", "component", "arc_length", "unit")
+    return tuple(
+        {name: each[name] for name in common} | {new: each[old] for old, new in values.items()} for each in records
+    )
+
+
+def _iterations(answers: Iterable[Answer]) -> int:
+    return sum(station.certificate.iterations for answer in answers for station in answer.stations)
+
+
+def _passed(scene: Scene, answer: Answer) -> dict[tuple[str, float], int]:
+    """Number of critical points that the answer passed to a state beside, by stage and station."""
+    names, counts = [stage.name for stage in scene.stages], {}
+    for number, stage in enumerate(scene.stages):
+        earlier = sum(names.index(each.end.stage) < number for each in answer.gone_over)
+        here = [each.end.value for each in answer.gone_over if each.end.stage == stage.name]
+        low = high = begins_at(scene, stage)
+        for station in answer.stations:
+            if station.stage == stage.name:
+                low, high = min(low, station.value), max(high, station.value)
+                counts[stage.name, station.value] = earlier + sum(low <= value <= high for value in here)
+    return counts

@@ -1,0 +1,174 @@
+"""Points of a sweep: values of parameters in SI, from grids, samples and files."""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from cprbm_scene import Mistake, SceneError
+from cprbm_scene.answer import Array
+
+Point = Mapping[str, float]
+"""Values of parameters by name, SI."""
+
+InSI = Callable[[str, str], float]
+"""Value of a parameter's name and a text such as ``1.9mm``, SI."""
+
+MOST = 100_000
+"""Largest number of points in a sweep."""
+
+SEED = 905
+"""Seed of the samples: a command always draws the same points."""
+
+CORNERS = 6
+"""Largest number of parameters whose corners are chosen: their number doubles with every parameter."""
+
+_DIGITS = 12
+"""Digits of a value in a grid: equal values of two grids are equal numbers."""
+
+_VARIED = re.compile(r"\s*(?P<name>\w+)\s*=\s*(?P<low>.+?)\s*\.\.\s*(?P<high>.+?)\s*(?::\s*(?P<count>\d{1,6})\s*)?")
+_UNIT = re.compile(r"[-+.\d]*(?:[eE][-+]?\d+)?\s*(.*)")
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """A parameter of a sweep.
+
+    Attributes:
+        name: of the parameter.
+        low, high: first and last value, SI.
+        count: number of equally spaced values; 0 in a sample.
+        unit: displayed unit; size: of the unit in SI.
+    """
+
+    name: str
+    low: float
+    high: float
+    count: int = 0
+    unit: str = ""
+    size: float = 1.0
+
+    def values(self) -> list[float]:
+        """The equally spaced values, SI."""
+        return [float(f"{value:.{_DIGITS}g}") for value in np.linspace(self.low, self.high, self.count)]
+
+    def text(self, value: float) -> str:
+        """An SI value with name and unit."""
+        return f"{self.name} = {value / self.size:.6g} {self.unit}".rstrip()
+
+
+def axis_of(text: str, in_si: InSI) -> Axis:
+    """The axis of a text such as ``t=1.8mm..2.2mm:11``; without a number of values the axis of a sample.
+
+    Raises:
+        SceneError: the text is no range, or the scene refuses an end of the range.
+    """
+    found = _VARIED.fullmatch(text)
+    if found is None or found["count"] in ("0", "1"):
+        raise _refused("--vary", repr(text), "NAME=FIRST..LAST:COUNT with two values or more, as t=1.8mm..2.2mm:11")
+    name, last = found["name"], found["high"]
+    unit = _UNIT.fullmatch(last)
+    low, high = in_si(name, found["low"]), in_si(name, last)
+    named = unit is not None and unit[1] != ""
+    number = float(last.removesuffix(unit[1])) if unit is not None and named else 0.0
+    if low == high:
+        raise _refused("--vary", repr(text), "two different values")
+    size = high / number if number else 1.0
+    return Axis(name, low, high, int(found["count"] or 0), unit[1] if unit is not None and number else "", size)
+
+
+def grid(axes: Sequence[Axis]) -> tuple[Point, ...]:
+    """All combinations of the values of the axes; the last axis changes fastest.
+
+    Raises:
+        SceneError: two axes have one name, an axis has no number of values, or there are too many points.
+    """
+    names = [axis.name for axis in axes]
+    if len(set(names)) < len(names):
+        raise _refused("--vary", f"{', '.join(names)}", "a parameter once")
+    for axis in axes:
+        if not axis.count:
+            raise _refused("--vary", f"{axis.name} without a number of values", f"{axis.name}=FIRST..LAST:COUNT")
+    number = math.prod(axis.count for axis in axes)
+    if number > MOST:
+        raise _refused("--vary", f"{number} points", f"at most {MOST}")
+    return tuple(dict(zip(names, values, strict=True)) for values in product(*(axis.values() for axis in axes)))
+
+
+def sample(text: str, axes: Sequence[Axis]) -> tuple[Point, ...]:
+    """Points of ``sobol:K`` or ``lhs:K`` between the ends of the axes; a longer Sobol sample begins as a shorter does.
+
+    Raises:
+        SceneError: the text is no sample, or there is no axis.
+    """
+    from scipy.stats import qmc
+
+    found = re.fullmatch(r"(sobol|lhs):(\d{1,6})", text)
+    if found is None or not 1 <= int(found[2]) <= MOST:
+        raise _refused("--sample", repr(text), f"sobol:K or lhs:K with K from 1 to {MOST}, or a file that ends in .csv")
+    if not axes:
+        raise _refused("--sample", f"{text} without a range", "--vary NAME=FIRST..LAST, or a parameter with a range")
+    count, size = int(found[2]), len(axes)
+    if found[1] == "lhs":
+        unit = qmc.LatinHypercube(size, seed=SEED).random(count)
+    else:
+        unit = qmc.Sobol(size, seed=SEED).random_base2(math.ceil(math.log2(count)))[:count]
+    low, high = (np.array([getattr(axis, end) for axis in axes]) for end in ("low", "high"))
+    values = low + unit * (high - low)
+    return tuple({axis.name: float(x) for axis, x in zip(axes, row, strict=True)} for row in values)
+
+
+def read_points(path: Path, in_si: InSI) -> tuple[Point, ...]:
+    """Points of a CSV file: names of parameters in the first line, numbers with or without units below.
+
+    Raises:
+        SceneError: the file is absent or no table, or the scene refuses a value.
+    """
+    try:
+        rows = list(csv.reader(path.read_text("utf-8-sig").splitlines()))
+    except (OSError, UnicodeDecodeError) as error:
+        raise _refused(str(path), str(error), "a table with names of parameters in the first line") from None
+    head, *body = [[cell.strip() for cell in row] for row in rows if row] or [[]]
+    if not body or any(len(row) != len(head) for row in body) or len(body) > MOST:
+        raise _refused(
+            str(path),
+            f"{len(body)} lines below the names {', '.join(head) or '(none)'}",
+            f"1 to {MOST} lines with a value for every name",
+        )
+    return tuple({name: in_si(name, cell) for name, cell in zip(head, row, strict=True)} for row in body)
+
+
+def axes_of(points: Sequence[Point]) -> tuple[Axis, ...]:
+    """Axes of a sample: the least and the largest value of every parameter."""
+    names = list(points[0])
+    columns = {name: [point[name] for point in points] for name in names}
+    return tuple(Axis(name, min(values), max(values)) for name, values in columns.items())
+
+
+def chosen_for_check(points: Sequence[Point], axes: Sequence[Axis], count: int) -> frozenset[int]:
+    """Places of ``count`` points for a check: the corners first, then the points next to a Sobol sequence."""
+    from scipy.stats import qmc
+
+    span = np.array([axis.high - axis.low or 1.0 for axis in axes])
+    unit: Array = (np.array([[point[axis.name] for axis in axes] for point in points]) - [a.low for a in axes]) / span
+    corners = list(product((0.0, 1.0), repeat=len(axes))) if len(axes) <= CORNERS else []
+    sobol = qmc.Sobol(len(axes), seed=SEED)
+    left = np.ones(len(points), dtype=bool)
+    found: list[int] = []
+    while len(found) < min(count, len(points)):
+        wanted = np.array(corners.pop(0)) if corners else sobol.random(1)[0]
+        away = np.where(left, np.sum((unit - wanted) ** 2, axis=1), np.inf)
+        found.append(int(np.argmin(away)))
+        left[found[-1]] = False
+    return frozenset(found)
+
+
+def _refused(key: str, found: str, allowed: str) -> SceneError:
+    return SceneError([Mistake(key, found, allowed)])

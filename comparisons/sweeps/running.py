@@ -1,0 +1,191 @@
+"""A sweep: points, keys, known outcomes, and the solves of unknown points by an executor."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+
+from comparisons.choices import Choices, check
+from comparisons.pairing import Solvers
+from comparisons.store import digest, relevant
+from comparisons.sweeps.outcome import Asked, Outcome, outcome_of, solve_limited
+from comparisons.sweeps.points import Axis, Point
+from comparisons.writing import append_line, whole_lines
+from cprbm_scene import Mistake, Scene, SceneError
+
+_LOG = logging.getLogger(__name__)
+
+JOURNAL = "outcomes.jsonl"
+"""File of all outcomes: a line per solved point, written by the asking process alone."""
+
+WINDOW = 16
+"""Number of points that an executor has at a time, so that a result is kept as soon as it is there."""
+
+_AGAIN = ("CRASHED", "TIME_LIMIT")
+"""Endings that a larger time limit may change."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A point of a sweep: its number from 1, values, scene, solver and key."""
+
+    number: int
+    point: Point
+    scene: Scene
+    asked: Asked
+    key: str
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """A sweep with its outcomes.
+
+    Attributes:
+        scene: with the values of its file.
+        axes: the varied parameters; all have numbers of values in a grid.
+        tasks: the points in order.
+        outcomes: by key; a point that was not solved has none.
+    """
+
+    scene: Scene
+    axes: tuple[Axis, ...]
+    tasks: tuple[Task, ...]
+    outcomes: Mapping[str, Outcome]
+
+    def points(self) -> Iterator[tuple[Task, Outcome]]:
+        """Solved points in order."""
+        return ((task, self.outcomes[task.key]) for task in self.tasks if task.key in self.outcomes)
+
+    @property
+    def headline(self) -> str:
+        """Words of the checked points and the number of unchecked points, and the failures."""
+        outcomes = [outcome for _, outcome in self.points()]
+        checked = [outcome.verdict for outcome in outcomes if outcome.solver == "compare"]
+        words = sorted(set(checked), key=lambda word: (word != "AGREE", word))
+        text = ", ".join(f"{word or 'no verdict'} at {checked.count(word)}" for word in words)
+        text = f"{text} of {len(checked)} checked points, " if checked else ""
+        text += f"{len(outcomes) - len(checked)} unchecked"
+        failed = [outcome.ending for outcome in outcomes if not outcome.completed]
+        endings = ", ".join(f"{failed.count(name)} {name}" for name in sorted(set(failed)))
+        text += f"; {len(failed)} of {len(outcomes)} points failed ({endings})" if failed else ""
+        left = len(self.tasks) - len(outcomes)
+        return f"{text}; {left} not solved" if left else text
+
+
+def tasks_of(
+    scene: Scene,
+    points: Sequence[Point],
+    asked: Asked,
+    checked: frozenset[int],
+    choices: Choices,
+    shard: tuple[int, int] = (1, 1),
+) -> tuple[Task, ...]:
+    """Points with scenes and keys.
+
+    Args:
+        scene: the question.
+        points: values of parameters, SI.
+        asked: solver of the points.
+        checked: places of points that are compared.
+        choices: how finely, and by which variants.
+        shard: i and n, for the points i, i + n, ...
+
+    Raises:
+        SceneError: the scene at a point is invalid.
+    """
+    check(choices, scene)
+    found, refused = [], []
+    for place in range(shard[0] - 1, len(points), shard[1]):
+        point = points[place]
+        try:
+            own = scene.with_parameters(**point)
+        except SceneError as error:
+            refused.append((point, error.mistakes[0]))
+            continue
+        solver: Asked = "compare" if place in checked else asked
+        names = ("cprbm", "fea") if solver == "compare" else (solver,)
+        parts = (repr(relevant(name, choices)) for name in names)
+        key = digest("sweep", solver, own.model_dump_json(exclude={"file"}), *parts)
+        found.append(Task(place + 1, point, own, solver, key))
+    if refused:
+        point, mistake = refused[0]
+        values = ", ".join(f"{name} = {value:g}" for name, value in point.items())
+        count = f"{len(refused)} of {len(points)} points without a valid scene"
+        text = f"{count}, the first at {values} (SI): {mistake.found}"
+        raise SceneError([Mistake(mistake.key, text, mistake.allowed, mistake.file)])
+    return tuple(found)
+
+
+def known_outcomes(folders: Sequence[Path]) -> dict[str, Outcome]:
+    """Outcomes by key in the journals of folders; a damaged line is ignored with a note.
+
+    Raises:
+        OSError: a journal cannot be read.
+    """
+    outcomes: dict[str, Outcome] = {}
+    for path in (folder / JOURNAL for folder in folders):
+        for number, line in enumerate(whole_lines(path), start=1):
+            try:
+                key, outcome = outcome_of(line)
+            except (ValueError, KeyError, TypeError) as error:
+                _LOG.warning("line %d of %s is damaged (%s); the point is solved again", number, path, error)
+            else:
+                outcomes[key] = outcome
+    return outcomes
+
+
+def run(
+    sweep: Sweep,
+    executor: Executor,
+    choices: Choices,
+    solvers: Solvers,
+    limit: float,
+    out: Path | None,
+    moved: Callable[[int], None] = lambda done: None,
+) -> Sweep:
+    """The sweep with outcomes of all points; each outcome is written into the journal of ``out`` at once.
+
+    Args:
+        sweep: points and known outcomes.
+        executor: solves the points.
+        choices: how finely, and by which variants.
+        solvers: the functions that answer.
+        limit: time limit per solve, s.
+        out: folder of the journal; None for no journal.
+        moved: called with the number of finished points.
+
+    Raises:
+        OSError: the journal cannot be written.
+    """
+    journal = None if out is None else out / JOURNAL
+    if journal is not None and journal.is_symlink():  # outcomes belong into the folder
+        journal.unlink()
+    wanted = {task.key: task for task in sweep.tasks}
+    outcomes = {key: found for key, found in sweep.outcomes.items() if key in wanted and not _again(found, limit)}
+    moved(len(outcomes))
+    waiting = (task for key, task in wanted.items() if key not in outcomes)
+    pending: dict[Future[Outcome], Task] = {}
+    try:
+        while True:
+            for task in islice(waiting, WINDOW - len(pending)):
+                pending[executor.submit(solve_limited, task.scene, choices, task.asked, solvers, limit)] = task
+            if not pending:
+                return Sweep(sweep.scene, sweep.axes, sweep.tasks, outcomes)
+            for future in wait(pending, return_when=FIRST_COMPLETED).done:
+                task, outcome = pending.pop(future), future.result()
+                outcomes[task.key] = outcome
+                if journal is not None:
+                    append_line(journal, outcome.line(task.key))
+                moved(len(outcomes))
+    finally:
+        for future in pending:
+            future.cancel()
+
+
+def _again(outcome: Outcome, limit: float) -> bool:
+    """Whether a larger time limit may change the outcome."""
+    return outcome.ending in _AGAIN and limit > outcome.limit

@@ -1,0 +1,49 @@
+"""Sweeps from Python."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import nullcontext
+from itertools import product
+from pathlib import Path
+
+from comparisons.choices import Choices
+from comparisons.display_units import file_unit
+from comparisons.executor import threads
+from comparisons.pairing import Solvers
+from comparisons.sweeps.outcome import Asked
+from comparisons.sweeps.points import Axis, chosen_for_check
+from comparisons.sweeps.running import Sweep, known_outcomes, run, tasks_of
+from comparisons.sweeps.tables import write_tables
+from cprbm_scene import Scene
+
+
+def start(
+    scene: Scene,
+    vary: Mapping[str, Sequence[float]],
+    asked: Asked,
+    check: int,
+    choices: Choices | None,
+    executor: Executor | None,
+    limit: float,
+    out: Path | None,
+) -> Sweep:
+    """The finished sweep; arguments and errors as of :func:`comparisons.sweep`."""
+    points = tuple(dict(zip(vary, values, strict=True)) for values in product(*vary.values()))
+    chosen = choices or Choices()
+    units = {name: file_unit(scene, each.unit) for name, each in scene.parameters.items()}
+    axes = []
+    for name, values in vary.items():
+        size, unit = units.get(name, (1.0, ""))
+        axes.append(Axis(name, min(values), max(values), len(values), unit, size))
+    tasks = tasks_of(scene, points, asked, chosen_for_check(points, axes, check), chosen)
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+    sweep = Sweep(scene, tuple(axes), tasks, {} if out is None else known_outcomes([out]))
+    with threads(os.cpu_count() or 1) if executor is None else nullcontext(executor) as pool:
+        sweep = run(sweep, pool, chosen, Solvers(), limit, out)
+    if out is not None:
+        write_tables(out, sweep)
+    return sweep

@@ -1,1 +1,0 @@
-"""A mechanism as it stands at its stations: pictures, animations, and files for ParaView."""

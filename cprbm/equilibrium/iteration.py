@@ -1,0 +1,174 @@
+"""An iteration with a closed set, compiled: changes of the set, linear system, changes of forces and places."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+import numpy as np
+
+from cprbm.chain.compiled import compiled
+from cprbm.contact import CurveArrays, Places, move_places, settle_near
+from cprbm.equilibrium.columns import contact_columns
+from cprbm.equilibrium.elimination import Beams, Border, Reached
+from cprbm.equilibrium.linear import Bordered, Numbers, Work, linearise, reduced_load, restored
+from cprbm.equilibrium.newton import LARGEST_TURN
+from cprbm_scene.answer import Array, Flags, Ints
+
+OVERLAP = 1e-12
+"""Overlap, over the longest beam, from which an open place closes: round-off."""
+
+LONGEST_MOVE = 2.0
+"""Largest change of a moving place in an iteration, pieces."""
+
+
+@compiled
+def change_set(
+    curves: CurveArrays, places: Places, closed: Flags, gaps: Array, pairs: Ints, most: int
+) -> bool:  # pragma: no cover
+    """Close overlapping places and open pulling places; True if the set changed.
+
+    With more changes than ``most`` only the worst overlap closes, or without overlaps the largest pull opens.
+    ``pairs`` (pairs, 2) holds the numbers of both curves of every pair.
+    """
+    opens, closes, gap = _wanted(curves, places, closed, gaps, pairs)
+    if np.sum(opens) + np.sum(closes) > most:
+        worst, any_closes, least = -1, np.any(closes), np.inf
+        for k in range(closed.size):
+            value = gap[k] if any_closes else places.force[k]
+            if (closes[k] if any_closes else opens[k]) and value < least:
+                worst, least = k, value
+        for k in range(closed.size):
+            opens[k], closes[k] = opens[k] and k == worst, closes[k] and k == worst
+    for k in range(closed.size):
+        closed[k] = closes[k] or (closed[k] and not opens[k])
+    for k in range(closed.size):
+        closed[k] = closed[k + places.shares[k]]
+        if not closed[k]:
+            places.force[k] = 0.0
+    return bool(np.any(opens) or np.any(closes))
+
+
+@compiled
+def _wanted(
+    curves: CurveArrays, places: Places, closed: Flags, gaps: Array, pairs: Ints
+) -> tuple[Flags, Flags, Array]:  # pragma: no cover
+    """Places that should open, places that should close, and gaps with those of sharing places added."""
+    count = closed.size
+    opens, closes, gap = np.zeros(count, np.bool_), np.zeros(count, np.bool_), gaps.copy()
+    beside, depth = beside_points(curves, places, closed)
+    for k in range(count):
+        if places.shares[k] != 0:
+            gap[k + places.shares[k]] += gaps[k]
+    for k in range(count):
+        if places.shares[k] != 0:
+            continue
+        thick = curves.thickness[places.piece[k]] + curves.thickness[places.foot[k]] > 0.0
+        opens[k] = closed[k] and (places.force[k] < 0.0 or beside[k])
+        closes[k] = not closed[k] and not beside[k] and gap[k] < -OVERLAP - depth[k]
+        # a foot on an end of the first curve is the foot of that end's own place
+        second = places.curve[k] != pairs[places.pair[k], 0]
+        last = places.curve[k] == places.other[k] and places.xi[k] == 1.0
+        doubled = places.at_point[k] and (second or last)
+        closes[k] = closes[k] and (thick or not places.at_point[k]) and not doubled
+    return opens, closes, gap
+
+
+@compiled
+def beside_points(curves: CurveArrays, places: Places, closed: Flags) -> tuple[Flags, Array]:  # pragma: no cover
+    """Fixed places within a piece of a closed moving place, and the overlap of every pair's point contact.
+
+    Outside of the point the other places of the pair may overlap by as much without contact.
+    """
+    beside, depth = np.zeros(closed.size, np.bool_), np.zeros(closed.size)
+    for k in range(closed.size):
+        if not (closed[k] and places.moves[k]):
+            continue
+        piece, foot, lost = places.piece[k], places.foot[k], 0.0
+        for i in range(curves.lost.shape[1]):
+            lost += (curves.lost[piece, i] + curves.lost[foot, i]) * 0.5**i
+        arc = curves.arc[piece] + places.xi[k] * curves.span[piece]
+        for j in range(closed.size):
+            if places.moves[j] or places.pair[j] != places.pair[k]:
+                continue
+            depth[j] = max(depth[j], lost * places.force[k])
+            apart = abs(curves.arc[places.piece[j]] + places.xi[j] * curves.span[places.piece[j]] - arc)
+            beside[j] = beside[j] or (places.curve[j] == places.curve[k] and apart < curves.span[piece])
+    return beside, depth
+
+
+@compiled
+def begin_iteration(
+    z: Array,
+    m: Numbers,
+    driven: Flags,
+    target: Array,
+    stiffness: Array,
+    anchor: Array,
+    work: Work,
+    curves: CurveArrays,
+    places: Places,
+    closed: Flags,
+    gaps: Array,
+    curvatures: Array,
+    room: Array,
+    counters: Ints,
+    pairs: Ints,
+    most: int,
+) -> tuple[bool, Bordered, Array, Array]:  # pragma: no cover
+    """Whether the set changed, the border, the chains' solution for minus the gradient, and the border's load.
+
+    Settles the places that may close; changes the set unless ``most`` is 0.
+    """
+    settle_near(z, curves, places, closed, gaps, curvatures, room, counters, 0)
+    changed = most > 0 and change_set(curves, places, closed, gaps, pairs, most)
+    gradient = np.zeros(z.size)
+    columns = contact_columns(z, curves, places, closed, gradient)
+    bordered = linearise(z, m, driven, target, stiffness, anchor, work, columns, gradient)
+    load = -gradient
+    return changed, bordered, load, reduced_load(m, work, driven, bordered, columns.values, load)
+
+
+@compiled
+def end_iteration(
+    z: Array,
+    beams: Beams,
+    border: Border,
+    turns: Ints,
+    motions: Ints,
+    curves: CurveArrays,
+    places: Places,
+    closed: Flags,
+    reached: Reached,
+    change: Array,
+    solution: Array,
+    room: Array,
+) -> tuple[float, float]:  # pragma: no cover
+    """Largest correction of a displacement or an angle, inf if not finite, and of a place, in pieces.
+
+    Changes unknowns, forces and places by the border's ``solution`` and the chains' solution ``change``, a link by at
+    most ``LARGEST_TURN``; nothing if the correction is not finite.
+    """
+    size, turn = 0.0, 0.0
+    restored(beams, border, reached, solution, change)
+    for i in motions:
+        if not isfinite(change[i]):
+            return np.inf, 0.0
+        size = max(size, abs(change[i]))
+    for i in turns:
+        turn = max(turn, abs(change[i]))
+    share = min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0
+    by_force, column = np.zeros(closed.size), border.size
+    for k in range(closed.size):
+        if closed[k] and places.shares[k] == 0:
+            by_force[k] = solution[column]
+            column += 1
+    for k in range(closed.size):
+        if closed[k]:
+            by_force[k] = by_force[k + places.shares[k]]
+    moved = move_places(z, curves, places, change, by_force, share, LONGEST_MOVE)
+    for i in range(z.size):
+        z[i] += share * change[i]
+    for k in range(closed.size):
+        places.force[k] += share * by_force[k]
+        room[k] -= share * size
+    return size, moved

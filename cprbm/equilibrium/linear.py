@@ -1,0 +1,130 @@
+"""The linear system of a Newton iteration: chains, rows and closed places, compiled.
+
+A call assembles the gradient and the Hessian and eliminates the chains.  LAPACK factors the border after Bunch and
+Kaufman (a block of two has a single negative eigenvalue); a second call restores the chains' part of the solution.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from cprbm.chain import Blocks, Joints, Links, RowArrays, add_row_gradient, evaluate_chains, row_values
+from cprbm.chain.compiled import compiled
+from cprbm.equilibrium.columns import Columns
+from cprbm.equilibrium.elimination import Beams, Border, Reached, border_block, eliminate, reduce_load, restore
+from cprbm_scene.answer import Array, Flags, Ints
+
+
+class Numbers(NamedTuple):
+    """Arrays of a mechanism for the kernels, as :class:`cprbm.equilibrium.system.System` names them."""
+
+    links: Links
+    joints: Joints
+    rows: RowArrays
+    beams: Beams
+    border: Border
+    angles: Ints
+    turns: Ints
+    motions: Ints
+
+
+class Work(NamedTuple):
+    """Factors of the chains: blocks, inverse pivots and ratios of T."""
+
+    blocks: Blocks
+    pivot: Array
+    ratio: Array
+
+
+class Bordered(NamedTuple):
+    """Border after the elimination of the chains.
+
+    Attributes:
+        border: G, lower triangle.
+        negative: number of negative pivots of all T.
+        columns, reached: of the closed places, and X.
+    """
+
+    border: Array
+    negative: int
+    columns: Columns
+    reached: Reached
+
+
+NO_COLUMNS = Columns(
+    np.zeros(0),
+    0,
+    np.zeros(0),
+    np.zeros(0),
+    np.zeros(0, dtype=np.int64),
+    np.zeros(0, dtype=np.int64),
+    np.zeros(0),
+)
+
+
+@compiled
+def add_gradient(
+    z: Array, m: Numbers, driven: Flags, target: Array, stiffness: Array, anchor: Array, blocks: Blocks, gradient: Array
+) -> None:  # pragma: no cover
+    """Add the gradient of the Lagrangian without contacts to ``gradient``; write the blocks of the Hessian.
+
+    Springs of the ``stiffness`` (links,) pull the links' angles to the ``anchor`` (links,).
+    """
+    first = m.rows.first
+    evaluate_chains(z, m.links, m.joints, blocks, gradient)
+    add_row_gradient(z, m.rows, z[first:], gradient)
+    for j in range(m.angles.size):
+        blocks.turn[j] += stiffness[j]
+        gradient[m.angles[j]] += stiffness[j] * (z[m.angles[j]] - anchor[j])
+    values = row_values(z, m.rows)
+    for r in range(driven.size):
+        gradient[first + r] = values[r] - target[r] if driven[r] else 0.0
+
+
+@compiled
+def reduced_load(
+    m: Numbers, work: Work, driven: Flags, bordered: Bordered, values: Array, load: Array
+) -> Array:  # pragma: no cover
+    """Load of the border; solves the chains in place. ``values`` (at most forces,) are the load of the forces."""
+    border = m.border
+    reduced = np.zeros(len(bordered.border))
+    for i in range(border.first, load.size):
+        reduced[i - border.first] = load[i]
+    for r in range(driven.size):
+        if not driven[r]:
+            reduced[border.rows + r] = 0.0
+    reduced[border.size : border.size + values.size] = values
+    columns, reached = bordered.columns, bordered.reached
+    reduce_load(m.beams, work.blocks, work.pivot, work.ratio, driven, border, columns, reached, load, reduced)
+    return reduced
+
+
+@compiled
+def restored(beams: Beams, border: Border, reached: Reached, solution: Array, load: Array) -> None:  # pragma: no cover
+    """Turn the chains' solution ``load`` into the solution of the whole system, in place."""
+    restore(beams, reached, solution, load)
+    for i in range(border.first, load.size):
+        load[i] = solution[i - border.first]
+
+
+@compiled
+def linearise(
+    z: Array,
+    m: Numbers,
+    driven: Flags,
+    target: Array,
+    stiffness: Array,
+    anchor: Array,
+    work: Work,
+    columns: Columns,
+    gradient: Array,
+) -> Bordered:  # pragma: no cover
+    """Border at a state with the columns of closed places; adds the gradient without contacts to ``gradient``."""
+    add_gradient(z, m, driven, target, stiffness, anchor, work.blocks, gradient)
+    size = m.border.size + columns.diagonal.size
+    G = np.zeros((size, size))
+    border_block(z, m.rows, driven, m.border, G)
+    negative, reached = eliminate(m.beams, work.blocks, work.pivot, work.ratio, driven, m.border, columns, G)
+    return Bordered(G, negative, columns, reached)

@@ -1,0 +1,286 @@
+"""Clearance as drawn: between two beams, of a beam from itself, and of a beam from a rigid shape.
+
+=======  ================================================================
+symbol   meaning
+=======  ================================================================
+u        fraction of a beam's arc length
+T        half of the thickness at a place, m; zero for a beam as a line
+D(p)     distance of a place p from the other body, m, negative inside
+L        length of a beam, m
+r        size of a rigid shape, m
+κ, Δs    largest curvature, 1/m; arc length between two places of a beam
+=======  ================================================================
+
+A beam fills the circles of radius T about its neutral line.  The gap is the least D(p(u)) - T(u).  Of a second beam,
+D(p) is the least distance from the neutral line less its T: at the foot of p, or at a kink of the thickness.
+
+Contact of a beam with itself.  By Schur's comparison theorem the distance of two places is at least (2/κ) sin(κ Δs/2)
+for Δs ≤ 2π/κ.  With 2 T κ < 1, places closer than 2 T are therefore either neighbours, or have Δs > 10 T.  Lines and
+graphs have no places of the second kind: with enough rotation of the tangent, by the angle φ, a graph extends along the
+axis by ∫ cos φ dφ/κ > 3.8 T.
+
+Bounds on rigid shapes are dimensionless: 1e-6 ≤ r/L ≤ 1e6, and L ≥ 1e-6 of all coordinates; larger or farther shapes
+leave a gap without digits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from itertools import pairwise, product
+from math import dist
+from typing import NamedTuple
+
+import numpy as np
+
+from cprbm_scene.beam_records import Beam, WeldedEnd
+from cprbm_scene.curve_records import MEETING, SHORTEST, shape_of
+from cprbm_scene.curves import Array, least
+from cprbm_scene.edges import distance_from
+from cprbm_scene.mistakes import Mistake, written_place
+from cprbm_scene.statement import (
+    Arc,
+    BeamContact,
+    CircleContact,
+    EllipseContact,
+    FunctionContact,
+    HalfPlaneContact,
+    LineContact,
+    Point,
+    RigidContact,
+    Scene,
+    Spline,
+    SplineContact,
+)
+
+Range = tuple[float, float]
+
+OVERLAP = 1e-6
+"""Overlap that counts as round-off, of the mean thickness where both beams are thinnest."""
+TOUCHING = 1e-3
+"""Overlap of beams of constant thickness that counts as touching, of their mean: coordinates are rounded.
+
+Of other beams so much may overlap beside ends that are welded side by side to one body.
+"""
+CROSSING_ANGLE = 1e-3
+"""Angle, rad, below which two lines that meet are tangent."""
+JOINED = 5.0
+"""Mean thicknesses beside a shared end in which beams overlap by their nature."""
+SIDE_BY_SIDE = 2.0
+"""Mean thicknesses between ends that lie side by side on one body."""
+NEIGHBOURS = 5.0
+"""Thicknesses along a beam between places that are no neighbours."""
+WHOLE: Range = (0.0, 1.0)
+_SAMPLES = 1001
+_FEET = 8
+"""Steps to the foot of a perpendicular; a step leaves an error of κ times the distance of the error before."""
+_SLOPE = 1e-7
+"""Half of the stretch of u over which the slope of a thickness is taken."""
+
+
+class Gap(NamedTuple):
+    """Least ``gap``, m, negative for an overlap, with the places ``u1`` and ``u2`` on both beams."""
+
+    gap: float
+    u1: float
+    u2: float
+
+
+def _half(beam: Beam, u: Array, *, thick: bool) -> Array:
+    return 0.5 * beam.thickness_at(u) if thick else np.zeros(len(u))
+
+
+@lru_cache(maxsize=512)
+def beam_gap(first: Beam, second: Beam, range1: Range = WHOLE, range2: Range = WHOLE, *, thick: bool = True) -> Gap:
+    """Least gap of two beams within ranges of u; a gap far above the samples' distance is not refined."""
+    from scipy.spatial import cKDTree  # scenes without contact of beams need no SciPy
+
+    one, two = shape_of(first.curve), shape_of(second.curve)
+    samples = np.union1d(np.linspace(*range1, _SAMPLES), _kinks(first, range1))
+    known = np.union1d(np.linspace(*range2, _SAMPLES), _kinks(second, range2))
+    tree, kinks = cKDTree(two.point(known)), _kinks(second, range2)
+
+    def foot(u: Array) -> Array:
+        p = one.point(u)
+        v = known[tree.query(p)[1]]
+        for _ in range(_FEET):
+            away = p - two.point(v)
+            step = (away * two.tangent(v)).sum(axis=1)
+            if thick and second.tapered:
+                steeper = second.thickness_at(v + _SLOPE) - second.thickness_at(v - _SLOPE)
+                step += np.hypot(*away.T) * steeper / (4.0 * _SLOPE * two.length)
+            v = np.clip(v + step / two.length, *range2)
+        places = np.vstack((v, np.tile(kinks[:, None], len(u))))
+        gaps = [np.hypot(*(p - two.point(v)).T) - _half(second, v, thick=thick) for v in places]
+        return np.asarray(places[np.argmin(gaps, axis=0), np.arange(len(u))])
+
+    def gap(u: Array) -> Array:
+        v = foot(u)
+        d = np.hypot(*(one.point(u) - two.point(v)).T)
+        return np.asarray(d - _half(first, u, thick=thick) - _half(second, v, thick=thick))
+
+    value, place = least(gap, samples, refined_below=2.0 * (one.length + two.length) / _SAMPLES)
+    return Gap(value, place, float(foot(np.array([place]))[0]))
+
+
+def _kinks(beam: Beam, span: Range) -> Array:
+    return beam.knots[(beam.knots > span[0]) & (beam.knots < span[1])]
+
+
+def wrong_clearance(scene: Scene) -> Iterator[Mistake]:
+    """Beams that overlap themselves, another beam of a contact, or a rigid shape of a contact as drawn."""
+    for name, beam in scene.beams.items():
+        if beam.sound and isinstance(beam.curve, Arc | Spline):
+            yield from _itself(f"beams.{name}.curve", beam)
+    for name, contact in scene.contacts.items():
+        beams = [scene.beams[beam] for beam in contact.beams if beam in scene.beams and scene.beams[beam].sound]
+        if isinstance(contact, BeamContact) and len(beams) == 2 and contact.between[0] != contact.between[1]:
+            found = _too_deep(scene, contact, beams) if contact.thick else _crossing(*beams)
+            if found is not None:
+                names = f"{contact.between[0]!r} and {contact.between[1]!r}"
+                yield Mistake(f"contacts.{name}", f"{names} {found[0]}", found[1])
+        elif isinstance(contact, RigidContact) and beams and not any(contact.shape_rules()):
+            yield from _rigid(scene, f"contacts.{name}", contact, beams[0])
+
+
+def overlap_at_rest(scene: Scene, contact: BeamContact) -> float:
+    """Overlap of thick beams as drawn, m; 0 for round-off, for lines, and for an overlap only beside shared ends.
+
+    Beside ends welded side by side to the same body an overlap up to :data:`TOUCHING` is left out.  Solvers subtract
+    the overlap from the distance at which the beams touch.
+    """
+    first, second = (scene.beams[beam] for beam in contact.between)
+    mean, largest = 0.5 * (first.thinnest + second.thinnest), 0.5 * (first.thickest + second.thickest)
+    ranges = _apart_from_shared(first, second, JOINED * largest)
+    depth = -beam_gap(first, second, *ranges).gap if contact.thick and _left(ranges) else 0.0
+    if OVERLAP * mean < depth <= TOUCHING * mean:
+        beside = _apart_from_held(scene, (first, second), largest, ranges)
+        depth = -beam_gap(first, second, *beside).gap if _left(beside) else 0.0
+    return depth if depth > OVERLAP * mean else 0.0
+
+
+def _left(ranges: list[Range]) -> bool:
+    return all(low < high for low, high in ranges)
+
+
+def _too_deep(scene: Scene, contact: BeamContact, beams: list[Beam]) -> tuple[str, str] | None:
+    """Values found and allowed for thick beams; None without an overlap beyond touching."""
+    depth, mean = overlap_at_rest(scene, contact), 0.5 * sum(beam.thinnest for beam in beams)
+    allowed = OVERLAP if any(beam.tapered for beam in beams) else TOUCHING
+    return (
+        None
+        if depth <= allowed * mean
+        else (
+            f"that overlap at the start by {depth:.3g} m, {depth / mean:.3g} of their mean thickness",
+            f"beams that touch or are apart (overlap at most {allowed:g} of the mean thickness)",
+        )
+    )
+
+
+def _crossing(first: Beam, second: Beam) -> tuple[str, str] | None:
+    """Values found and allowed for beams as lines; None without a crossing."""
+    shapes = shape_of(first.curve), shape_of(second.curve)
+    shortest = min(shape.length for shape in shapes)
+    ranges = _apart_from_shared(first, second, CROSSING_ANGLE * shortest)
+    if not _left(ranges):
+        return None
+    pair = beam_gap(first, second, *ranges, thick=False)
+    t1, t2 = (shape.tangent(np.array([u]))[0] for shape, u in zip(shapes, pair[1:], strict=True))
+    inside = all(1e-6 < u < 1.0 - 1e-6 for u in pair[1:])
+    if not (inside and pair.gap <= MEETING * shortest and abs(t1[0] * t2[1] - t1[1] * t2[0]) > CROSSING_ANGLE):
+        return None
+    place = written_place(shapes[0].point(np.array([pair.u1]))[0])
+    return f"that cross at the start, at {place} m", "neutral lines that touch or are apart"
+
+
+def _apart_from_shared(first: Beam, second: Beam, left_out: float) -> list[Range]:
+    """Ranges of u without ``left_out`` (m) beside shared ends; an empty range if nothing is left."""
+    lengths = [shape_of(beam.curve).length for beam in (first, second)]
+    ranges = []
+    for beam, other, length in ((first, second, lengths[0]), (second, first, lengths[1])):
+        starts, ends = (
+            any(dist(place, end) <= MEETING * max(lengths) for end in (other.curve.start, other.curve.end))
+            for place in (beam.curve.start, beam.curve.end)
+        )
+        ranges.append((left_out / length if starts else 0.0, 1.0 - left_out / length if ends else 1.0))
+    return ranges
+
+
+def _apart_from_held(scene: Scene, beams: tuple[Beam, Beam], mean: float, ranges: list[Range]) -> list[Range]:
+    """The ranges of u without stretches beside ends welded side by side to the same body."""
+    owners, cut = scene.owners, list(ranges)
+    for sides in product(("start", "end"), repeat=2):
+        joints = [getattr(beam, side) for beam, side in zip(beams, sides, strict=True)]
+        places = [getattr(beam.curve, side) for beam, side in zip(beams, sides, strict=True)]
+        bodies = {owners.get(joint.point) if isinstance(joint, WeldedEnd) else None for joint in joints}
+        if None in bodies or len(bodies) == 2 or dist(*places) > SIDE_BY_SIDE * mean:
+            continue
+        for i, (beam, side) in enumerate(zip(beams, sides, strict=True)):
+            (low, high), share = cut[i], JOINED * mean / shape_of(beam.curve).length
+            cut[i] = (max(low, share), high) if side == "start" else (low, min(high, 1.0 - share))
+    return cut
+
+
+def _itself(key: str, beam: Beam) -> Iterator[Mistake]:
+    """Places of a beam, neighbours excluded, that are closer than the thickness."""
+    from scipy.spatial import cKDTree  # scenes of lines and graphs need no SciPy
+
+    shape, u = shape_of(beam.curve), np.linspace(*WHOLE, 3 * _SAMPLES // 2)
+    p, half, step = shape.point(u), _half(beam, u, thick=True), 2.0 / (len(u) - 1)
+    i, j = cKDTree(p).query_pairs(beam.thickest + step * shape.length, output_type="ndarray").T
+    far = (u[j] - u[i]) * shape.length > NEIGHBOURS * beam.thickest
+    if not np.any(far):
+        return
+    i, j = i[far], j[far]
+    k = int(np.argmin(np.hypot(*(p[i] - p[j]).T) - half[i] - half[j]))
+    pair = beam_gap(
+        beam, beam, *((max(0.0, at - step), min(1.0, at + step)) for at in (float(u[i[k]]), float(u[j[k]])))
+    )
+    thickness = float(np.mean(beam.thickness_at(np.array(pair[1:]))))
+    if -pair.gap > OVERLAP * thickness:
+        found = f"a beam that overlaps itself: near {written_place(shape.point(np.array([pair.u1]))[0])} m it comes to "
+        found += f"{thickness + pair.gap:.3g} m from itself, and is {thickness:g} m thick"
+        yield Mistake(key, found, "a curve that keeps a thickness away from itself")
+
+
+def _rigid(scene: Scene, key: str, contact: RigidContact, beam: Beam) -> Iterator[Mistake]:
+    """A shape out of proportion to the beam, or a beam that overlaps the shape or lies behind the edge."""
+    shape, mistakes = shape_of(beam.curve), list(_proportions(key, contact, shape_of(beam.curve).length))
+    if mistakes:
+        yield mistakes[0]
+        return
+    away, samples = distance_from(contact), np.union1d(np.linspace(*WHOLE, 2 * _SAMPLES - 1), beam.knots)
+    depth = -least(lambda u: np.asarray(away(shape.point(u)) - _half(beam, u, thick=contact.thick)), samples)[0]
+    measure, of = (beam.thinnest, "its thickness") if contact.thick else (shape.length, "its length")
+    points = scene.bodies[contact.body].points if contact.body in scene.bodies else {}
+    held = any(getattr(end, "point", None) in points for end in (beam.start, beam.end))
+    circle = isinstance(contact, CircleContact)
+    if depth > max(OVERLAP * measure, MEETING * shape.length if held and not circle else 0.0):
+        what = "that overlaps the circle" if circle else "on the wrong side of the edge, or overlapping the edge,"
+        side = f"circle from {contact.side}" if isinstance(contact, CircleContact) else "edge from the free side"
+        found = f"the beam {contact.beam!r} {what} at the start by {depth:.3g} m, {depth / measure:.3g} of {of}"
+        yield Mistake(key, found, f"a beam that touches the {side} or is apart (overlap at most {OVERLAP:g} of {of})")
+
+
+def _proportions(key: str, contact: RigidContact, length: float) -> Iterator[Mistake]:
+    """Mistakes of sizes and coordinates beside the beam's ``length``, m."""
+    places, sizes, where = tuple[Point, ...](), list[tuple[str, float]](), key
+    match contact:
+        case CircleContact(center=center, radius=radius):
+            places, sizes, where = (center,), [("radius", radius)], f"{key}.center"
+        case LineContact(points=places):
+            sizes = [(f"points[{i}]", dist(*ends)) for i, ends in enumerate(pairwise(places), start=1)]
+        case HalfPlaneContact(point=point):
+            places = (point,)
+        case FunctionContact(curve=curve) | SplineContact(curve=curve) | EllipseContact(curve=curve):
+            part = {"beam-function": "range", "beam-spline": "points"}.get(contact.kind, "semi_axes")
+            places, sizes = (curve.start, curve.end), [(part, shape_of(curve).length)]
+    for part, size in sizes:
+        if not SHORTEST * length <= size <= length / SHORTEST:
+            found = f"{size:.3g} m, which is {size / length:.3g} of the beam's length"
+            allowed = f"between {SHORTEST:g} and {1.0 / SHORTEST:g} of the beam's length"
+            yield Mistake(f"{key}.{part}", found, allowed)
+    largest = max(abs(coordinate) for place in places for coordinate in place)
+    if not SHORTEST * largest <= length:
+        found = f"coordinates up to {largest:.3g} m beside a beam of {length:.3g} m"
+        yield Mistake(where, found, f"coordinates of which the beam's length is at least {SHORTEST:g}")

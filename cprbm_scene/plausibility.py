@@ -1,0 +1,68 @@
+"""Notes on loads that are implausibly large for their beams, with the mix-up of units that would explain them.
+
+=======  ==============================================================
+symbol   meaning
+=======  ==============================================================
+P, M, q  largest force, moment and distributed load of the stages
+L, E I   length and largest bending stiffness of a beam
+r        P L²/(E I), M L/(E I) or q L³/(E I): of order one where a beam bends as far as it is long
+=======  ==============================================================
+
+With E I = E w t³/12, r has the power -1 of E, 1 of the force and -2 of the unit of length, for every kind of load.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from cprbm_scene.curve_records import shape_of
+from cprbm_scene.statement import BodyLoad, Load, Scene
+from cprbm_scene.units import FORCE, LENGTH, SIZES, STRESS, Units
+
+LARGE = 1000.0
+"""r above which a load is implausible: a cantilever under r = 1000 is straight but for 3 % of its length."""
+SOFTEST, STIFFEST = 1e6, 1.5e12
+"""Young's moduli of rubber and diamond, rounded outwards, Pa."""
+_POWERS = {"stress": -1, "force": 1, "length": -2}
+
+
+def notes(scene: Scene) -> Iterator[str]:
+    """Sentences on implausible numbers of a scene; none for most scenes.
+
+    Args:
+        scene: a scene without mistakes.
+    """
+    for name, load in scene.loads.items():
+        stages = (stage for stage in scene.stages if name in (stage.steps, *stage.together))
+        largest = max((abs(value) for stage in stages for value in stage.stations), default=0.0)
+        beams = scene.beams if isinstance(load, BodyLoad) else [load.beam]
+        ratio, beam = min((largest * _per_unit(scene, load, beam), beam) for beam in beams)
+        if ratio > LARGE:
+            symbol = {"force": "P L^2", "beam_force": "P L^2", "distributed": "q L^3"}.get(load.kind, "M L")
+            modulus = scene.materials[scene.beams[beam].material].youngs_modulus
+            yield (
+                f"loads.{name}: {symbol}/(E I) is {ratio:.3g} for the beam {beam!r}, implausible above "
+                f"{LARGE:g}.{_explanation(ratio, modulus, scene.display_units)}"
+            )
+
+
+def _per_unit(scene: Scene, load: Load, name: str) -> float:
+    """The ratio r of a load of 1 in SI units on a beam."""
+    beam = scene.beams[name]
+    width = max(beam.width.values) if not isinstance(beam.width, float) else beam.width
+    stiffness = scene.materials[beam.material].youngs_modulus * width * beam.thickest**3 / 12.0
+    return float(shape_of(beam.curve).length ** (2 - load.unit.length) / stiffness)
+
+
+def _explanation(ratio: float, modulus: float, units: Units) -> str:
+    """The question about the mix-up of units that brings r and E closest to ordinary values; empty without any."""
+    found = []
+    for quantity, unit in (("stress", STRESS), ("length", LENGTH), ("force", FORCE)):
+        own = getattr(units, quantity)
+        for other in Units.model_fields[quantity].annotation.__args__:  # type: ignore[union-attr]
+            factor = float(SIZES[other] / SIZES[own])
+            true, stiff = ratio * factor ** _POWERS[quantity], modulus * (factor if unit == STRESS else 1.0)
+            if other != own and true <= LARGE and SOFTEST <= stiff <= STIFFEST:
+                found.append((abs(math.log10(true)), f" Is a {quantity} in {other} written as {own}?"))
+    return min(found, default=(0.0, ""))[1]

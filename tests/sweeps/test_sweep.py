@@ -1,0 +1,254 @@
+"""``cprbm sweep`` and ``comparisons.sweep``: tables, interruptions, failing points, wrong questions, the elastica."""
+
+import csv
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import comparisons
+from comparisons.choices import Choices
+from comparisons.cli.main import run
+from cprbm_scene import read
+from tests.sweeps.elastica import tip
+
+ROOT = Path(__file__).parents[2]
+CANTILEVER = """
+name = "cantilever"
+units = {{ length = "mm", stress = "MPa" }}
+[parameters]
+t = {{ value = 2.0, unit = "mm", range = [1.0, 3.0] }}
+L = {{ value = 100.0, unit = "mm" }}
+P = {{ value = 1.0, unit = "N" }}
+[materials.plastic]
+youngs_modulus = 2000.0
+poisson_ratio = 0.3
+[bodies]
+ground = {{ motion = "fixed", points = {{ A = [0.0, 0.0] }} }}
+tip = {{ motion = "free", points = {{ B = ["= L", 0.0] }} }}
+[beams.b]
+curve = {{ kind = "line", start = [0.0, 0.0], end = ["= L", 0.0] }}
+thickness = "= t"
+width = 10.0
+material = "plastic"
+start = {{ joint = "weld", point = "A" }}
+end = {{ joint = "weld", point = "B" }}
+[loads]
+F = {{ kind = "force", point = "B", direction = [0.0, 1.0] }}
+[[stages]]
+name = "load"
+steps = "F"
+stations = {stations}
+[[probes]]
+of = "B"
+quantity = "displacement"
+"""
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """File of a cantilever with parameters."""
+    path = tmp_path / "cantilever.toml"
+    path.write_text(CANTILEVER.format(stations="[0.5, '= P']"), "utf-8")
+    return path
+
+
+def table(folder, name="numbers.csv"):
+    """Rows of a table without the seconds."""
+    with (folder / name).open(newline="") as stream:
+        return [{key: value for key, value in row.items() if key != "seconds"} for row in csv.DictReader(stream)]
+
+
+def swept(scene, out, *options):
+    return run(["sweep", str(scene), "-n", "6", "--quiet", "--out", str(out), *options])
+
+
+def test_a_grid_has_a_row_per_number_and_a_larger_grid_takes_the_points_over(scene, tmp_path, capsys):
+    assert swept(scene, tmp_path / "s", "--vary", "t=1.6mm..2.4mm:3", "--vary", "L=90..110:2") == 0
+    rows, last = table(tmp_path / "s"), table(tmp_path / "s", "last.csv")
+    assert [(row["t, mm"], row["L, mm"], row["station"], row["component"]) for row in rows[:4]] == [
+        ("1.6", "90.0", "0.5", "x"),
+        ("1.6", "90.0", "0.5", "y"),
+        ("1.6", "90.0", "1.0", "x"),
+        ("1.6", "90.0", "1.0", "y"),
+    ]
+    assert len(rows) == 6 * 2 * 2
+    assert len(last) == 6
+    assert {row["unit"] for row in rows} == {"mm"}
+    assert last[0]["load B.displacement.y, mm"] == rows[3]["value"]
+    assert "cantilever: 6 unchecked." in capsys.readouterr().out
+    page = (tmp_path / "s" / "index.html").read_text("utf-8")
+    assert "t = 1.6 mm to t = 2.4 mm (3 values)" in page
+    lines = len((tmp_path / "s" / "outcomes.jsonl").read_text("utf-8").splitlines())
+    assert swept(scene, tmp_path / "s", "--vary", "t=1.6mm..2.4mm:5", "--vary", "L=90..110:2") == 0
+    assert lines == 6
+    assert len((tmp_path / "s" / "outcomes.jsonl").read_text("utf-8").splitlines()) == 10
+    known = {row["key"]: row for row in last}
+    assert sum(row["key"] in known for row in table(tmp_path / "s", "last.csv")) == 6
+
+
+def test_executors_give_the_same_table_bit_for_bit(scene, tmp_path):
+    """Serial, threads, and processes of the caller; 60 points."""
+    vary = {"t": list(np.linspace(1.6e-3, 2.4e-3, 12)), "L": list(np.linspace(0.09, 0.11, 5))}
+    choices = Choices(links=4)
+    with ThreadPoolExecutor(1) as serial, ProcessPoolExecutor(2, mp_context=get_context("spawn")) as processes:
+        for name, executor in (("serial", serial), ("local", None), ("processes", processes)):
+            comparisons.sweep(read(scene), vary, choices=choices, executor=executor, out=tmp_path / name)
+    serial = table(tmp_path / "serial")
+    assert len(serial) == 60 * 2 * 2
+    assert table(tmp_path / "local") == table(tmp_path / "processes") == serial
+
+
+def test_shards_merge_to_the_whole(scene, tmp_path):
+    vary = ["--vary", "t=1.6mm..2.4mm:5"]
+    for shard in ("1/2", "2/2"):
+        assert swept(scene, tmp_path / shard.replace("/", "of"), *vary, "--shard", shard) == 0
+    assert [row["point"] for row in table(tmp_path / "2of2", "last.csv")] == ["2", "4"]
+    merged = ["--merge", str(tmp_path / "1of2"), "--merge", str(tmp_path / "2of2")]
+    assert swept(scene, tmp_path / "merged", *vary, *merged) == 0
+    assert not (tmp_path / "merged" / "outcomes.jsonl").exists(), "nothing was solved again"
+    assert swept(scene, tmp_path / "whole", *vary) == 0
+    assert table(tmp_path / "merged") == table(tmp_path / "whole")
+
+
+def test_checked_points_have_a_verdict(scene, tmp_path, capsys):
+    assert swept(scene, tmp_path / "s", "--vary", "t=1.6mm..2.4mm:5", "--check", "2", "--elements", "8") in (0, 3)
+    rows = table(tmp_path / "s", "last.csv")
+    assert [row["solver"] for row in rows] == ["compare", "cprbm", "cprbm", "cprbm", "compare"]
+    assert all(row["verdict"] for row in rows if row["solver"] == "compare")
+    assert " of 2 checked points, 3 unchecked" in capsys.readouterr().out
+    assert any(row["stated"] for row in table(tmp_path / "s"))
+
+
+@pytest.mark.parametrize("sample", ["sobol:4", "lhs:4", "points.csv"])
+def test_samples(scene, tmp_path, sample):
+    (tmp_path / "points.csv").write_text("t,L\n1.7mm,95\n0.0019m,100mm\n", "utf-8")
+    source = str(tmp_path / sample) if sample.endswith("csv") else sample
+    assert swept(scene, tmp_path / "s", "--sample", source) == 0
+    values = [float(row["t, mm"]) for row in table(tmp_path / "s", "last.csv")]
+    assert values == [1.7, 1.9] if sample.endswith("csv") else len(set(values)) == 4
+    assert all(1.0 <= value <= 3.0 for value in values)
+
+
+POISONED = """
+import os, sys, time
+from comparisons.cli.main import run
+from comparisons.pairing import Solvers, cprbm_answer
+
+
+class Poisoned:
+    def __call__(self, scene, choices):
+        with open({marks!r}, "a") as stream:
+            stream.write("x")
+        thickness = round(scene.beams["b"].thickness * 1e3, 6)
+        if thickness == 1.8:
+            os._exit(7)
+        if thickness == 2.0:
+            time.sleep(600.0)
+        if thickness == 2.2:
+            raise ZeroDivisionError("a beam of no length")
+        return cprbm_answer(scene, choices)
+
+
+if __name__ == "__main__":
+    sys.exit(run(["sweep", *sys.argv[1:]], Solvers(cprbm=Poisoned())))
+"""
+
+
+def program(tmp_path, text):
+    (tmp_path / "program.py").write_text(text, "utf-8")
+    return [sys.executable, str(tmp_path / "program.py")]
+
+
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
+
+
+def test_poisoned_points_are_rows_and_are_tried_twice(scene, tmp_path):
+    marks = tmp_path / "marks"
+    command = [*program(tmp_path, POISONED.format(marks=str(marks))), str(scene), "-n", "6", "--quiet", "--out"]
+    options = [str(tmp_path / "s"), "--vary", "t=1.6mm..2.4mm:5", "--at-most", "12"]
+    done = subprocess.run([*command, *options], env=ENVIRONMENT, capture_output=True, text=True, check=False)
+    assert done.returncode == 1, done.stderr
+    rows = table(tmp_path / "s", "last.csv")
+    assert [row["ending"] for row in rows] == ["COMPLETED", "CRASHED", "TIME_LIMIT", "FAULT", "COMPLETED"]
+    assert "7" in rows[1]["sentence"]
+    assert "12 s" in rows[2]["sentence"]
+    assert "a beam of no length" in rows[3]["sentence"]
+    assert len(marks.read_text()) == 5 + 2
+    assert "3 of 5 points failed (1 CRASHED, 1 FAULT, 1 TIME_LIMIT)" in done.stdout
+
+
+def test_kills_of_the_parent_end_in_the_same_table(scene, tmp_path):
+    """Kills at random times; every later run goes on from the lines that stand."""
+    vary = ["--vary", "t=1.6mm..2.4mm:9", "--vary", "L=90..110:4"]
+    assert swept(scene, tmp_path / "whole", *vary) == 0
+    options = [str(scene), "-n", "6", "--quiet", "--out", str(tmp_path / "killed"), *vary]
+    command = [sys.executable, "-m", "comparisons", "sweep", *options]
+    journal, drawn, lines = tmp_path / "killed" / "outcomes.jsonl", random.Random(905), 0
+    for _ in range(4):
+        process = subprocess.Popen(command, env=ENVIRONMENT, cwd=ROOT, stdout=subprocess.DEVNULL)
+        wanted = lines + drawn.randrange(6)
+        while (len(journal.read_bytes().splitlines()) if journal.exists() else 0) <= wanted:
+            if process.poll() is not None:
+                break
+            time.sleep(0.002)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        now = journal.read_bytes().count(b"\n")
+        assert now >= lines
+        lines = now
+    with journal.open("ab") as stream:
+        stream.write(b'{"key": "cut short by a kill", "solv')
+    assert swept(scene, tmp_path / "killed", *vary) == 0
+    assert table(tmp_path / "killed") == table(tmp_path / "whole")
+    assert len(journal.read_bytes().splitlines()) == 36
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--vary", "thickness=1mm..2mm:3"], "names no parameter"),
+        (["--vary", "t=1N..2N:3"], "a number in mm"),
+        (["--vary", "t=1mm..5mm:3"], "a number from 1 to 3 mm"),
+        (["--vary", "t=1mm..2mm:1"], "two values or more"),
+        (["--vary", "t=1mm..2mm"], "without a number of values"),
+        (["--vary", "t=1mm..2mm:3", "--vary", "t=1mm..2mm:4"], "a parameter once"),
+        (["--vary", "L=-100..100:3"], "1 of 3 points without a valid scene"),
+        (["--sample", "halton:9"], "sobol:K or lhs:K"),
+        (["--sample", "absent.csv"], "No such file"),
+        (["--vary", "t=1mm..2mm:3", "--shard", "4/3"], "I/N with I from 1 to N"),
+        (["--vary", "t=1mm..2mm:3", "--on", "remote"], "local:N"),
+        ([], "neither --vary nor --sample"),
+    ],
+)
+def test_a_wrong_question_is_a_sentence(scene, tmp_path, capsys, options, said):
+    assert swept(scene, tmp_path / "s", *options) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+    assert not (tmp_path / "s").exists()
+
+
+def test_a_cantilever_follows_the_elastica_with_order_four(tmp_path):
+    """α = P L² / (E I) from 0.2 to 10, with the closed form of Bisshopp and Drucker; E I / L² is 4/3 N.
+
+    The chain has order four on a beam without contact (docs/method.md).
+    """
+    path = tmp_path / "cantilever.toml"
+    path.write_text(CANTILEVER.format(stations="['= P']"), "utf-8")
+    alphas, errors = (0.2, 1.0, 4.0, 10.0), {}
+    for links in (20, 40, 80, 160):
+        swept = comparisons.sweep(read(path), {"P": [4.0 / 3.0 * alpha for alpha in alphas]}, choices=Choices(links))
+        values = [[number["value"] / 0.1 for number in outcome.numbers] for _, outcome in swept.points()]
+        errors[links] = [np.hypot(*np.subtract(value, tip(alpha))) for value, alpha in zip(values, alphas, strict=True)]
+    assert max(errors[40]) < 5e-4
+    orders = [np.log2(np.divide(errors[n], errors[2 * n])) for n in (20, 40, 80)]
+    np.testing.assert_allclose(orders, 4.0, atol=0.1)
