@@ -1,21 +1,17 @@
 """Which edition answers a scene.
 
-The second edition has places of contact on beams alone.  A rigid edge with a feature smaller than a link may lie
-between two places without contact: such scenes, and contacts in the formulation ``paper``, keep the first edition.
+The second edition has places of contact on beams alone.  A rigid edge with a corner, an end or a feature
+smaller than a link may press between two places: such scenes, and contacts in the formulation ``paper``, keep the first
+edition.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
-
 from cprbm_scene import BeamContact, CircleContact, HalfPlaneContact, LineContact, Scene, SelfContact
 from cprbm_scene.geometry import arc_length, largest_curvature
-from cprbm_scene.statement import Contact
-
-SHORTEST_EDGE = 4.0
-"""Length of an edge, in links of the beam: shorter edges lie between places."""
+from cprbm_scene.statement import Contact, EllipseContact, PinnedEnd
 
 
 def by_second_edition(scene: Scene, formulation: str, links_of: Callable[[str], int]) -> bool:
@@ -26,14 +22,19 @@ def by_second_edition(scene: Scene, formulation: str, links_of: Callable[[str], 
 
 
 def _is_even(scene: Scene, contact: Contact, links_of: Callable[[str], int]) -> bool:
-    """True if all features of a contact's rigid edge are longer than a link."""
+    """True if all features of a contact's rigid edge are longer than a link, and no corner or end can press."""
     if isinstance(contact, BeamContact | SelfContact | HalfPlaneContact):
         return True
     link = arc_length(scene.beams[contact.beam].curve) / links_of(contact.beam)
     if isinstance(contact, CircleContact):
         return contact.radius >= link
-    if isinstance(contact, LineContact):
-        first, *inner, last = contact.points
-        return not inner and float(np.hypot(*np.subtract(last, first))) >= SHORTEST_EDGE * link
-    smooth = largest_curvature(contact.curve) * link <= 1.0
-    return smooth and arc_length(contact.curve) >= SHORTEST_EDGE * link
+    if isinstance(contact, EllipseContact):
+        return largest_curvature(contact.curve) * link <= 1.0
+    # an end of an edge may press on the beam; the edge under an own pin has the beam at its end
+    return isinstance(contact, LineContact) and len(contact.points) == 2 and _is_pinned(scene, contact)
+
+
+def _is_pinned(scene: Scene, contact: LineContact) -> bool:
+    """True if a joint pins the beam on the body of the edge."""
+    ends = scene.beams[contact.beam].start, scene.beams[contact.beam].end
+    return any(isinstance(end, PinnedEnd) and scene.body_of(end.point) == contact.body for end in ends)

@@ -8,7 +8,8 @@ r        unbalanced generalised force over the largest moment
 =======  ====================================================================================
 
 The moments of joints are products of stiffness and angles, uncertain by ε k |θ|; the sums of a
-chain add ε √m of the largest moment.  Four times both is the floor of r.
+chain add ε √m of the largest moment.  A contact holds positions, which a gap with its weights knows to some ε of the
+longest beam; over a link that is an angle of some ε/h, in two neighbouring joints.  Four times the sum is the floor.
 """
 
 from __future__ import annotations
@@ -47,6 +48,9 @@ PULL = 1e-9
 """Moment by which a stop may pull, over the largest moment."""
 
 
+PLACES = 12.0
+"""Round-offs of a gap, three, times the weights 1, −2, 1 of three positions in the difference of two moments, four."""
+
 OVERLAPS = 1e-9
 """Overlap of open curves, over the longest beam, left by the active set, which closes larger ones."""
 
@@ -79,7 +83,9 @@ def certify(
     scale = max(_largest_moment(solved), SMALLEST_LOAD)
     turned = float(np.abs(state.z[system.angles]).max())
     stiffest = float(system.joints.stiffness.max())
-    floor = 4.0 * EPSILON * (stiffest * turned + sqrt(len(system.metric)) * scale) / scale
+    contacts = state.contacts
+    turns = turned + (PLACES / float(system.metric.min()) if contacts is not None and contacts.closed.any() else 0.0)
+    floor = 4.0 * EPSILON * (stiffest * turns + sqrt(len(system.metric)) * scale) / scale
     force_rows, equations = _parts(system)
     residual = float(np.abs(solved.gradient[force_rows]).max()) / scale
     contact = contact_measures(solved)
