@@ -1,8 +1,8 @@
 """Which edition answers a scene.
 
-The second edition has places of contact on beams alone.  A rigid edge with a corner, an end or a feature
-smaller than a link may press between two places: such scenes, and contacts in the formulation ``paper``, keep the first
-edition.
+The second edition answers every scene without contacts, and contacts in the theories ``stretch`` and ``shear``.  Its
+places of contact lie on beams alone: a rigid edge with a corner, an end or a feature smaller than a link may press
+between two places.  Such contacts, all contacts in ``bending`` and in the formulation ``paper`` keep the first edition.
 """
 
 from __future__ import annotations
@@ -16,8 +16,10 @@ from cprbm_scene.statement import Contact, EllipseContact, PinnedEnd
 
 def by_second_edition(scene: Scene, formulation: str, links_of: Callable[[str], int]) -> bool:
     """True if the second edition answers a scene in a formulation with some links of the beams."""
-    if formulation == "paper":
-        return not scene.contacts
+    if not scene.contacts:
+        return True
+    if formulation == "paper" or scene.theory == "bending":
+        return False
     return all(_is_even(scene, contact, links_of) for contact in scene.contacts.values())
 
 

@@ -85,16 +85,7 @@ class BeamContact(Record):
         return chain(twice, _paper_rules(self.paper, self.between, allowed))
 
 
-class _OneBeam(Record):
-    """Contact of a single ``beam``."""
-
-    @property
-    def beams(self) -> tuple[str, ...]:
-        """Name of the beam."""
-        return (getattr(self, "beam"),)  # noqa: B009 - a field of the records below
-
-
-class SelfContact(_OneBeam):
+class SelfContact(Record):
     """Frictionless contact of a beam with itself, after enough rotation.
 
     A ``thick`` beam touches by the edges, half of the local thickness from the neutral line; another beam as a line.
@@ -106,8 +97,13 @@ class SelfContact(_OneBeam):
     thick: bool = True
     paper: ClassVar[None] = None  # the formulation has no form for self-contact
 
+    @property
+    def beams(self) -> tuple[str, ...]:
+        """Name of the beam."""
+        return (self.beam,)
 
-class RigidContact(_OneBeam):
+
+class RigidContact(Record):
     """Fields of all contacts of a beam with a rigid shape, without friction.
 
     The shape is fixed to ``body`` and stated at the initial place, m.  A ``thick`` beam touches by the edge, half of
@@ -119,10 +115,16 @@ class RigidContact(_OneBeam):
     thick: bool = True
     paper: PaperRigid | None = None
 
+    @property
+    def beams(self) -> tuple[str, ...]:
+        """Name of the beam."""
+        return (self.beam,)
+
     def rules(self) -> Iterator[Mistake]:
         """Data for ``paper`` of other beams, and shapes without geometry."""
-        paper = _paper_rules(self.paper, self.beams, f"the contact's beam {self.beam!r}")
-        return chain(paper, islice(self.shape_rules(), 1))
+        return chain(
+            _paper_rules(self.paper, self.beams, f"the contact's beam {self.beam!r}"), islice(self.shape_rules(), 1)
+        )
 
     def shape_rules(self) -> Iterator[Mistake]:
         """Mistakes of the shape, only the first of them valid; none by default."""
