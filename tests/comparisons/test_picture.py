@@ -17,7 +17,7 @@ from comparisons.present.strips import left_of
 from cprbm_scene import Certificate, Shape, Stage, StationAnswer, scene_from
 from cprbm_scene.frozendict import frozendict
 from tests.cprbm_scene.editing import edited
-from tests.cprbm_scene.test_pins import LINKAGE
+from tests.cprbm_scene.scenes import LINKAGE
 from tests.verdict.jumping import Jumping
 
 
