@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cprbm.contact import TOUCHING, taken, touching_as_drawn
+from cprbm.continuation.limits import located
 from cprbm.equilibrium.contact_gaps import least_gap
 from cprbm.equilibrium.newton import NotConvergedError, Solved
 from cprbm.equilibrium.solving import at_state
@@ -27,9 +28,6 @@ from cprbm.equilibrium.system import State, System
 
 CLOSED = 1e-11
 """Overlap, over the longest beam, at which a contact has closed: ten times the active set's round-off."""
-
-LOCATED = 1e-12
-"""Accuracy of the fraction of a step."""
 
 
 class ContactChange(NamedTuple):
@@ -141,7 +139,7 @@ def _closing(
 
     if gap(1.0) >= 0.0:
         return []
-    return [ContactChange(_zero(gap), apart, closes=True)]
+    return [ContactChange(located(gap), apart, closes=True)]
 
 
 def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[ContactChange]:
@@ -153,14 +151,7 @@ def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> lis
 
     if not force(0.0) > 0.0 > force(1.0):
         return []
-    return [ContactChange(_zero(force), frozenset([pair]), closes=False)]
-
-
-def _zero(event: Callable[[float], float]) -> float:
-    """Share of a step at which an event function vanishes."""
-    from scipy.optimize import brentq  # steps without a closing load no optimisers
-
-    return float(brentq(event, 0.0, 1.0, xtol=LOCATED))
+    return [ContactChange(located(force), frozenset([pair]), closes=False)]
 
 
 def _gap(solved: Solved, pair: int) -> float:

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -57,18 +58,23 @@ def first_event(before: Solved, after: Solved, acting: Flags, solve: Callable[[f
         solve: state at a fraction of the step.
     """
     begin, end = event_values(before, acting), event_values(after, acting)
-    happened = np.flatnonzero(end < -TOUCHING)
-    if not len(happened):
-        return None
-    from scipy.optimize import brentq  # scenes without stops load no optimisers
-
-    found = []
+    happened = np.flatnonzero(end < -TOUCHING).tolist()
     for row in happened:
         if begin[row] <= TOUCHING:
-            return StopChange(0.0, int(row))
-        share = brentq(lambda share, row=row: float(event_values(solve(share), acting)[row]), 0.0, 1.0, xtol=LOCATED)
-        found.append(StopChange(float(share), int(row)))
-    return min(found)
+            return StopChange(0.0, row)
+    return min((StopChange(located(partial(_event_value, solve, acting, row)), row) for row in happened), default=None)
+
+
+def _event_value(solve: Callable[[float], Solved], acting: Flags, row: int, share: float) -> float:
+    """e of a row at a fraction of the step."""
+    return float(event_values(solve(share), acting)[row])
+
+
+def located(event: Callable[[float], float]) -> float:
+    """Share of a step at which an event function vanishes."""
+    from scipy.optimize import brentq  # steps without events load no optimisers
+
+    return float(brentq(event, 0.0, 1.0, xtol=LOCATED))
 
 
 def changed(state: State, row: int, system: System) -> State:

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg.lapack import dsytrf, dsytrs
 
-from cprbm.chain import Blocks, empty_blocks
+from cprbm.chain import empty_blocks
 from cprbm.equilibrium.columns import Columns
 from cprbm.equilibrium.elimination import negative_pivots
-from cprbm.equilibrium.linear import NO_COLUMNS, Bordered, Work, add_gradient, linearise, reduced_load, restored
+from cprbm.equilibrium.linear import NO_COLUMNS, Bordered, Work, linearise, reduced_load, restored
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -80,13 +80,6 @@ def pulls(system: System, springs: Springs | None) -> tuple[Array, Array]:
         nothing = np.zeros(len(system.metric))
         return nothing, nothing
     return springs.strength * system.metric, springs.anchor
-
-
-def gradient_of(system: System, state: State, blocks: Blocks, springs: Springs | None = None) -> Array:
-    """Gradient (size,) of the Lagrangian; writes the blocks of the Hessian."""
-    gradient = np.zeros(system.size)
-    add_gradient(state.z, system.numbers, state.driven, state.target, *pulls(system, springs), blocks, gradient)
-    return gradient
 
 
 def factorise(

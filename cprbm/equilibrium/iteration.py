@@ -10,8 +10,7 @@ from cprbm.chain.compiled import compiled
 from cprbm.contact import CurveArrays, Places, move_places, settle_near
 from cprbm.equilibrium.columns import contact_columns
 from cprbm.equilibrium.elimination import Beams, Border, Reached
-from cprbm.equilibrium.linear import Bordered, Numbers, Work, linearise, reduced_load, restored
-from cprbm.equilibrium.newton import LARGEST_TURN
+from cprbm.equilibrium.linear import Bordered, Numbers, Work, correction, linearise, reduced_load, restored
 from cprbm_scene.answer import Array, Flags, Ints
 
 OVERLAP = 1e-12
@@ -148,15 +147,10 @@ def end_iteration(
     Changes unknowns, forces and places by the border's ``solution`` and the chains' solution ``change``, a link by at
     most ``LARGEST_TURN``; nothing if the correction is not finite.
     """
-    size, turn = 0.0, 0.0
     restored(beams, border, reached, solution, change)
-    for i in motions:
-        if not isfinite(change[i]):
-            return np.inf, 0.0
-        size = max(size, abs(change[i]))
-    for i in turns:
-        turn = max(turn, abs(change[i]))
-    share = min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0
+    size, share = correction(change, motions, turns)
+    if not isfinite(size):
+        return np.inf, 0.0
     by_force, column = np.zeros(closed.size), border.size
     for k in range(closed.size):
         if closed[k] and places.shares[k] == 0:

@@ -6,6 +6,7 @@ Kaufman (a block of two has a single negative eigenvalue); a second call restore
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,9 @@ from cprbm.chain.compiled import compiled
 from cprbm.equilibrium.columns import Columns
 from cprbm.equilibrium.elimination import Beams, Border, Reached, border_block, eliminate, reduce_load, restore
 from cprbm_scene.answer import Array, Flags, Ints
+
+LARGEST_TURN = 0.5
+"""Largest turn of a link in one iteration, rad."""
 
 
 class Numbers(NamedTuple):
@@ -128,3 +132,16 @@ def linearise(
     border_block(z, m.rows, driven, m.border, G)
     negative, reached = eliminate(m.beams, work.blocks, work.pivot, work.ratio, driven, m.border, columns, G)
     return Bordered(G, negative, columns, reached)
+
+
+@compiled
+def correction(change: Array, motions: Ints, turns: Ints) -> tuple[float, float]:  # pragma: no cover
+    """Size of a change (size,) of the unknowns, inf if not finite, and the share that turns no part too far."""
+    size, turn = 0.0, 0.0
+    for i in motions:
+        if not isfinite(change[i]):
+            return np.inf, 0.0
+        size = max(size, abs(change[i]))
+    for i in turns:
+        turn = max(turn, abs(change[i]))
+    return size, min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0

@@ -13,6 +13,7 @@ import numpy as np
 
 from cprbm.chain import row_values
 from cprbm.equilibrium.factors import Factors, SingularError, Springs, factorise
+from cprbm.equilibrium.linear import correction
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array
 
@@ -24,9 +25,6 @@ ROUNDED = 1e-6
 
 SHRINKING = 0.25
 """Ratio of corrections above which an iteration below ``ROUNDED`` no longer converges: round-off is reached."""
-
-LARGEST_TURN = 0.5
-"""Largest turn of a link in one iteration, rad."""
 
 
 class NotConvergedError(Exception):
@@ -92,7 +90,9 @@ def newton(system: System, start: State, iterations: int, springs: Springs | Non
         for iteration in range(1, iterations + 1):
             factors, gradient = factorise(system, state, springs)
             change = -factors.solve(gradient)
-            size, share = correction(system, change)
+            size, share = correction(change, system.motions, system.turns)
+            if not np.isfinite(size):
+                raise NotConvergedError("the correction is not finite")
             change[system.rows.first :][forced] = 0.0
             z += share * change
             if has_converged(size, last):
@@ -101,19 +101,6 @@ def newton(system: System, start: State, iterations: int, springs: Springs | Non
     except SingularError as singular:
         raise NotConvergedError("the system is singular") from singular
     raise NotConvergedError(f"{iterations} iterations did not converge")
-
-
-def correction(system: System, change: Array) -> tuple[float, float]:
-    """Size of a change (size,) of the unknowns, and the share of the change that turns no part too far.
-
-    Raises:
-        NotConvergedError: the change is not finite.
-    """
-    turn = float(np.abs(change[system.turns]).max())
-    size = float(np.abs(change[system.motions]).max())
-    if not np.isfinite(size):
-        raise NotConvergedError("the correction is not finite")
-    return size, min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0
 
 
 def has_converged(size: float, last: float) -> bool:

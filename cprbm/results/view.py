@@ -67,12 +67,10 @@ class View:
 
     def angles(self, beam: str, s: Array) -> Array:
         """Angles of the sections (k,) at arc lengths ``s``, with the flexibility beside loads at places of the beam."""
-        chain, system = self.chain(beam), self.solved.system
+        chain = self.chain(beam)
         links, weights = chain.angle_weights(s)
         turned = (weights * (self.z[self.mechanism.beam_angles(beam)] - chain.link_angle)[links]).sum(axis=1)
-        for row, mu in zip(
-            self.mechanism.rows, hidden_forces(system, self.z, self.z[system.rows.first :]), strict=True
-        ):
+        for row, mu in zip(self.mechanism.rows, self.hidden_forces, strict=True):
             if mu != 0.0 and row.unit_load is not None and row.unit_load.beam == beam:
                 turned -= mu * hidden_angles(chain, s, row.unit_load)
         return np.asarray(chain.rest_angle(s) + turned)
@@ -91,6 +89,12 @@ class View:
     def end(self, beam: str, end: str) -> tuple[float, Array]:
         """Arc length and position of a beam's end, in units."""
         return (0.0, self.nodes(beam)[0]) if end == "start" else (self.chain(beam).length, self.nodes(beam)[-1])
+
+    @cached_property
+    def hidden_forces(self) -> Array:
+        """Multipliers (rows,) of loads at places of beams, across their links."""
+        system = self.solved.system
+        return hidden_forces(system, self.z, self.z[system.rows.first :])
 
     @cached_property
     def potential_energy(self) -> float:
