@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple, TypedDict
+from typing import Any, NamedTuple, TypedDict
 
 from comparisons.case import Comparison
 from comparisons.display_units import file_unit
@@ -121,14 +121,14 @@ def comparison_records(compared: Comparison) -> list[Plain]:
 def csv_of(scene: Scene, *answers: Answer) -> str:
     """Answers to a scene as comma-separated values in the units of the scene's file, with a line of headers."""
     rows = (_in_file_units(scene, number) for answer in answers for number in numbers(scene, answer))
-    return _csv_text(list(Number.__annotations__), rows)
+    return csv_text([*Number.__annotations__, "arc_length_unit"], rows)
 
 
 def csv_of_comparisons(comparisons: Sequence[Comparison]) -> str:
     """Comparisons as comma-separated values in the units of the scenes' files, with a line of headers."""
     rows = (_in_file_units(each.scene, record) for each in comparisons for record in comparison_records(each))
     headers = [column.header for each in comparisons[:1] for column in comparison_columns(each.scene)]
-    return _csv_text(headers, rows)
+    return csv_text([*headers, "arc_length_unit"], rows)
 
 
 def _in_file_units(scene: Scene, record: Mapping[str, object]) -> Plain:
@@ -137,14 +137,20 @@ def _in_file_units(scene: Scene, record: Mapping[str, object]) -> Plain:
     for unit, columns in _MEASURED.items():
         factor, row[unit] = file_unit(scene, row[unit])
         for column in columns:
-            if factor != 1.0 and isinstance(row.get(column), float):
-                row[column] = float(f"{row[column] / factor:.15g}")
+            if isinstance(row.get(column), float):
+                row[column] = in_unit(row[column], factor)
     return row
 
 
-def _csv_text(headers: Sequence[str], rows: Iterable[Plain]) -> str:
+def in_unit(value: float | None, factor: float) -> float | None:
+    """A number in a unit of size ``factor``, to 15 digits."""
+    return value if value is None or factor == 1.0 else float(f"{value / factor:.15g}")
+
+
+def csv_text(headers: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
+    """Rows as comma-separated values with a line of headers; an absent value is empty."""
     text = io.StringIO()
-    table = csv.DictWriter(text, fieldnames=[*headers, "arc_length_unit"], lineterminator="\n")
+    table = csv.DictWriter(text, fieldnames=headers, lineterminator="\n", restval="")
     table.writeheader()
     table.writerows(rows)
     return text.getvalue()

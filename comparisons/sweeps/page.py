@@ -8,7 +8,7 @@ from typing import Any
 
 from comparisons.display_units import display_unit
 from comparisons.present.page import rendered
-from comparisons.sweeps.pictures import curve_of, names_of, pictures
+from comparisons.sweeps.pictures import curve_of, fullest, names_of, pictures
 from comparisons.sweeps.running import Sweep
 from comparisons.writing import write
 
@@ -43,11 +43,10 @@ def _label(sweep: Sweep, point: Any) -> str:  # noqa: ANN401 - a point
 
 def _family(sweep: Sweep) -> dict[str, Any]:
     """Curves of the first number of the first stage, for the slider."""
-    solved = [(task, outcome) for task, outcome in sweep.points() if outcome.numbers]
+    solved = sweep.solved()
     if not solved:
         return {"curves": []}
-    longest = max((outcome for _, outcome in solved), key=lambda outcome: len(outcome.numbers))
-    stage, name = next(iter(names_of(longest)), ("", ""))
+    stage, name = next(iter(names_of(fullest(solved))), ("", ""))
     curves = [(task, outcome, curve_of(outcome, stage, name)) for task, outcome in solved]
     ends = [curve[-1] for _, _, curve in curves if curve]
     if not ends:

@@ -30,13 +30,18 @@ _Solved = list[tuple[Task, Outcome]]
 
 def pictures(sweep: Sweep) -> Iterator[Figure]:
     """All figures of a sweep; none where no point has a number."""
-    solved = [(task, outcome) for task, outcome in sweep.points() if outcome.numbers]
+    solved = sweep.solved()
     if not solved:
         return
     yield _over_parameters(sweep, solved)
     yield from _family(sweep, solved)
     if any(outcome.solver == "compare" for _, outcome in solved):
         yield _checked(sweep, solved)
+
+
+def fullest(solved: _Solved) -> Outcome:
+    """The first outcome with the most numbers."""
+    return max((outcome for _, outcome in solved), key=lambda outcome: len(outcome.numbers))
 
 
 def names_of(outcome: Outcome) -> list[tuple[str, str]]:
@@ -67,7 +72,7 @@ def _panels(figure: Any, count: int) -> Sequence[Axes]:  # noqa: ANN401 - loaded
 
 def _over_parameters(sweep: Sweep, solved: _Solved) -> Figure:
     """Numbers of the last station over the parameters: curves, contours, or points of a sample."""
-    chosen = list(islice(names_of(max(solved, key=lambda each: len(each[1].numbers))[1]), _PANELS))
+    chosen = list(islice(names_of(fullest(solved)), _PANELS))
     grid, count = all(axis.count for axis in sweep.axes), len(sweep.axes)
     kind = {1: "curves", 2: "contours"}.get(count, "points") if grid else "points"
     with canvas(6.4, 4.8) as figure:
@@ -135,9 +140,8 @@ def _contours(figure: Any, axes: Axes, sweep: Sweep, solved: _Solved, numbers: l
 def _family(sweep: Sweep, solved: _Solved) -> Iterator[Figure]:
     """The curves of all points against the load or drive of every stage."""
     first = sweep.axes[0]
-    span = first.high - first.low
+    span, longest = first.high - first.low, fullest(solved)
     for stage in sweep.scene.stages:
-        longest = max((outcome for _, outcome in solved), key=lambda outcome: len(outcome.numbers))
         chosen = list(islice((name for own, name in names_of(longest) if own == stage.name), _PANELS))
         if not chosen:
             continue

@@ -60,6 +60,10 @@ class Sweep:
         """Solved points in order."""
         return ((task, self.outcomes[task.key]) for task in self.tasks if task.key in self.outcomes)
 
+    def solved(self) -> list[tuple[Task, Outcome]]:
+        """Points with numbers, in order."""
+        return [(task, outcome) for task, outcome in self.points() if outcome.numbers]
+
     @property
     def headline(self) -> str:
         """Words of the checked points and the number of unchecked points, and the failures."""

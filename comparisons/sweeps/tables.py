@@ -5,13 +5,12 @@ Numbers are in the units of the scene's file; every number of the long table sta
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from comparisons.display_units import file_unit
+from comparisons.present.csv_table import csv_text, in_unit
 from comparisons.sweeps.outcome import Outcome, Record
 from comparisons.sweeps.running import Sweep, Task
 from comparisons.writing import write
@@ -54,10 +53,10 @@ def write_tables(folder: Path, sweep: Sweep) -> None:
     tails = ["ending", "verdict", "reason", "iterations", "seconds", "key", "sentence"]
     long = ({**_in_units(sweep, record, names)} for record in records(sweep))
     columns = [*heads, *_PLACES, *_VALUES, "unit", "word", *tails]
-    write(folder / "numbers.csv", _text(long, columns))
+    write(folder / "numbers.csv", csv_text(columns, long))
     rows = [_wide(sweep, task, outcome, names) for task, outcome in sweep.points()]
     wide = dict.fromkeys(name for row in rows for name in row if name not in (*heads, *tails))
-    write(folder / "last.csv", _text(rows, [*heads, *tails[:-1], *wide, "sentence"]))
+    write(folder / "last.csv", csv_text([*heads, *tails[:-1], *wide, "sentence"], rows))
 
 
 def _wide(sweep: Sweep, task: Task, outcome: Outcome, names: Mapping[str, str]) -> dict[str, Any]:
@@ -65,7 +64,7 @@ def _wide(sweep: Sweep, task: Task, outcome: Outcome, names: Mapping[str, str]) 
     row = _in_units(sweep, _point(task, outcome), names)
     for number in last_numbers(outcome):
         factor, unit = file_unit(sweep.scene, number["unit"])
-        row[f"{number['stage']} {name_of(number)}, {unit}"] = _scaled(number["value"], factor)
+        row[f"{number['stage']} {name_of(number)}, {unit}"] = in_unit(number["value"], factor)
     return row
 
 
@@ -87,7 +86,7 @@ def name_of(number: Record) -> str:
 def _in_units(sweep: Sweep, record: Mapping[str, Any], names: Mapping[str, str]) -> dict[str, Any]:
     row = {name: value for name, value in record.items() if name not in names}
     for axis in sweep.axes:
-        row[names[axis.name]] = _scaled(record[axis.name], axis.size)
+        row[names[axis.name]] = in_unit(record[axis.name], axis.size)
     if "unit" in record:
         _convert(sweep.scene, row, "unit", _VALUES)
         _convert(sweep.scene, row, "station_unit", ("station",))
@@ -98,17 +97,4 @@ def _in_units(sweep: Sweep, record: Mapping[str, Any], names: Mapping[str, str])
 
 def _convert(scene: Scene, row: dict[str, Any], unit: str, columns: Iterable[str]) -> None:
     factor, row[unit] = file_unit(scene, row[unit])
-    row.update({column: _scaled(row.get(column), factor) for column in columns})
-
-
-def _scaled(value: float | None, factor: float) -> float | None:
-    """A number in units of ``factor``, to 15 digits."""
-    return value if value is None or factor == 1.0 else float(f"{value / factor:.15g}")
-
-
-def _text(rows: Iterable[Mapping[str, Any]], columns: list[str]) -> str:
-    text = io.StringIO()
-    table = csv.DictWriter(text, fieldnames=columns, lineterminator="\n", restval="")
-    table.writeheader()
-    table.writerows(rows)
-    return text.getvalue()
+    row.update({column: in_unit(row.get(column), factor) for column in columns})
