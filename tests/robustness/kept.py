@@ -16,6 +16,7 @@ from pathlib import Path
 
 from comparisons.plain import Plain
 from comparisons.provenance import program
+from comparisons.writing import append_line, whole_lines
 from tests.robustness.outcomes import Outcome, packed, unpacked
 
 
@@ -36,7 +37,7 @@ class Kept:
         Raises:
             OSError: the file cannot be read, or not be cut to its whole lines.
         """
-        lines: list[Mapping[str, Plain]] = [json.loads(line) for line in _whole_lines(self.path)]
+        lines: list[Mapping[str, Plain]] = [json.loads(line) for line in whole_lines(self.path)]
         outcomes = {_index(line): unpacked(line["ended"]) for line in lines if "ended" in line}
         saved = {_index(line): str(line["saved"]) for line in lines if "saved" in line}
         return outcomes, saved
@@ -58,37 +59,10 @@ class Kept:
         self._add({"index": index, "saved": file})
 
     def _add(self, line: Plain) -> None:
-        _add_line(self.path, json.dumps(line, ensure_ascii=False, allow_nan=False).encode())
+        append_line(self.path, json.dumps(line, ensure_ascii=False, allow_nan=False))
 
 
 def _index(line: Mapping[str, object]) -> int:
     index = line["index"]
     assert isinstance(index, int)
     return index
-
-
-def _add_line(path: Path, line: bytes) -> None:
-    """Add a ``line``, which has no end of its own, to a file that only grows; what of it is cut short has none either.
-
-    Raises:
-        OSError: the file cannot be written to.
-    """
-    with path.open("ab") as stream:
-        stream.write(line + b"\n")
-
-
-def _whole_lines(path: Path) -> list[bytes]:
-    """The lines of such a file, of which one that was cut short is taken away; none where there is no file.
-
-    Raises:
-        OSError: the file cannot be read, or not be cut.
-    """
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        return []
-    whole = content[: content.rfind(b"\n") + 1]
-    if len(whole) < len(content):
-        with path.open("r+b") as stream:
-            stream.truncate(len(whole))
-    return whole.splitlines()
