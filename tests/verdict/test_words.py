@@ -169,6 +169,15 @@ def test_a_shared_force_is_not_unique_if_the_sums_are_equal(hinge, clamp, word, 
     assert ("2 of contact.force (NOT_UNIQUE)" in found.verdict.because) is (case == "AGREE")
 
 
+def test_a_shared_force_that_depends_on_the_mesh_widens_no_other_station(hinge):
+    """The share moves from 9 N to 12 N between N and 2N; the other stations keep their small uncertainty."""
+    coarse, fine = (altered(C, sharing(force, -20.0 - force), 0.603) for force in (9.0, 12.0))
+    cprbm = only(coarse, fine, lambda choices: choices.links == 80)
+    found = compared(hinge, cprbm, altered(F, sharing(12.0, -32.0), 0.603))
+    assert said_of(found, "contact.force", 0.603) == "UNDECIDED NOT_UNIQUE"
+    assert said_of(found, "contact.force", 0.67) == "AGREE"
+
+
 def test_rows_that_are_all_not_unique_do_not_agree(hinge):
     stage = Stage(name="load", steps="M", stations=(0.603, 0.67))
     probes = (Probe(of="contact", quantity="force"),)
