@@ -15,12 +15,12 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Annotated, NamedTuple, get_args
 
-from pydantic import Field, ValidationInfo, WrapValidator
+from pydantic import Field, ValidationInfo, ValidatorFunctionWrapHandler, WrapValidator
 
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import SceneError, unknown_name
 from cprbm_scene.record import Record
-from cprbm_scene.units import ANGLE, NUMBER, SIZES, Handler, Measured, Reading, Unit, Units, mistake
+from cprbm_scene.units import ANGLE, NUMBER, SIZES, Measured, Reading, Unit, Units, mistake
 
 LONGEST = 300
 """Largest number of characters of an expression: the evaluation of a longer expression could exhaust the stack."""
@@ -92,12 +92,17 @@ def _power(function: Callable[..., float], values: Sequence[Value], units: Units
 
 _RULES: Mapping[str, tuple[Callable[..., float], Rule, int]] = frozendict(
     {
-        **{"+": (operator.add, _alike, 2), "-": (operator.sub, _alike, 2), "**": (operator.pow, _power, 2)},
-        **{"*": (operator.mul, _product, 2), "/": (operator.truediv, _product, 2)},
+        "+": (operator.add, _alike, 2),
+        "-": (operator.sub, _alike, 2),
+        "**": (operator.pow, _power, 2),
+        "*": (operator.mul, _product, 2),
+        "/": (operator.truediv, _product, 2),
         **{name: (getattr(math, name), _of_angle, 1) for name in ("sin", "cos", "tan")},
         "hypot": (math.hypot, _alike, 0),
-        **{"min": (lambda *numbers: min(numbers), _alike, 0), "max": (lambda *numbers: max(numbers), _alike, 0)},
-        **{"abs": (abs, _alike, 1), "atan2": (math.atan2, _angle, 2)},
+        "min": (lambda *numbers: min(numbers), _alike, 0),
+        "max": (lambda *numbers: max(numbers), _alike, 0),
+        "abs": (abs, _alike, 1),
+        "atan2": (math.atan2, _angle, 2),
         "sqrt": (math.sqrt, _power, 1),
     }
 )
@@ -169,12 +174,12 @@ _NAMED: Mapping[str, Value] = frozendict(
 class _Own(Measured):
     """Metadata of numbers in the parameter's own unit."""
 
-    def number(self, value: object, handler: Handler, info: ValidationInfo) -> object:
+    def number(self, value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
         """The number as it is written."""
         return handler(value)
 
 
-def _or_expression(value: object, handler: Handler, info: ValidationInfo) -> object:
+def _or_expression(value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
     expression = isinstance(info.context, Reading) and isinstance(value, str) and value.startswith("=")
     return value if expression else handler(value)
 

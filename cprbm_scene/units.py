@@ -22,8 +22,14 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
-from pydantic import ValidatorFunctionWrapHandler as Handler
+from pydantic import (
+    BeforeValidator,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ValidationInfo,
+    ValidatorFunctionWrapHandler,
+)
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
@@ -34,13 +40,20 @@ from cprbm_scene.record import Record
 SMALLEST, LARGEST = 1e-50, 1e50
 """Magnitudes of numbers with a unit, in SI: a product of six such numbers stays within floating-point numbers."""
 
+_LENGTHS = {"m": "1", "cm": "0.01", "mm": "0.001", "um": "1e-6", "in": "0.0254"}
+_OTHERS = {
+    "N": "1",
+    "kN": "1e3",
+    "mN": "1e-3",
+    "uN": "1e-6",
+    "rad": "1",
+    "Pa": "1",
+    "kPa": "1e3",
+    "MPa": "1e6",
+    "GPa": "1e9",
+}
 SIZES: Mapping[str, Fraction] = frozendict(
-    {
-        **{name: Fraction(size) for name, size in {"m": 1, "cm": "1/100", "mm": "1/1000", "um": "1e-6"}.items()},
-        **{"in": Fraction("0.0254"), "rad": Fraction(1), "deg": Fraction(math.pi / 180.0)},
-        **{name: Fraction(size) for name, size in {"N": 1, "kN": 1000, "mN": "1/1000", "uN": "1e-6"}.items()},
-        **{name: Fraction(size) for name, size in {"Pa": 1, "kPa": "1e3", "MPa": "1e6", "GPa": "1e9"}.items()},
-    }
+    {name: Fraction(size) for name, size in (_LENGTHS | _OTHERS).items()} | {"deg": Fraction(math.pi / 180.0)}
 )
 """Sizes of units in SI."""
 
@@ -101,7 +114,7 @@ class Measured:
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
         return {"anyOf": [handler(schema), {"type": "string", "pattern": "^="}]}
 
-    def number(self, value: object, handler: Handler, info: ValidationInfo) -> object:
+    def number(self, value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
         """The number in SI; the field's bounds are on the file's number, or on the value of an expression."""
         if not isinstance(info.context, Reading):
             return handler(value)
