@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import chain
 from math import isnan, nan
 from typing import Annotated, ClassVar, Literal, cast
@@ -11,9 +11,23 @@ from pydantic import Field, create_model
 
 from cprbm_scene.beam_records import PointName
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, broken, unknown_names
-from cprbm_scene.record import Name, Named, Of, Record, nonzero
-from cprbm_scene.units import ANGLE, FORCE, LENGTH, LINE_LOAD, MOMENT, Direction, Point, Share, Unit
+from cprbm_scene.mistakes import Mistake, broken, unknown_name
+from cprbm_scene.units import (
+    ANGLE,
+    FORCE,
+    LENGTH,
+    LINE_LOAD,
+    MOMENT,
+    Direction,
+    Name,
+    Named,
+    Of,
+    Point,
+    Record,
+    Share,
+    Unit,
+    nonzero,
+)
 
 SHORTEST_STRETCH = 1e-6
 """Least length of a distributed load, of the beam's length."""
@@ -62,14 +76,21 @@ class SlidingBody(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """A guide without direction; a pin without a point, of another body or without ``turns``."""
-        names, known = ", ".join(map(repr, self.points)), self.about in self.points
-        turned = f"{self.about!r}, a point to turn about, of a body that does not turn"
         nothing = "nothing: of the points of a body that slides and turns, one stays in the slot"
-        yield from nonzero("along", self.along)
-        yield from unknown_names("about", self.about, "point of this body", self.points)
-        yield from broken(
-            (known and not self.turns, "about", turned, "turns = true, or no point"),
-            (self.turns and self.about is None and len(self.points) > 1, "about", nothing, f"one of {names}"),
+        return broken(
+            nonzero("along", self.along),
+            _pivot(self.about, self.points),
+            self.about in self.points
+            and not self.turns
+            and Mistake(
+                "about",
+                f"{self.about!r}, a point to turn about, of a body that does not turn",
+                "turns = true, or no point",
+            ),
+            self.turns
+            and self.about is None
+            and len(self.points) > 1
+            and Mistake("about", nothing, f"one of {', '.join(map(repr, self.points))}"),
         )
 
 
@@ -85,7 +106,12 @@ class TurningBody(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """A pivot outside the body's points."""
-        return unknown_names("about", self.about, "point of this body", self.points)
+        return broken(_pivot(self.about, self.points))
+
+
+def _pivot(about: Name | None, points: Mapping[Name, Point]) -> Mistake | bool:
+    """The mistake of a pivot outside a body's points."""
+    return about not in (None, *points) and unknown_name("about", str(about), "point of this body", points)
 
 
 Body = Annotated[FixedBody | FreeBody | SlidingBody | TurningBody, Field(discriminator="motion")]
@@ -117,8 +143,8 @@ class Stop(Record):
         least, most = (nan if limit is None else limit for limit in (self.least, self.most))
         both = f"least = {least:g} rad and most = {most:g} rad"
         return broken(
-            (isnan(least) and isnan(most), "", "neither 'least' nor 'most'", "at least one of the two, rad"),
-            (least >= most, "", both, "a least angle that is less than the most"),
+            isnan(least) and isnan(most) and Mistake("", "neither 'least' nor 'most'", "at least one of the two, rad"),
+            least >= most and Mistake("", both, "a least angle that is less than the most"),
         )
 
 
@@ -144,9 +170,11 @@ class Moment(Record):
 class _Directed(Record):
     """Load or drive along a ``direction`` of any length but zero."""
 
+    direction: Direction
+
     def rules(self) -> Iterator[Mistake]:
         """A direction [0, 0]."""
-        return nonzero("direction", getattr(self, "direction"))  # noqa: B009 - a field of the records below
+        return broken(nonzero("direction", self.direction))
 
 
 class Force(_Directed):
@@ -155,7 +183,6 @@ class Force(_Directed):
     unit: ClassVar[Unit] = FORCE
     kind: Literal["force"]
     point: PointName
-    direction: Direction
 
 
 class BeamForce(_Directed):
@@ -168,7 +195,6 @@ class BeamForce(_Directed):
     kind: Literal["beam_force"]
     beam: BeamName
     at: Share
-    direction: Direction
 
 
 class BeamMoment(Record):
@@ -180,7 +206,7 @@ class BeamMoment(Record):
     at: Share
 
 
-class DistributedLoad(Record):
+class DistributedLoad(_Directed):
     """Dead load on a ``beam``, N per metre of arc length, constant ``along`` the beam between two fractions.
 
     The ``direction`` (of any length but zero) stays as the beam turns: a weight, not a pressure.
@@ -189,14 +215,13 @@ class DistributedLoad(Record):
     unit: ClassVar[Unit] = LINE_LOAD
     kind: Literal["distributed"]
     beam: BeamName
-    direction: Direction
     along: tuple[Share, Share] = (0.0, 1.0)
 
     def rules(self) -> Iterator[Mistake]:
         """A direction [0, 0], and a stretch without length."""
         (begin, end), allowed = self.along, "two fractions of the beam's length, the smaller one first"
-        short = (end - begin < SHORTEST_STRETCH, "along", f"a stretch from {begin:.9g} to {end:.9g}", allowed)
-        return chain(nonzero("direction", self.direction), broken(short))
+        found = f"a stretch from {begin:.9g} to {end:.9g}"
+        return chain(super().rules(), broken(end - begin < SHORTEST_STRETCH and Mistake("along", found, allowed)))
 
 
 Load = Annotated[Moment | Force | BeamForce | BeamMoment | DistributedLoad, Field(discriminator="kind")]
@@ -230,7 +255,6 @@ class DisplacementDrive(_Drive, _Directed):
     unit: ClassVar[Unit] = LENGTH
     kind: Literal["displacement"]
     point: PointName
-    direction: Direction
 
 
 class RotationDrive(_Drive):

@@ -38,6 +38,8 @@ from cprbm_scene.statement import (
 Row = NDArray[np.float64]
 NEGLIGIBLE = 1e-9
 """Share of a row, or of a unit vector, that counts as round-off."""
+DEPENDENT = 1.5 * NEGLIGIBLE
+"""Part of a row of length one, normal to the rows before, that counts as round-off: rounded directions differ so."""
 
 TURN = np.array([0.0, 0.0, 1.0])
 AXES = ((1.0, 0.0), (0.0, 1.0))
@@ -110,12 +112,12 @@ class Freedoms:
 
 
 def independent(rows: Sequence[Row]) -> list[bool]:
-    """For every row, True if the row does not depend on the rows before: the Gram-Schmidt process, twice for accuracy."""
+    """For every row, True if the row does not depend on the rows before: the Gram-Schmidt process, done twice."""
     basis, found = np.zeros((0, len(rows[0]) if rows else 0)), []
     for row in rows:
         rest = row / np.linalg.norm(row)
         for _ in range(2):
             rest = rest - basis.T @ (basis @ rest)
-        found.append(bool(np.linalg.norm(rest) > NEGLIGIBLE))
+        found.append(bool(np.linalg.norm(rest) > DEPENDENT))
         basis = np.vstack((basis, rest / np.linalg.norm(rest))) if found[-1] else basis
     return found

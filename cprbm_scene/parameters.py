@@ -19,8 +19,7 @@ from pydantic import Field, ValidationInfo, ValidatorFunctionWrapHandler, WrapVa
 
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import SceneError, unknown_name
-from cprbm_scene.record import Record
-from cprbm_scene.units import ANGLE, NUMBER, SIZES, Measured, Reading, Unit, Units, mistake
+from cprbm_scene.units import ANGLE, NUMBER, SIZES, Measured, Reading, Record, Unit, Units, mistake
 
 LONGEST = 300
 """Largest number of characters of an expression: the evaluation of a longer expression could exhaust the stack."""

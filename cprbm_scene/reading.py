@@ -21,9 +21,8 @@ from cprbm_scene.names import records, repeated_contacts, repeated_names, unknow
 from cprbm_scene.offset import OffsetQuestion
 from cprbm_scene.parameters import register
 from cprbm_scene.questions import wrong_claims, wrong_probes, wrong_spacings, wrong_stages
-from cprbm_scene.record import Record
 from cprbm_scene.statement import Scene
-from cprbm_scene.units import Reading, Units
+from cprbm_scene.units import Reading, Record, Units
 from cprbm_scene.wording import in_words, keys_at, repeats_another
 
 

@@ -1,4 +1,8 @@
-"""Units of numbers: stated on the fields of records, converted where a file is read.
+"""Fields of records: names, references, rules, and numbers with units that are converted where a file is read.
+
+A reference to another part of the scene states the kind of the part, ``Annotated[Name, Of("beam")]``; a walk over the
+records finds all references (:mod:`cprbm_scene.names`).  The rules of a record yield the mistakes between
+its fields, with keys below the record's key; a walk over the records finds all mistakes (:mod:`cprbm_scene.reading`).
 
 =============  ==================================================================
 a, b, c, d     powers of length, force, angle and stress in a number's unit
@@ -15,18 +19,22 @@ then converts the number by the :class:`Reading` in pydantic's context.  Without
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import (
+    AfterValidator,
+    BaseModel,
     BeforeValidator,
+    ConfigDict,
     Field,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
+    StringConstraints,
     ValidationInfo,
     ValidatorFunctionWrapHandler,
 )
@@ -35,7 +43,47 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, SceneError
-from cprbm_scene.record import Record
+
+T = TypeVar("T")
+
+_LETTERS = "A-Za-z_À-ÖØ-öø-ɏΑ-Ωα-ω"
+Name = Annotated[str, StringConstraints(pattern=f"^[{_LETTERS}][{_LETTERS}0-9-]*$", max_length=64)]
+"""Latin and Greek letters, digits, '_' and '-': names are parts of file names, of HTML identifiers and of options."""
+Text = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x08\x0b-\x1f\x7f-\x9f]*$")]
+"""Text without control characters, but for tabs and line ends."""
+Title = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
+"""Text of one line without control characters."""
+
+
+def _freeze(value: Mapping[str, T]) -> Mapping[str, T]:
+    return frozendict(value)
+
+
+Named = Annotated[Mapping[Name, T], AfterValidator(_freeze)]
+
+
+@dataclass(frozen=True, slots=True)
+class Of:
+    """Kind of the named part of the scene, such as ``beam``; a tuple or table names several, at another ``key``."""
+
+    kind: str
+    key: str = ""
+
+
+class Record(BaseModel):
+    """Immutable record with strict types, without unknown keys, with finite numbers only."""
+
+    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
+
+    def rules(self) -> Iterator[Mistake]:
+        """Mistakes between the record's own fields, with keys below the record's own; none by default."""
+        return iter(())
+
+
+def nonzero(key: str, direction: tuple[float, float] | None) -> Mistake | bool:
+    """The mistake of a direction [0, 0] at ``key``; False without a direction."""
+    return direction == (0.0, 0.0) and Mistake(key, "[0, 0]", "a direction, at least one number not zero")
+
 
 SMALLEST, LARGEST = 1e-50, 1e50
 """Magnitudes of numbers with a unit, in SI: a product of six such numbers stays within floating-point numbers."""
