@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from itertools import chain
 from math import isnan, nan
 from typing import Annotated, ClassVar, Literal, cast
 
@@ -26,7 +25,6 @@ from cprbm_scene.units import (
     Record,
     Share,
     Unit,
-    nonzero,
 )
 
 SHORTEST_STRETCH = 1e-6
@@ -75,10 +73,9 @@ class SlidingBody(Record):
         return next(iter(self.points)) if self.about is None else self.about
 
     def rules(self) -> Iterator[Mistake]:
-        """A guide without direction; a pin without a point, of another body or without ``turns``."""
+        """A pin without a point, of another body or without ``turns``."""
         nothing = "nothing: of the points of a body that slides and turns, one stays in the slot"
         return broken(
-            nonzero("along", self.along),
             _pivot(self.about, self.points),
             self.about in self.points
             and not self.turns
@@ -167,25 +164,16 @@ class Moment(Record):
     body: BodyName
 
 
-class _Directed(Record):
-    """Load or drive along a ``direction`` of any length but zero."""
-
-    direction: Direction
-
-    def rules(self) -> Iterator[Mistake]:
-        """A direction [0, 0]."""
-        return broken(nonzero("direction", self.direction))
-
-
-class Force(_Directed):
+class Force(Record):
     """Dead force at a body's ``point``, N: the ``direction`` (of any length but zero) stays as the body turns."""
 
     unit: ClassVar[Unit] = FORCE
     kind: Literal["force"]
     point: PointName
+    direction: Direction
 
 
-class BeamForce(_Directed):
+class BeamForce(Record):
     """Dead force on a ``beam``, N, ``at`` a fraction of the arc length from the start.
 
     The ``direction`` (of any length but zero) stays as the beam turns.
@@ -195,6 +183,7 @@ class BeamForce(_Directed):
     kind: Literal["beam_force"]
     beam: BeamName
     at: Share
+    direction: Direction
 
 
 class BeamMoment(Record):
@@ -206,7 +195,7 @@ class BeamMoment(Record):
     at: Share
 
 
-class DistributedLoad(_Directed):
+class DistributedLoad(Record):
     """Dead load on a ``beam``, N per metre of arc length, constant ``along`` the beam between two fractions.
 
     The ``direction`` (of any length but zero) stays as the beam turns: a weight, not a pressure.
@@ -215,13 +204,14 @@ class DistributedLoad(_Directed):
     unit: ClassVar[Unit] = LINE_LOAD
     kind: Literal["distributed"]
     beam: BeamName
+    direction: Direction
     along: tuple[Share, Share] = (0.0, 1.0)
 
     def rules(self) -> Iterator[Mistake]:
-        """A direction [0, 0], and a stretch without length."""
+        """A stretch without length."""
         (begin, end), allowed = self.along, "two fractions of the beam's length, the smaller one first"
         found = f"a stretch from {begin:.9g} to {end:.9g}"
-        return chain(super().rules(), broken(end - begin < SHORTEST_STRETCH and Mistake("along", found, allowed)))
+        return broken(end - begin < SHORTEST_STRETCH and Mistake("along", found, allowed))
 
 
 Load = Annotated[Moment | Force | BeamForce | BeamMoment | DistributedLoad, Field(discriminator="kind")]
@@ -246,7 +236,7 @@ class _Drive(_From):
         return cast("str | None", getattr(self, "from"))
 
 
-class DisplacementDrive(_Drive, _Directed):
+class DisplacementDrive(_Drive):
     """Prescribed displacement of a body's ``point`` along ``direction`` (of any length but zero), m.
 
     With ``from`` the displacement is free before the named stage, and then holds the value that it has there.
@@ -255,6 +245,7 @@ class DisplacementDrive(_Drive, _Directed):
     unit: ClassVar[Unit] = LENGTH
     kind: Literal["displacement"]
     point: PointName
+    direction: Direction
 
 
 class RotationDrive(_Drive):

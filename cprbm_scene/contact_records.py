@@ -25,7 +25,6 @@ from cprbm_scene.units import (
     Point,
     PositiveLength,
     Record,
-    nonzero,
 )
 
 BACKWARDS = 1e-3
@@ -214,10 +213,6 @@ class HalfPlaneContact(RigidContact):
     kind: Literal["beam-half-plane"]
     point: Point
     normal: Direction
-
-    def shape_rules(self) -> Iterator[Mistake]:
-        """A normal [0, 0]."""
-        return broken(nonzero("normal", self.normal))
 
 
 class FunctionContact(RigidContact):

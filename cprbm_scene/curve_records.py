@@ -23,7 +23,7 @@ from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
 from cprbm_scene.curves import Curve, circular_arc, graph, slowest, spline, steepest, straight_line
 from cprbm_scene.mistakes import Mistake, broken, written_place
 from cprbm_scene.point_table import read_points
-from cprbm_scene.units import Coefficients, Direction, Length, Point, Reading, Record, nonzero
+from cprbm_scene.units import Coefficients, Direction, Length, Point, Reading, Record
 
 SHORTEST = 1e-6
 STEEPEST = 1e3
@@ -242,8 +242,6 @@ def _spline_rules(curve: Spline) -> Iterator[Mistake]:
     whole = sum(chords)
     yield from broken(
         count > MOST_POINTS and Mistake("points", f"{count} points", f"at most {MOST_POINTS} of them"),
-        nonzero("start_direction", curve.start_direction),
-        nonzero("end_direction", curve.end_direction),
         *(
             not SHORTEST * whole <= chord < inf
             and Mistake(

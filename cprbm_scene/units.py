@@ -80,11 +80,6 @@ class Record(BaseModel):
         return iter(())
 
 
-def nonzero(key: str, direction: tuple[float, float] | None) -> Mistake | bool:
-    """The mistake of a direction [0, 0] at ``key``; False without a direction."""
-    return direction == (0.0, 0.0) and Mistake(key, "[0, 0]", "a direction, at least one number not zero")
-
-
 SMALLEST, LARGEST = 1e-50, 1e50
 """Magnitudes of numbers with a unit, in SI: a product of six such numbers stays within floating-point numbers."""
 
@@ -239,7 +234,16 @@ Positive = Annotated[float, Field(gt=0.0), NUMBER]
 Share = Annotated[float, Field(ge=0.0, le=1.0), NUMBER]
 PositiveShare = Annotated[float, Field(gt=0.0, le=1.0), NUMBER]
 Point = tuple[Length, Length]
-Direction = tuple[Number, Number]
+
+
+def _nonzero(direction: tuple[float, float]) -> tuple[float, float]:
+    if direction == (0.0, 0.0):
+        raise mistake("[0, 0]", "a direction, at least one number not zero")
+    return direction
+
+
+Direction = Annotated[tuple[Number, Number], AfterValidator(_nonzero)]
+"""Vector of any length but zero."""
 
 
 def _by_powers(coefficients: object, info: ValidationInfo) -> object:
