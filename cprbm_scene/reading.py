@@ -23,7 +23,6 @@ from cprbm_scene.parameters import register
 from cprbm_scene.questions import wrong_claims, wrong_probes, wrong_spacings, wrong_stages
 from cprbm_scene.statement import Scene
 from cprbm_scene.units import Reading, Record, Units
-from cprbm_scene.wording import in_words, keys_at, repeats_another
 
 
 def broken_rules(root: Record) -> Iterator[Mistake]:
@@ -130,33 +129,26 @@ def toml_data(path: str | Path) -> dict[str, Any]:
     try:
         with Path(path).open("rb") as stream:
             content = stream.read(LARGEST + 1)
-        text = content.removeprefix(BOM_UTF8).decode("utf-8")
-        if len(content) > LARGEST:
-            found, allowed = "a file that is larger", f"at most {LARGEST // 1_000_000} MB of TOML in UTF-8"
-        elif _DEEP_KEY.search(text):
-            found, allowed = f"a key of more than {DEEPEST} parts", "the keys of a scene"
-        else:
-            return _parsed(text)
-    except UnicodeDecodeError as error:
-        found, allowed = f"bytes that are no UTF-8 text (at byte {error.start})", readable
-    except tomllib.TOMLDecodeError as error:
-        found, allowed = f"text that is no TOML ({error})", readable
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        found, allowed = f"a file that cannot be read ({reason})", readable
-    raise SceneError([Mistake("", found, allowed, str(path))]) from None
-
-
-def _parsed(text: str) -> dict[str, Any]:
-    """Plain data of a text in TOML.
-
-    Raises:
-        TOMLDecodeError: the text is no TOML, nested too deeply, or has an integer with too many digits.
-    """
+        raise _refused(
+            path, f"a file that cannot be read ({getattr(error, 'strerror', None) or error})", readable
+        ) from None
+    if len(content) > LARGEST:
+        raise _refused(path, "a file that is larger", f"at most {LARGEST // 1_000_000} MB of TOML in UTF-8")
     try:
-        return tomllib.loads(text)
+        text = content.removeprefix(BOM_UTF8).decode("utf-8")
+        if not _DEEP_KEY.search(text):
+            return tomllib.loads(text)
+    except UnicodeDecodeError as error:
+        raise _refused(path, f"bytes that are no UTF-8 text (at byte {error.start})", readable) from None
     except (RecursionError, ValueError) as error:
-        raise tomllib.TOMLDecodeError(str(error)) from None
+        # nested too deeply, or an integer with too many digits
+        raise _refused(path, f"text that is no TOML ({error})", readable) from None
+    raise _refused(path, f"a key of more than {DEEPEST} parts", "the keys of a scene")
+
+
+def _refused(path: str | Path, found: str, allowed: str) -> SceneError:
+    return SceneError([Mistake("", found, allowed, str(path))])
 
 
 def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str, float | str] | None = None) -> Scene:
@@ -216,7 +208,8 @@ def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
 def _record(kind: type[Asked], data: dict[str, Any], file: str, settings: Mapping[str, float | str]) -> Asked:
     """A question of a ``kind`` from plain data."""
     if "file" in data:
-        raise SceneError([replace(unknown_name("file", "file", "key here", keys_at((), kind)), file=file)])
+        keys = (key for key in kind.model_fields if key != "file")
+        raise SceneError([replace(unknown_name("file", "file", "key here", keys), file=file)])
     try:
         content = _tuples(data)
         reading = Reading(_units(content), settings=settings, folder=Path(file).parent)
@@ -224,7 +217,7 @@ def _record(kind: type[Asked], data: dict[str, Any], file: str, settings: Mappin
             register(reading, {})
         record = kind.model_validate({**content, "file": file}, context=reading)
     except ValidationError as error:
-        mistakes = (in_words(details, kind) for details in error.errors() if not repeats_another(details))
+        mistakes = (each for details in error.errors() for each in details["ctx"]["error"].mistakes)
         raise SceneError(first_of((replace(each, file=file) for each in mistakes), file)) from None
     except RecursionError:
         raise SceneError([Mistake("", "tables nested too deeply", "a scene", file)]) from None

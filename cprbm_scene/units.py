@@ -24,7 +24,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, Self, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -34,15 +34,18 @@ from pydantic import (
     Field,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
+    ModelWrapValidatorHandler,
     StringConstraints,
+    ValidationError,
     ValidationInfo,
     ValidatorFunctionWrapHandler,
+    model_validator,
 )
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, SceneError
+from cprbm_scene.mistakes import Mistake, SceneError, in_words
 
 T = TypeVar("T")
 
@@ -74,6 +77,14 @@ class Record(BaseModel):
     """Immutable record with strict types, without unknown keys, with finite numbers only."""
 
     model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _in_words(cls, data: object, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        try:
+            return handler(data)
+        except ValidationError as error:
+            raise SceneError(list(in_words(error, data, cls.model_fields))) from None
 
     def rules(self) -> Iterator[Mistake]:
         """Mistakes between the record's own fields, with keys below the record's own; none by default."""
