@@ -148,7 +148,7 @@ def in_words(error: ValidationError, data: object, fields: Mapping[str, FieldInf
         kind, given, context = details["type"], details.get("input"), details.get("ctx", {})
         short = kind == "too_short" and isinstance(given, tuple) and len(given) >= context["min_length"]
         if not short and kind != "repeats":
-            key = _key(details["loc"], data, missing=kind == "missing")
+            key = _key(details["loc"], data, own=kind in ("missing", "extra_forbidden"))
             inner = context.get("error")
             own = inner.mistakes if isinstance(inner, SceneError) else [_mistake(details, fields)]
             yield from (replace(each, key=f"{key}.{each.key}".strip(".")) for each in own)
@@ -168,10 +168,8 @@ def _mistake(details: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Mistake:
         case "string_pattern_mismatch" if "x00" in context["pattern"]:
             allowed = "a text without control characters"
         case "missing":
-            found, allowed = (
-                "nothing",
-                f"a{'n item here' if isinstance(loc[-1], int) else ' value: this key is required'}",
-            )
+            found = "nothing"
+            allowed = "an item here" if isinstance(loc[-1], int) else "a value: this key is required"
         case "too_long" if context["max_length"] == len(("x", "y")):
             allowed = allowed.removeprefix("at most ")
         case "literal_error":
@@ -190,13 +188,11 @@ def _mistake(details: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Mistake:
     return Mistake(key, found, allowed)
 
 
-def _tags(annotation: Any, discriminator: str) -> list[str]:  # noqa: ANN401 - annotations have no type
+def _tags(annotation: Any, tag: str) -> list[str]:  # noqa: ANN401 - annotations have no type
     """Kinds, joints or motions of the records in an annotation."""
     fields = getattr(annotation, "model_fields", {})
-    inner = [fields[discriminator].annotation] if discriminator in fields else get_args(annotation)
-    return (
-        [annotation] if isinstance(annotation, str) else [tag for each in inner for tag in _tags(each, discriminator)]
-    )
+    inner = [fields[tag].annotation] if tag in fields else get_args(annotation)
+    return [annotation] if isinstance(annotation, str) else [name for each in inner for name in _tags(each, tag)]
 
 
 def shown(value: object) -> str:
@@ -217,12 +213,16 @@ def shown(value: object) -> str:
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
 
 
-def _key(loc: tuple[int | str, ...], data: Any, *, missing: bool) -> str:  # noqa: ANN401 - whatever TOML holds
-    """``("beams", "b", "curve", "arc")`` as ``beams.b.curve``: the tag of a union is no key of the ``data``."""
+def _key(loc: tuple[int | str, ...], data: Any, *, own: bool) -> str:  # noqa: ANN401 - whatever TOML holds
+    """``("beams", "b", "curve", "arc")`` as ``beams.b.curve``: the tag of a union is no key of the ``data``.
+
+    With ``own`` the last part is a key in any case.
+    """
     path, place = "", data
     for depth, part in enumerate(loc, start=1):
-        inside = part in place if isinstance(place, Mapping) else isinstance(part, int)
-        if inside or (missing and depth == len(loc)):
+        tags = [place.get(tag) for tag in ("kind", "joint", "motion")] if isinstance(place, Mapping) else []
+        inside = isinstance(part, int) or (isinstance(place, Mapping) and part in place and part not in tags)
+        if inside or (own and depth == len(loc)):
             path += f"[{part}]" if isinstance(part, int) else f".{part}"
             place = place[part] if depth < len(loc) else None
     return path.removeprefix(".")

@@ -130,9 +130,8 @@ def toml_data(path: str | Path) -> dict[str, Any]:
         with Path(path).open("rb") as stream:
             content = stream.read(LARGEST + 1)
     except (OSError, ValueError) as error:
-        raise _refused(
-            path, f"a file that cannot be read ({getattr(error, 'strerror', None) or error})", readable
-        ) from None
+        reason = getattr(error, "strerror", None) or error
+        raise _refused(path, f"a file that cannot be read ({reason})", readable) from None
     if len(content) > LARGEST:
         raise _refused(path, "a file that is larger", f"at most {LARGEST // 1_000_000} MB of TOML in UTF-8")
     try:
