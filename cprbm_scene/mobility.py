@@ -22,7 +22,7 @@ import numpy as np
 
 from cprbm_scene.curve_records import MEETING
 from cprbm_scene.freedoms import NEGLIGIBLE, Freedoms, Row, independent, unit
-from cprbm_scene.mistakes import Mistake, written_place
+from cprbm_scene.mistakes import Mistake, first_broken, written_place
 from cprbm_scene.names import unknown_names
 from cprbm_scene.statement import (
     BeamForce,
@@ -30,7 +30,6 @@ from cprbm_scene.statement import (
     BodyLoad,
     Drive,
     Force,
-    FreeEnd,
     Moment,
     PinnedEnd,
     RotationDrive,
@@ -42,6 +41,8 @@ FREEDOMS = 3
 """Freedoms of a rigid body in the plane."""
 
 _KINDS = {"slides": "sliding", "turns": "turning"}
+_ACTING = {"moment": "a moment on", "force": "a force at", "rotation": "a drive of", "displacement": "a drive at"}
+_HELD = {"pins": "bodies", "drives": "a motion", "bodies": "a motion"}
 
 
 def wrong_mobility(scene: Scene) -> Iterator[Mistake]:
@@ -61,13 +62,10 @@ def wrong_mobility(scene: Scene) -> Iterator[Mistake]:
         return
     if scene.pins:
         keys, rows = zip(*freedoms.constraints(scene.drives), strict=True)
-        for key in dict.fromkeys(key for key, free in zip(keys, independent(rows), strict=True) if not free):
-            what = "bodies" if key.startswith("pins") else "a motion"
-            yield Mistake(
-                key,
-                f"{what} that guides, pins and drives hold already where it begins",
-                "as many pins and drives as there are motions to hold, each for one of its own",
-            )
+        held_twice = dict.fromkeys(key for key, free in zip(keys, independent(rows), strict=True) if not free)
+        allowed = "as many pins and drives as there are motions to hold, each for one of its own"
+        found = "that guides, pins and drives hold already where it begins"
+        yield from (Mistake(key, f"{_HELD[key.partition('.')[0]]} {found}", allowed) for key in held_twice)
     held_otherwise = scene.contacts or scene.stops or scene.assembly is not None
     if not loose and (scene.pins or not held_otherwise):
         yield from _loose(scene, freedoms)
@@ -78,21 +76,21 @@ def _pins(scene: Scene) -> Iterator[Mistake]:
     owners = scene.owners
     places = {point: scene.bodies[name].points[point] for point, name in owners.items()}
     extent = float(np.ptp(list(places.values()), axis=0).max()) if places else 0.0
-    for name, pin in scene.pins.items():
-        (p, q), key = pin.points, f"pins.{name}.points"
-        if not owners.keys() >= {p, q}:
-            continue
+    known = {name: pin.points for name, pin in scene.pins.items() if owners.keys() >= set(pin.points)}
+    for key, (p, q) in ((f"pins.{name}.points", points) for name, points in known.items()):
         one, other, apart = owners[p], owners[q], dist(places[p], places[q])
-        if one == other:
-            yield Mistake(key, f"{p!r} and {q!r}, both of the body {one!r}", "points of two different bodies")
-        elif scene.bodies[one].motion == scene.bodies[other].motion == "fixed":
-            yield Mistake(key, f"points of two fixed bodies, {one!r} and {other!r}", "one that moves")
-        elif not apart <= MEETING * extent:
-            yield Mistake(
+        yield from first_broken(
+            one == other
+            and Mistake(key, f"{p!r} and {q!r}, both of the body {one!r}", "points of two different bodies"),
+            scene.bodies[one].motion == scene.bodies[other].motion == "fixed"
+            and Mistake(key, f"points of two fixed bodies, {one!r} and {other!r}", "one that moves"),
+            not apart <= MEETING * extent
+            and Mistake(
                 key,
                 f"points {apart:.3g} m apart: {written_place(places[p])} m and {written_place(places[q])} m",
                 f"at most {MEETING:g} of the scene's extent between them",
-            )
+            ),
+        )
 
 
 def unsupported(scene: Scene, freedoms: Freedoms | None) -> Iterator[tuple[Mistake, set[str]]]:
@@ -104,33 +102,40 @@ def unsupported(scene: Scene, freedoms: Freedoms | None) -> Iterator[tuple[Mista
     if all(body.motion == "free" for body in scene.bodies.values()) and not drives:
         yield Mistake("bodies", "no fixed body", 'at least one body with motion = "fixed"'), set()
         return
-    met = {name: list(pin.points) for name, pin in scene.pins.items()}
-    for name, beam in scene.beams.items():
-        ends = [end for end in (beam.start, beam.end) if not isinstance(end, FreeEnd)]
-        met[name] = [end.point for end in ends]
-        if not ends:
-            allowed = "at least one end that meets a body, or a contact that holds the beam"
-            yield Mistake(f"beams.{name}", "two free ends", allowed), {name}
-        elif len(ends) == 1 and isinstance(ends[0], PinnedEnd):
-            found = "a pin at one end and nothing at the other: the beam turns freely"
-            yield Mistake(f"beams.{name}", found, "a weld, joints at both ends, or a contact or a load"), {name}
+    joints = {
+        name: [end for end in (beam.start, beam.end) if end.joint != "free"] for name, beam in scene.beams.items()
+    }
+    for name, ends in joints.items():
+        mistakes = first_broken(
+            not ends
+            and Mistake(
+                f"beams.{name}", "two free ends", "at least one end that meets a body, or a contact that holds the beam"
+            ),
+            [end.joint for end in ends] == ["pin"]
+            and Mistake(
+                f"beams.{name}",
+                "a pin at one end and nothing at the other: the beam turns freely",
+                "a weld, joints at both ends, or a contact or a load",
+            ),
+        )
+        yield from ((mistake, {name}) for mistake in mistakes)
     if freedoms is None:
         return
-    joined = {name: {freedoms.owners[point] for point in points} for name, points in met.items()}
+    met = {name: {freedoms.owners[str(end.point)] for end in ends} for name, ends in joints.items()}
+    met |= {name: {freedoms.owners[point] for point in pin.points} for name, pin in scene.pins.items()}
     for name, body in scene.bodies.items():
-        together = _connected(name, list(joined.values()))
+        together, reached = _connected(name, list(met.values())), any(name in bodies for bodies in met.values())
         rows = [row for each in together for row in freedoms.guide(each)]
         rows += [freedoms.row(drive) for drive in drives if freedoms.owner(drive) in together]
         if sum(independent(rows)) < FREEDOMS:
-            kind, reached = _KINDS.get(body.motion, "free"), any(name in bodies for bodies in joined.values())
             mistake = Mistake(
                 f"bodies.{name}",
-                f"a {kind} body that no {'fixed body holds' if reached else 'beam meets'}",
+                f"a {_KINDS.get(body.motion, 'free')} body that no {'fixed body holds' if reached else 'beam meets'}",
                 "beams that lead to a fixed body, or slides, pivots, drives, contacts and loads that hold it"
                 if reached
                 else "a beam's end, a pin, a contact or a load on it",
             )
-            yield mistake, together | {beam for beam in joined if joined[beam] & together}
+            yield mistake, together | {beam for beam in met if met[beam] & together}
 
 
 def _acted_on(scene: Scene, names: set[str]) -> bool:
@@ -182,20 +187,19 @@ def wrong_actions(scene: Scene) -> Iterator[Mistake]:
     drives = {f"drives.{name}": drive for name, drive in scene.drives.items()}
     loads = {f"loads.{name}": load for name, load in scene.loads.items() if isinstance(load, BodyLoad)}
     for key, acting in (drives | loads).items():
-        turns = isinstance(acting, Moment | RotationDrive)
-        if (acting.body in scene.bodies if turns else acting.point in freedoms.owners) and not any(acting.rules()):
-            owner = freedoms.owner(acting)
+        owner = acting.body if isinstance(acting, Moment | RotationDrive) else freedoms.owners.get(acting.point, "")
+        if owner in scene.bodies:
             mistakes = list(_without_motion(freedoms, key, acting, driven[owner]))
             yield from mistakes
-            if key in drives and not mistakes and not any(scene.bodies[owner].rules()):
+            if key in drives and not mistakes:
                 driven[owner].append(key.removeprefix("drives."))
     fixed = {point for body in scene.bodies.values() if body.motion == "fixed" for point in body.points}
     for name, load in scene.loads.items():
         if isinstance(load, BeamForce | BeamMoment) and load.beam in scene.beams and load.at in (0.0, 1.0):
             end = scene.beams[load.beam].start if load.at == 0.0 else scene.beams[load.beam].end
+            found = f"{load.at:g}, an end of {load.beam!r} that is held at {end.point!r}, a point of a fixed body"
             turns = isinstance(load, BeamMoment) and isinstance(end, PinnedEnd)
             if end.point in fixed and not turns:
-                found = f"{load.at:g}, an end of {load.beam!r} that is held at {end.point!r}, a point of a fixed body"
                 yield Mistake(f"loads.{name}.at", found, "a place of the beam that can move")
 
 
@@ -207,34 +211,38 @@ def _without_motion(freedoms: Freedoms, key: str, acting: BodyLoad | Drive, driv
     scene, owner, load = freedoms.scene, freedoms.owner(acting), isinstance(acting, BodyLoad)
     body, turns = scene.bodies[owner], isinstance(acting, Moment | RotationDrive)
     if body.motion == "fixed":
-        what = ("a moment on" if turns else "a force at") if load else ("a drive of" if turns else "a drive at")
-        of = "" if turns else f" {acting.point!r}, a point of"
         movable = {name: each.points for name, each in scene.bodies.items() if each.motion != "fixed"}
         names = movable if turns else [point for points in movable.values() for point in points]
-        place, listed = "body" if turns else "point", ", ".join(map(repr, names)) or "there is none"
-        yield Mistake(f"{key}.{place}", f"{what}{of} the fixed body {owner!r}", f"a {place} that can move: {listed}")
-    if body.motion == "fixed" or any(body.rules()):
-        return
-    row, guide = freedoms.row(acting), freedoms.guide(owner)
+        place, of = ("body", "") if turns else ("point", f" {getattr(acting, 'point', '')!r}, a point of")
+        allowed = f"a {place} that can move: {', '.join(map(repr, names)) or 'there is none'}"
+        return iter((Mistake(f"{key}.{place}", f"{_ACTING[acting.kind]}{of} the fixed body {owner!r}", allowed),))
+    row, guide = freedoms.row(acting), [] if any(body.rules()) else freedoms.guide(owner)
     drives = {name: scene.drives[name] for name in driven if not load or scene.drives[name].begins is None}
     opposed = [name for name, drive in drives.items() if _opposed(freedoms, acting, drive)]
+    across = not independent([*guide, row])[-1]
+    twice = bool(opposed) or not independent([*guide, *map(freedoms.row, drives.values()), row])[-1]
     first = " and ".join(f"drives.{name}" for name in opposed or drives)
-    if not independent([*guide, row])[-1] and turns:
-        yield Mistake(
+    way = "towards the pivot" if isinstance(body, TurningBody) else "across the slide"
+    return first_broken(
+        across
+        and turns
+        and Mistake(
             f"{key}.body", f"the rotation of {owner!r}, which slides and does not turn", "a body that can turn"
-        )
-    elif not independent([*guide, row])[-1]:
-        way = "towards the pivot" if isinstance(body, TurningBody) else "across the slide"
-        allowed = "a direction along which the point can move"
-        yield Mistake(f"{key}.direction", f"a direction {way} of {owner!r}", allowed)
-    elif opposed or not independent([*guide, *map(freedoms.row, drives.values()), row])[-1]:
-        found = (
-            f"a load on a freedom of {owner!r} that is driven by"
-            if load
-            else f"a freedom of {owner!r} that is driven already by"
-        )
-        allowed = "a load or a drive on one freedom, not both" if load else "one drive for each freedom"
-        yield Mistake(key, f"{found} {first}", allowed)
+        ),
+        across
+        and Mistake(
+            f"{key}.direction", f"a direction {way} of {owner!r}", "a direction along which the point can move"
+        ),
+        twice
+        and load
+        and Mistake(
+            key,
+            f"a load on a freedom of {owner!r} that is driven by {first}",
+            "a load or a drive on one freedom, not both",
+        ),
+        twice
+        and Mistake(key, f"a freedom of {owner!r} that is driven already by {first}", "one drive for each freedom"),
+    )
 
 
 def _opposed(freedoms: Freedoms, load: BodyLoad | Drive, drive: Drive) -> bool:

@@ -8,8 +8,9 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from cprbm_scene.curve_records import shape_of
+from cprbm_scene.curves import SAMPLES
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, unknown_name
+from cprbm_scene.mistakes import Mistake, broken, unknown_name
 from cprbm_scene.names import RESERVED, point_names
 from cprbm_scene.statement import (
     CRITICAL,
@@ -51,7 +52,6 @@ _LISTED = 200
 _SEVERAL = STRESSES | {"displacement", "reaction", "ends"}
 """Quantities of more than one number."""
 
-_SAMPLES = 1001
 _BACKWARDS = 1e-9
 """Component of a unit tangent that counts as zero."""
 _LEAST_EXTENT = 1e-3
@@ -62,71 +62,80 @@ def wrong_probes(scene: Scene) -> Iterator[Mistake]:
     """Probes of unknown names, of parts without the quantity, and repeated probes."""
     bearers = _bearers(scene)
     everything = list(dict.fromkeys(name for names in bearers.values() for name in names))
-    seen: set[str] = set()
+    first = {probe.name: i for i, probe in reversed(list(enumerate(scene.probes)))}
     for i, probe in enumerate(scene.probes):
-        names = bearers[_OF[probe.quantity]]
-        if probe.of not in everything:
-            yield unknown_name(f"probes[{i}].of", probe.of, "point, body, beam, contact or stop", everything)
-        elif probe.of not in names:
-            listed = ", ".join(map(repr, names)) or "there is none"
-            allowed = f"{probe.quantity!r} of {_OF[probe.quantity]}: {listed}"
-            yield Mistake(f"probes[{i}]", f"{probe.quantity!r} of {probe.of!r}", allowed)
-        if probe.name in seen:
-            yield Mistake(f"probes[{i}]", f"{probe.name!r} again", "each probe once")
-        seen.add(probe.name)
+        part, known = _OF[probe.quantity], bearers[_OF[probe.quantity]]
+        allowed = f"{probe.quantity!r} of {part}: {', '.join(map(repr, known)) or 'there is none'}"
+        yield from broken(
+            probe.of not in everything
+            and unknown_name(f"probes[{i}].of", probe.of, "point, body, beam, contact or stop", everything),
+            probe.of in everything
+            and probe.of not in known
+            and Mistake(f"probes[{i}]", f"{probe.quantity!r} of {probe.of!r}", allowed),
+            first[probe.name] < i and Mistake(f"probes[{i}]", f"{probe.name!r} again", "each probe once"),
+        )
 
 
 def wrong_claims(scene: Scene) -> Iterator[Mistake]:
     """Claims on unknown probes, stages or stations, and a single value for a probe of several numbers."""
     probes = {probe.name: probe for probe in scene.probes}
-    stages = {stage.name for stage in scene.stages}
     ascending = {stage.name: sorted(stage.stations) for stage in scene.stages}
     for i, claim in enumerate(scene.claims):
-        key = f"claims[{i}]"
-        if claim.probe not in probes and claim.probe != CRITICAL:
-            yield unknown_name(f"{key}.probe", claim.probe, "probe", [*probes, CRITICAL])
-        elif claim.value is not None and claim.probe != CRITICAL and probes[claim.probe].quantity in _SEVERAL:
-            yield Mistake(f"{key}.value", f"a value of {claim.probe!r}, which has several", "a probe of one number")
-        if claim.probe in probes and claim.stage in stages and not probes[claim.probe].asked_in(claim.stage):
-            yield Mistake(f"{key}.stage", f"{claim.stage!r}, in which {claim.probe!r} is not asked", "another stage")
-        elif claim.station is not None and claim.probe == CRITICAL:
-            allowed = f"none: of {CRITICAL!r} the first of a stage is meant"
-            yield Mistake(f"{key}.station", f"{claim.station:g}", allowed)
-        elif claim.station is not None and not any(
-            claim.speaks_of(*station) for station in _beside(ascending, claim.station)
-        ):
-            spoken = [stage for stage in scene.stages if claim.in_stage(stage.name)]
-            listed = ", ".join(f"{value:g}" for stage in spoken for value in stage.stations[:_LISTED])
-            yield Mistake(f"{key}.station", f"{claim.station:g}", f"a station of a stage: {listed}")
+        key, probe, critical = f"claims[{i}]", probes.get(claim.probe), claim.probe == CRITICAL
+        unasked = claim.stage in ascending and probe is not None and not probe.asked_in(claim.stage)
+        stations = (value for stage in scene.stages if claim.in_stage(stage.name) for value in stage.stations[:_LISTED])
+        yield from broken(
+            not (probe or critical) and unknown_name(f"{key}.probe", claim.probe, "probe", [*probes, CRITICAL]),
+            claim.value is not None
+            and probe is not None
+            and probe.quantity in _SEVERAL
+            and Mistake(f"{key}.value", f"a value of {claim.probe!r}, which has several", "a probe of one number"),
+            unasked
+            and Mistake(f"{key}.stage", f"{claim.stage!r}, in which {claim.probe!r} is not asked", "another stage"),
+            claim.station is not None
+            and critical
+            and Mistake(f"{key}.station", f"{claim.station:g}", f"none: of {CRITICAL!r} the first of a stage is meant"),
+            claim.station is not None
+            and not (unasked or critical)
+            and not any(claim.speaks_of(*station) for station in _beside(ascending, claim.station))
+            and Mistake(
+                f"{key}.station",
+                f"{claim.station:g}",
+                f"a station of a stage: {', '.join(f'{value:g}' for value in stations)}",
+            ),
+        )
 
 
 def wrong_stages(scene: Scene) -> Iterator[Mistake]:
     """Stages with the same name, with loads of different units together, or with a drive that is free there."""
-    seen: set[str] = set()
+    first = {stage.name: i for i, stage in reversed(list(enumerate(scene.stages)))}
     for i, stage in enumerate(scene.stages):
-        if stage.name in seen:
-            yield Mistake(f"stages[{i}].name", f"{stage.name!r} again", "each stage's name once")
-        seen.add(stage.name)
-        units = {str(scene.loads[load].unit) for load in stage.together if load in scene.loads}
-        if len(units) > 1:
-            yield Mistake(f"stages[{i}].steps", f"loads in {' and '.join(sorted(units))}", "loads of one unit")
+        units = sorted({str(scene.loads[load].unit) for load in stage.together if load in scene.loads})
         drive = scene.drives.get(stage.steps)
-        if drive is not None and not scene.holds(drive, stage.name):
-            found = f"{stage.steps!r}, a drive that is free until the stage {drive.begins!r}"
-            yield Mistake(f"stages[{i}].steps", found, "a drive that holds, or a load")
+        yield from broken(
+            first[stage.name] < i and Mistake(f"stages[{i}].name", f"{stage.name!r} again", "each stage's name once"),
+            len(units) > 1 and Mistake(f"stages[{i}].steps", f"loads in {' and '.join(units)}", "loads of one unit"),
+            drive is not None
+            and not scene.holds(drive, stage.name)
+            and Mistake(
+                f"stages[{i}].steps",
+                f"{stage.steps!r}, a drive that is free until the stage {drive.begins!r}",
+                "a drive that holds, or a load",
+            ),
+        )
 
 
 def wrong_spacings(scene: Scene) -> Iterator[Mistake]:
     """Elements of the formulation ``paper`` along an axis with reversals or without extent of the beam."""
     for name, beam in scene.beams.items():
-        if beam.paper is not None and beam.sound and not _runs_along(beam, 0 if beam.paper.uniform == "x" else 1):
+        if beam.paper is not None and beam.sound and not _runs_along(beam, "xy".index(beam.paper.uniform)):
             found = f"{beam.paper.uniform!r}, along which the curve turns back or does not run"
             yield Mistake(f"beams.{name}.paper.uniform", found, "an axis along which the curve runs one way")
 
 
 def _runs_along(beam: Beam, axis: int) -> bool:
     shape, extent = shape_of(beam.curve), beam.curve.end[axis] - beam.curve.start[axis]
-    forwards = np.sign(extent) * shape.tangent(np.linspace(0.0, 1.0, _SAMPLES))[:, axis]
+    forwards = np.sign(extent) * shape.tangent(np.linspace(0.0, 1.0, SAMPLES))[:, axis]
     return abs(extent) >= _LEAST_EXTENT * shape.length and bool(np.all(forwards >= -_BACKWARDS))
 
 
@@ -163,11 +172,9 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
 
 def _pinned(scene: Scene, contact: EdgeContact) -> bool:
     """True if pins at the same point join the beam and the edge's body; fixed bodies count as the same body."""
-    beam = scene.beams.get(contact.beam)
-    ends = () if beam is None else (beam.start, beam.end)
-    together = {end.point for end in ends if isinstance(end, PinnedEnd)}
+    beam, own = scene.beams.get(contact.beam), scene.bodies.get(contact.body)
+    together = {end.point for end in (beam.start, beam.end) if isinstance(end, PinnedEnd)} if beam else set()
     for _ in scene.pins:
         together |= {point for pin in scene.pins.values() if together & set(pin.points) for point in pin.points}
     fixed = [body for body in scene.bodies.values() if body.motion == "fixed"]
-    own = scene.bodies.get(contact.body)
     return any(together & set(body.points) for body in (fixed if own in fixed else [own]) if body is not None)
