@@ -21,11 +21,14 @@ axis by ∫ cos φ dφ/κ > 3.8 T.
 
 Bounds on rigid shapes are dimensionless: 1e-6 ≤ r/L ≤ 1e6, and L ≥ 1e-6 of all coordinates; larger or farther shapes
 leave a gap without digits.
+
+A place is behind a rigid line if the nearest place of the line is no end of the line and the place lies opposite to the
+line's normal towards the free side.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import lru_cache
 from itertools import pairwise, product
 from math import dist
@@ -33,13 +36,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm_scene.beam_records import Beam, WeldedEnd
 from cprbm_scene.curve_records import MEETING, SHORTEST, shape_of
-from cprbm_scene.curves import Array, least
-from cprbm_scene.edges import distance_from
+from cprbm_scene.curves import Array, Curve, least, unit_vector
 from cprbm_scene.mistakes import Mistake, broken, written_place
 from cprbm_scene.statement import (
     Arc,
+    Beam,
     BeamContact,
     CircleContact,
     EllipseContact,
@@ -51,6 +53,7 @@ from cprbm_scene.statement import (
     Scene,
     Spline,
     SplineContact,
+    WeldedEnd,
 )
 
 Range = tuple[float, float]
@@ -286,3 +289,65 @@ def _proportions(key: str, contact: RigidContact, length: float) -> Iterator[Mis
             f"coordinates of which the beam's length is at least {SHORTEST:g}",
         ),
     )
+
+
+_ON_EDGE = 257
+"""Samples of a curve, from the nearest of which Newton's method starts."""
+_STEPS = 20
+
+
+def distance_from(contact: RigidContact) -> Callable[[Array], Array]:
+    """The distance D (k,), m, as a function of places (k, 2), m."""
+    sign = 1.0 if getattr(contact, "side", "") in ("outside", "left") else -1.0
+    match contact:
+        case CircleContact():
+            return lambda p: np.asarray(sign * (np.hypot(*(p - np.array(contact.center)).T) - contact.radius))
+        case LineContact():
+            return lambda p: _from_line(np.array(contact.points), sign, p, closed=contact.closed)
+        case HalfPlaneContact():
+            return lambda p: np.asarray((p - np.array(contact.point)) @ unit_vector(contact.normal))
+        case EllipseContact():
+            # the curve runs counter-clockwise, with the inside on the left
+            return lambda p: _from_curve(shape_of(contact.curve), -sign, p, closed=True)
+        case FunctionContact():
+            upwards = (contact.side == "above") == (contact.range[0] < contact.range[1])
+            sign = 1.0 if upwards == (contact.axis == "x") else -1.0
+    assert isinstance(contact, FunctionContact | SplineContact)
+    return lambda p: _from_curve(shape_of(contact.curve), sign, p, closed=False)
+
+
+def _from_line(points: Array, sign: float, p: Array, *, closed: bool) -> Array:
+    along = np.diff(points, axis=0)
+    length = np.hypot(*along.T)
+    tau = along / length[:, None]
+    n = sign * np.column_stack((-tau[:, 1], tau[:, 0]))
+    r = p[:, None, :] - points[None, :-1]
+    t = np.clip((r * tau).sum(axis=2), 0.0, length)
+    away = r - t[:, :, None] * tau
+    nearest = np.hypot(away[:, :, 0], away[:, :, 1]).argmin(axis=1)
+    every = np.arange(len(p))
+    away, t = away[every, nearest], t[every, nearest]
+    # at a corner the normals of both pieces decide the side
+    other = np.where(t <= 0.0, nearest - 1, np.where(t >= length[nearest], nearest + 1, nearest))
+    other = other % len(tau) if closed else other
+    beyond = (other < 0) | (other >= len(tau))
+    towards = n[nearest] + n[np.clip(other, 0, len(tau) - 1)]
+    behind = ~beyond & ((away * towards).sum(axis=1) < 0.0)
+    return np.asarray(np.where(behind, -1.0, 1.0) * np.hypot(*away.T))
+
+
+def _from_curve(curve: Curve, sign: float, p: Array, *, closed: bool) -> Array:
+    samples = curve.samples[:: max(1, len(curve.samples) // _ON_EDGE)]
+    samples = samples if closed else np.append(samples, 1.0)
+    places = curve.place(samples)
+    w = samples[((places[:, 0] - p[:, :1]) ** 2 + (places[:, 1] - p[:, 1:]) ** 2).argmin(axis=1)]
+    for _ in range(_STEPS):
+        away, along = curve.place(w) - p, curve.derivative(w, 1)
+        slope, bent = (away * along).sum(axis=1), (along**2 + away * curve.derivative(w, 2)).sum(axis=1)
+        # beyond the centre of curvature the distance has a maximum: the sample stays
+        w = w - np.where(bent > 0.0, slope / np.where(bent > 0.0, bent, 1.0), 0.0)
+        w = w % 1.0 if closed else np.clip(w, 0.0, 1.0)
+    away, along = p - curve.place(w), curve.derivative(w, 1)
+    slope, side = (away * along).sum(axis=1), sign * (along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0])
+    beyond = ((w <= 0.0) & (slope < 0.0)) | ((w >= 1.0) & (slope > 0.0))
+    return np.asarray(np.where((beyond & (not closed)) | (side >= 0.0), 1.0, -1.0) * np.hypot(*away.T))

@@ -6,7 +6,8 @@ import re
 import tomllib
 from codecs import BOM_UTF8
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Any, TypeVar
@@ -14,14 +15,22 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from cprbm_scene.clearance import wrong_clearance
+from cprbm_scene.freedoms import wrong_actions, wrong_mobility
 from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
 from cprbm_scene.mistakes import Mistake, SceneError, first_of, unknown_name
-from cprbm_scene.mobility import wrong_actions, wrong_mobility
-from cprbm_scene.names import records, repeated_contacts, repeated_names, unknown_names
+from cprbm_scene.names import (
+    records,
+    repeated_contacts,
+    repeated_names,
+    unknown_names,
+    wrong_claims,
+    wrong_probes,
+    wrong_spacings,
+    wrong_stages,
+)
 from cprbm_scene.offset import OffsetQuestion
 from cprbm_scene.parameters import register
-from cprbm_scene.questions import wrong_claims, wrong_probes, wrong_spacings, wrong_stages
-from cprbm_scene.statement import Scene
+from cprbm_scene.statement import Origin, Scene
 from cprbm_scene.units import Reading, Record, Units
 
 
@@ -176,23 +185,15 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
     """
     given = dict(parameters or {})
     scene = _record(Scene, {**data, "parameters": {}} if given and "parameters" not in data else data, file, given)
-    scene = scene.displayed_in(_units(data))
-    if scene.parameters:
-        scene._read = _Again(data, file, given)
+    scene._origin = Origin(_units(data), partial(_again, data, file, given) if scene.parameters else None)
     return scene
 
 
-@dataclass(frozen=True, slots=True)
-class _Again:
-    """Another reading of the plain data of a scene with parameters."""
-
-    data: dict[str, Any]
-    file: str
-    parameters: dict[str, float | str]
-
-    def __call__(self, values: Mapping[str, float | str]) -> Scene:
-        """The scene with other values of parameters."""
-        return scene_from(self.data, file=self.file, parameters={**self.parameters, **values})
+def _again(
+    data: dict[str, Any], file: str, given: Mapping[str, float | str], values: Mapping[str, float | str]
+) -> Scene:
+    """The scene of the plain data with other values of parameters."""
+    return scene_from(data, file=file, parameters={**given, **values})
 
 
 def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
@@ -215,14 +216,13 @@ def _record(kind: type[Asked], data: dict[str, Any], file: str, settings: Mappin
         if "parameters" not in content:
             register(reading, {})
         record = kind.model_validate({**content, "file": file}, context=reading)
+        found = mistakes_in(record)
     except ValidationError as error:
-        mistakes = (each for details in error.errors() for each in details["ctx"]["error"].mistakes)
-        raise SceneError(first_of((replace(each, file=file) for each in mistakes), file)) from None
+        found = first_of((each for details in error.errors() for each in details["ctx"]["error"].mistakes), file)
     except RecursionError:
-        raise SceneError([Mistake("", "tables nested too deeply", "a scene", file)]) from None
-    found = mistakes_in(record)
+        found = [Mistake("", "tables nested too deeply", "a scene")]
     if found:
-        raise SceneError(found)
+        raise SceneError([replace(each, file=file) for each in found])
     return record
 
 
