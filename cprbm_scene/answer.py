@@ -106,7 +106,7 @@ class Shape:
 
 
 @dataclass(frozen=True, slots=True)
-class BeamState:
+class BeamState(Shape):
     """Shape and internal forces of one beam at n ascending places; SI.
 
     At a point force or moment the values are the limit from the side of the beam's end.  At the first and the last
@@ -124,9 +124,6 @@ class BeamState:
         borders: arc lengths at which elements begin and end, (m+1,), m.
     """
 
-    s: Array
-    x: Array
-    y: Array
     angle: Array
     section_angle: Array
     N: Array
