@@ -299,10 +299,10 @@ class Critical:
 
 @dataclass(frozen=True, slots=True)
 class GoneOver:
-    """An end of a branch of which nothing was asked, and that was gone on over to a state beside it.
+    """A critical point that the solver passed, without a request, to a state beside the critical point.
 
     Attributes:
-        end: where it is and how stability is lost there; its ``after`` is the energy in the state beside.
+        end: place and kind of the loss of stability; ``after`` is the energy in the state beside.
         turned: the most by which the tangent of a beam, or a body, is turned in that state against the end, rad.
     """
 

@@ -58,11 +58,7 @@ Title = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 """Text of one line without control characters."""
 
 
-def _freeze(value: Mapping[str, T]) -> Mapping[str, T]:
-    return frozendict(value)
-
-
-Named = Annotated[Mapping[Name, T], AfterValidator(_freeze)]
+Named = Annotated[Mapping[Name, T], AfterValidator(frozendict)]
 
 
 @dataclass(frozen=True, slots=True)
