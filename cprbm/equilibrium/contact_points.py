@@ -156,6 +156,7 @@ def _points(geometry: Geometry, solved: Touched) -> tuple[Places, Flags]:
         if len(run) > LONGEST_RUN or given_up:
             continue
         best = run[int(np.argmax(places.force[run]))]
+        run = np.flatnonzero(np.isin(np.arange(len(arcs)) + places.shares, run))
         trial, gap, curvature = as_point(geometry, z, contacts, best, places.force[run].sum())
         overlaps = contacts.closed[best] or gap < -OVERLAP - depth[best]
         if not overlaps or curvature <= 0.0 or not may_move(geometry, trial)[0]:
