@@ -18,7 +18,7 @@ def by_second_edition(scene: Scene, formulation: str, links_of: Callable[[str], 
     """True if the second edition answers a scene in a formulation with some links of the beams."""
     if not scene.contacts:
         return True
-    if formulation == "paper" or scene.theory == "bending":
+    if formulation == "paper":
         return False
     return all(_is_even(scene, contact, links_of) for contact in scene.contacts.values())
 

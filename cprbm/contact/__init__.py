@@ -46,6 +46,7 @@ from cprbm.contact.settling import (
     separations,
     settle,
     settle_near,
+    sweeps_any_circle,
 )
 
 __all__ = [
@@ -89,6 +90,7 @@ __all__ = [
     "settle",
     "settle_near",
     "sides_at_rest",
+    "sweeps_any_circle",
     "taken",
     "touching_as_drawn",
 ]

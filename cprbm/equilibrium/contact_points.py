@@ -60,7 +60,7 @@ def touched_equilibrium(
         NotConvergedError: no equilibrium was found, the places do not settle, or a beam passed through itself.
     """
     contacts = with_fixed_places(geometry, start.z, replace(contacts, given_up=frozenset()))
-    joints_tried, before, old = False, start.z, contacts.places
+    joints_tried, before, old = False, start.z, _of_all_pairs(geometry, start.z, contacts)
     for _ in range(ROUNDS):
         try:
             solved = solve_set(system, geometry, start, contacts, iterations, springs)
@@ -78,13 +78,21 @@ def touched_equilibrium(
         revised = _revised(geometry, solved)
         if revised is None:
             new = with_fixed_places(geometry, solved.state.z, solved.contacts)
-            if passed_through(geometry, before, old, solved.state.z, new.places):
-                raise NotConvergedError("a beam passed through itself")
+            every = _of_all_pairs(geometry, solved.state.z, new)
+            if passed_through(geometry, before, old, solved.state.z, every, contacts.counters):
+                raise NotConvergedError("a beam passed through itself or over a circle")
             if not _come_near(geometry, solved, new):
                 return solved
             revised = new
         start, contacts = solved.state, with_fixed_places(geometry, solved.state.z, revised)
     raise NotConvergedError("the places of contact do not settle")
+
+
+def _of_all_pairs(geometry: Geometry, z: Array, contacts: Contacts) -> Places:
+    """Places of all pairs, those that are kept open included: an open pair must not pass through itself either."""
+    if not contacts.kept_open:
+        return contacts.places
+    return with_fixed_places(geometry, z, replace(contacts, kept_open=frozenset())).places
 
 
 def _revised(geometry: Geometry, solved: Touched) -> Contacts | None:

@@ -21,13 +21,14 @@ from cprbm.contact import (
     near_pairs,
     separations,
     settle_near,
+    sweeps_any_circle,
     taken,
 )
 from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_of, new_work, pulls, solved_border
 from cprbm.equilibrium.iteration import begin_iteration, change_set, end_iteration
 from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
-from cprbm_scene.answer import Array
+from cprbm_scene.answer import Array, Ints
 
 FREE_CHANGES = 12
 """Iterations with any change of the set; later iterations change one place at a time."""
@@ -79,11 +80,17 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[old.moves]]))
 
 
-def passed_through(geometry: Geometry, before: Array, old: Places, after: Array, new: Places) -> bool:
-    """True if a beam in self-contact went through itself: the vector from a foot to a place turned round.
+def passed_through(
+    geometry: Geometry, before: Array, old: Places, after: Array, new: Places, counters: Ints
+) -> bool:
+    """True if a beam went through itself or over a circle: the vector from a foot or a centre to a place turned round.
 
-    The side of a beam over itself follows from the state, so that only the way between two states shows a passage.
+    The gaps of a beam to itself and to a circle have no sign: only the way between two states shows a passage.
     """
+    if geometry.arrays.is_point.any() and sweeps_any_circle(
+        before, after, geometry.arrays, geometry.columns, counters
+    ):
+        return True
     first, second = separations(before, geometry.arrays, old), separations(after, geometry.arrays, new)
     number = {_identity(new, k): k for k in range(len(new.pair)) if not new.moves[k]}
     for k in np.flatnonzero((old.curve == old.other) & ~old.moves & (np.hypot(*first.T) < REACH)).tolist():
