@@ -74,7 +74,7 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
         before = known.get(_identity(fixed, k))
         if before is not None and contacts.closed[before]:
             closed[k], fixed.force[k] = True, old.force[before]
-            fixed.foot[k], fixed.eta[k] = old.foot[before], old.eta[before]
+            fixed.foot[k], fixed.eta[k], fixed.side[k] = old.foot[before], old.eta[before], old.side[before]
     choose_sides(z, geometry.arrays, fixed)
     both = joined(fixed, taken(old, old.moves))
     return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[old.moves]]))
