@@ -1,9 +1,4 @@
-"""Errors that fall evenly with N: N² times the error is the same from each number of links to the next.
-
-Limits are Richardson's, from 80 and 160 links; that the order is two is part of what is tested.
-"""
-
-from pathlib import Path
+"""What even elements miss of the tangent at a place that presses, in the chain of second order."""
 
 import numpy as np
 import pytest
@@ -13,106 +8,7 @@ from cprbm.kinematics import State, positions, rest_state
 from cprbm.kinks import kinks_at, missed
 from cprbm.model import NO_KINKS, Kinks, build
 from cprbm.smooth import smooth_line
-from cprbm_scene import read
 from tests.cprbm.scenes import cantilever, force
-
-CASES = Path(__file__).parents[2] / "comparisons" / "cases"
-CONSECUTIVE = range(37, 48)
-COARSER, FINER = 80, 160
-
-
-def families(case, *stations):
-    """A built-in case at some stations: for each, by the number of links, values by probe."""
-    scene = read(CASES / f"{case}.toml")
-    stage = scene.stages[0].model_copy(update={"stations": stations})
-    scene = scene.model_copy(update={"stages": (stage,)})
-    found = {}
-    for links in (*CONSECUTIVE, COARSER, FINER):
-        answer = cprbm.answer(scene, cprbm.Settings(links=links))
-        assert answer.completed, answer.sentence
-        found[links] = [station.values for station in answer.stations]
-    return [{links: values[i] for links, values in found.items()} for i in range(len(stations))]
-
-
-def scaled(found, probe):
-    """N² times the error's norm for all N in CONSECUTIVE, and for COARSER."""
-    coarse, fine = found[COARSER][probe], found[FINER][probe]
-    limit = fine + (fine - coarse) / 3.0
-    errors = [n**2 * np.linalg.norm(found[n][probe] - limit) for n in (*CONSECUTIVE, COARSER)]
-    return np.array(errors[:-1]), errors[-1]
-
-
-@pytest.fixture(scope="module")
-def gripper():
-    """Just after beam 2 has left the clamp on the circle; and on the circle and beam 1 in points anywhere."""
-    return families("gripper", 6.4, 12.8)
-
-
-@pytest.mark.parametrize(
-    ("probe", "part"),
-    [
-        ("A.displacement", 0.03),
-        ("B.displacement", 0.03),
-        ("scene.potential_energy", 0.02),
-        ("circle.force", 0.06),
-        ("C.reaction", 0.06),
-        ("contact.closing_load", 0.03),
-        ("contact.centre", 0.12),
-        ("circle.centre", 0.2),
-    ],
-)
-def test_the_error_is_even_where_contacts_are_in_points(gripper, probe, part):
-    errors, finer = scaled(gripper[1], probe)
-    assert np.max(np.abs(errors / errors.mean() - 1.0)) < part
-    assert finer == pytest.approx(errors.mean(), rel=part)
-
-
-def test_the_error_is_even_just_after_a_contact_has_left_the_clamp(gripper):
-    # even elements, of which there are two before the place, take it for a wrap that goes on from the clamp
-    errors, finer = scaled(gripper[0], "A.displacement")
-    assert np.max(np.abs(errors / errors.mean() - 1.0)) < 0.1
-    assert finer == pytest.approx(errors.mean(), rel=0.1)
-    forces, finer = scaled(gripper[0], "circle.force")
-    assert np.max(np.abs(forces / forces.mean() - 1.0)) < 0.5
-    assert finer == pytest.approx(forces.mean(), rel=0.5)
-
-
-@pytest.mark.parametrize(
-    ("probe", "part"),
-    [("T.displacement", 0.05), ("tip.rotation", 0.05), ("contact.centre", 0.15), ("scene.potential_energy", 0.01)],
-)
-def test_the_error_is_even_on_a_wrap(wrapped, probe, part):
-    errors, finer = scaled(wrapped, probe)
-    assert np.max(np.abs(errors / errors.mean() - 1.0)) < part
-    assert finer == pytest.approx(errors.mean(), rel=part)
-
-
-@pytest.fixture(scope="module")
-def wrapped():
-    return families("wrapped", 137.0)[0]
-
-
-@pytest.fixture(scope="module")
-def pressed():
-    return families("hinge", 0.67)[0]
-
-
-@pytest.mark.parametrize(
-    ("case", "probe"),
-    [
-        ("pressed", "beam1.bending_stress"),
-        ("pressed", "beam2.bending_stress"),
-        ("wrapped", "beam.bending_stress"),
-    ],
-)
-def test_the_error_of_the_stress_is_even_at_each_place(case, probe, request):
-    # wherever in their elements the place, the contact and the ends of the zone lie
-    found = request.getfixturevalue(case)
-    coarse, fine = found[COARSER][probe], found[FINER][probe]
-    limit = fine + (fine - coarse) / 3.0
-    errors = np.array([n**2 * (found[n][probe] - limit) for n in (*CONSECUTIVE, COARSER)])
-    assert np.max(np.ptp(errors, axis=0)) < 0.12 * np.max(np.abs(limit))
-
 
 def bent_by_two_moments(places, place, p, q, kappa):
     """Angles of links and true tangents at ``places`` of a beam whose curvature is a broken line with its corner."""

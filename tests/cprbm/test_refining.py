@@ -164,28 +164,9 @@ def test_the_fitted_mesh_is_that_of_the_same_beam():
         assert line.y[0] == pytest.approx(0.9 * np.mean(np.sin(angle)), abs=3e-4)
 
 
-def test_an_answer_at_many_links_is_that_of_the_plain_march():
-    scene = scene_of([97.0])
-    nested = cprbm.answer(scene, Settings(links=320)).stations[0]
-    plain = March(scene, (Settings(links=320),))
-    assert plain.run()[0].name == "COMPLETED"
-    for name, value in plain.reached[0].values.items():
-        assert nested.values[name] == pytest.approx(value, rel=1e-6, abs=1e-6 * np.max(np.abs(value))), name
-
-
 def test_a_place_on_a_circle_is_no_matter_of_two_beams_that_lie_on_each_other():
     march = marched(40)
     kinks = Kinks(np.array([0.4]), np.array([1.0]), np.array([-1.0]))
     fit = Fit({}, {}, {"circle": (kinks,)})
     on = march.on
     assert levelled(march.scene, on.settings, on.mechanism, on.point, fit, on.values) is None
-
-
-def test_values_on_elements_that_were_not_fitted_are_said_to_be(monkeypatch):
-    scene, settings = scene_of([31.0, 97.0]), Settings(links=20)
-    assert not any("even elements" in note for note in cprbm.answer(scene, settings).notes)
-    monkeypatch.setattr(March, "_fitted", lambda *_, **__: None)
-    plain = cprbm.answer(scene, settings)
-    assert plain.completed, plain.sentence
-    (said,) = [note for note in plain.notes if "even elements" in note]
-    assert all(f"{station.stage} {station.value:.6g}" in said for station in plain.stations)
