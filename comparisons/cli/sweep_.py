@@ -29,13 +29,15 @@ def _shard(ctx: click.Context, param: click.Parameter, value: str) -> tuple[int,
     return int(found[1]), int(found[2])
 
 
-def _processes(ctx: click.Context, param: click.Parameter, value: str | None) -> int:
+def _place(ctx: click.Context, param: click.Parameter, value: str | None) -> str:
+    """A place of workers."""
     if value is None:
-        return min(2, os.cpu_count() or 1)
-    found = re.fullmatch(r"local:([1-9]\d{0,2})", value)
-    if found is None:
-        raise click.BadParameter(f"found {value!r}; allowed: local:N with N processes, as local:2")
-    return int(found[1])
+        return f"local:{min(2, os.cpu_count() or 1)}"
+    from comparisons.sweeps.workers import PLACES, place_of
+
+    if place_of(value) is None:
+        raise click.BadParameter(f"found {value!r}; allowed: {PLACES}")
+    return value
 
 
 @click.command("sweep")
@@ -53,8 +55,9 @@ def _processes(ctx: click.Context, param: click.Parameter, value: str | None) ->
               help="Compare both solvers at K points: corners, then a Sobol subset.")  # fmt: skip
 @sized
 @variants
-@click.option("--on", "processes", callback=_processes, metavar="local:N",
-              help="Worker processes.  [default: a process per core, at most two]")  # fmt: skip
+@click.option("--on", "place", callback=_place, metavar="local:N|dask://HOST:PORT",
+              help="Worker processes, or the scheduler of a Dask cluster.  [default: a process per core, at most "
+              "two]")  # fmt: skip
 @click.option("--shard", callback=_shard, default="1/1", metavar="I/N", show_default=True,
               help="Solve the points I, I + N, ... only.")  # fmt: skip
 @click.option("--merge", multiple=True, type=click.Path(exists=True, file_okay=False, path_type=Path), metavar="DIR",
@@ -77,7 +80,7 @@ def command(
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
     kinematics: Kinematics,
-    processes: int,
+    place: str,
     shard: tuple[int, int],
     merge: tuple[Path, ...],
     at_most: float,
@@ -92,12 +95,12 @@ def command(
     from comparisons.cases import opened
     from comparisons.choices import Choices
     from comparisons.cli import output
-    from comparisons.executor import threads
     from comparisons.pairing import solvers_of
     from comparisons.sweeps.page import write_page
     from comparisons.sweeps.points import chosen_for_check
     from comparisons.sweeps.running import Sweep, known_outcomes, run, tasks_of
     from comparisons.sweeps.tables import write_tables
+    from comparisons.sweeps.workers import workers_on
 
     scene = opened(case, settings())
     axes, points = _asked(scene, vary, sample, lambda name, text: _in_si(case, name, text))
@@ -106,8 +109,8 @@ def command(
     out = Path(f"sweep-{scene.name}") if out is None else out
     output.room_for(None, out)
     sweep = Sweep(scene, axes, tasks, known_outcomes([out, *merge]))
-    with threads(processes) as executor, output.counted(len(tasks), shown=not quiet) as moved:
-        sweep = run(sweep, executor, choices, solvers_of(planted), at_most, out, moved)
+    with workers_on(place) as workers, output.counted(len(tasks), shown=not quiet) as moved:
+        sweep = run(sweep, workers, choices, solvers_of(planted), at_most, out, moved)
     write_tables(out, sweep)
     write_page(out, sweep)
     click.echo(f"{scene.name}: {sweep.headline}.")

@@ -11,12 +11,12 @@ from pathlib import Path
 
 from comparisons.choices import Choices
 from comparisons.display_units import file_unit
-from comparisons.executor import threads
 from comparisons.pairing import Solvers
 from comparisons.sweeps.outcome import Asked
 from comparisons.sweeps.points import Axis, chosen_for_check
 from comparisons.sweeps.running import Sweep, known_outcomes, run, tasks_of
 from comparisons.sweeps.tables import write_tables
+from comparisons.sweeps.workers import Workers, workers_on
 from cprbm_scene import Scene
 
 
@@ -26,7 +26,7 @@ def start(
     asked: Asked,
     check: int,
     choices: Choices | None,
-    executor: Executor | None,
+    executor: Executor | str | None,
     limit: float,
     out: Path | None,
 ) -> Sweep:
@@ -42,8 +42,9 @@ def start(
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)
     sweep = Sweep(scene, tuple(axes), tasks, {} if out is None else known_outcomes([out]))
-    with threads(os.cpu_count() or 1) if executor is None else nullcontext(executor) as pool:
-        sweep = run(sweep, pool, chosen, Solvers(), limit, out)
+    place = f"local:{os.cpu_count() or 1}" if executor is None else executor
+    with workers_on(place) if isinstance(place, str) else nullcontext(Workers(place)) as workers:
+        sweep = run(sweep, workers, chosen, Solvers(), limit, out)
     if out is not None:
         write_tables(out, sweep)
     return sweep
