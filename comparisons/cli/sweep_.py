@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -12,7 +11,8 @@ import click
 
 from comparisons.choices import Kinematics
 from comparisons.cli.completion import candidates
-from comparisons.cli.options import parameters, positive, settings, sized, variants, verbose
+from comparisons.cli.many import solved_often
+from comparisons.cli.options import settings
 
 if TYPE_CHECKING:
     from comparisons.sweeps.points import Axis, Point
@@ -29,17 +29,6 @@ def _shard(ctx: click.Context, param: click.Parameter, value: str) -> tuple[int,
     return int(found[1]), int(found[2])
 
 
-def _place(ctx: click.Context, param: click.Parameter, value: str | None) -> str:
-    """A place of workers."""
-    if value is None:
-        return f"local:{min(2, os.cpu_count() or 1)}"
-    from comparisons.sweeps.workers import PLACES, place_of
-
-    if place_of(value) is None:
-        raise click.BadParameter(f"found {value!r}; allowed: {PLACES}")
-    return value
-
-
 @click.command("sweep")
 @click.argument("case", metavar="CASE|FILE.toml", shell_complete=candidates)
 @click.option("--vary", multiple=True, metavar="NAME=FIRST..LAST:COUNT",
@@ -48,26 +37,15 @@ def _place(ctx: click.Context, param: click.Parameter, value: str | None) -> str
 @click.option("--sample", metavar="sobol:K|lhs:K|FILE.csv",
               help="Points of a sample in place of a grid; without --vary in the ranges of the scene's parameters.",
               )  # fmt: skip
-@parameters
 @click.option("--solver", type=click.Choice(["cprbm", "fea", "compare"]), default="cprbm", show_default=True,
               help="Solver of every point, or both with a verdict.")  # fmt: skip
 @click.option("--check", type=click.IntRange(min=0), default=0, metavar="K",
               help="Compare both solvers at K points: corners, then a Sobol subset.")  # fmt: skip
-@sized
-@variants
-@click.option("--on", "place", callback=_place, metavar="local:N|dask://HOST:PORT",
-              help="Worker processes, or the scheduler of a Dask cluster.  [default: a process per core, at most "
-              "two]")  # fmt: skip
 @click.option("--shard", callback=_shard, default="1/1", metavar="I/N", show_default=True,
               help="Solve the points I, I + N, ... only.")  # fmt: skip
 @click.option("--merge", multiple=True, type=click.Path(exists=True, file_okay=False, path_type=Path), metavar="DIR",
               help="Take over the outcomes of a folder, such as of a shard; may be repeated.")  # fmt: skip
-@click.option("--at-most", callback=positive, metavar="SECONDS", default="600", show_default=True,
-              help="Time limit of a solve; a solve that crashes or takes longer is tried twice.")  # fmt: skip
-@click.option("-q", "--quiet", is_flag=True, help="Print neither tables nor progress.")
-@verbose
-@click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
-              help="Folder of tables and page; a sweep goes on from there.  [default: sweep-NAME]")  # fmt: skip
+@solved_often
 @click.pass_obj
 def command(
     planted: object,
