@@ -23,7 +23,18 @@ if TYPE_CHECKING:
     from comparisons.pairing import Solvers
 
 GROUPS = {
-    "Your mechanism": ("new", "import", "solve", "compare", "converge", "sweep", "tolerance", "view", "report"),
+    "Your mechanism": (
+        "new",
+        "import",
+        "solve",
+        "compare",
+        "converge",
+        "sweep",
+        "tolerance",
+        "optimise",
+        "view",
+        "report",
+    ),
     "Built-in cases and evidence": ("list", "bench", "study"),
     "Development": ("schema", "doctor", "robustness"),
 }

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import click
 
-from comparisons.cli.options import Decorated, parameters, positive, sized, variants, verbose
+from comparisons.cli.options import Decorated, parameters, positive, settings, sized, variants, verbose
 
 
 def _place(ctx: click.Context, param: click.Parameter, value: str | None) -> str:
@@ -39,3 +40,13 @@ def solved_often(command: Decorated) -> Decorated:
     ):  # fmt: skip
         command = option(command)
     return command
+
+
+def in_si(case: str) -> Callable[[str, str], float]:
+    """Function that returns the SI value of a text for a parameter.
+
+    The function raises SceneError for an unknown parameter, a wrong unit and a wrong value.
+    """
+    from comparisons.cases import opened
+
+    return lambda name, text: opened(case, {**settings(), name: text}).parameters[name].value

@@ -11,7 +11,7 @@ import click
 
 from comparisons.choices import Kinematics
 from comparisons.cli.completion import candidates
-from comparisons.cli.many import solved_often
+from comparisons.cli.many import in_si, solved_often
 from comparisons.cli.options import settings
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def command(
     from comparisons.sweeps.workers import workers_on
 
     scene = opened(case, settings())
-    axes, points = _asked(scene, vary, sample, lambda name, text: _in_si(case, name, text))
+    axes, points = _asked(scene, vary, sample, in_si(case))
     choices = Choices(links, formulation, elements, kinematics)
     tasks = tasks_of(scene, points, solver, chosen_for_check(points, axes, check), choices, shard)
     out = Path(f"sweep-{scene.name}") if out is None else out
@@ -108,36 +108,21 @@ def exit_code(sweep: Sweep) -> int:
     return UNDECIDED if any(outcome.verdict == "UNDECIDED" for outcome in outcomes) else 0
 
 
-def _in_si(case: str, name: str, text: str) -> float:
-    """SI value of a text for a parameter; the scene refuses an unknown parameter, a wrong unit and a wrong value."""
-    from comparisons.cases import opened
-
-    return opened(case, {**settings(), name: text}).parameters[name].value
-
-
 def _asked(
-    scene: Scene, vary: tuple[str, ...], sampled: str | None, in_si: Callable[[str, str], float]
+    scene: Scene, vary: tuple[str, ...], sampled: str | None, si: Callable[[str, str], float]
 ) -> tuple[tuple[Axis, ...], tuple[Point, ...]]:
     """Axes and points of the command line."""
-    from dataclasses import replace
+    from comparisons.sweeps.points import axes_of, axis_of, grid, in_file_units, ranges_of, read_points, sample
 
-    from comparisons.display_units import file_unit
-    from comparisons.sweeps.points import Axis, axes_of, axis_of, grid, read_points, sample
-
-    axes = tuple(axis_of(text, in_si) for text in vary)
+    axes = tuple(axis_of(text, si) for text in vary)
     if sampled is None:
         if not axes:
             raise click.UsageError("found neither --vary nor --sample; allowed: --vary t=1.8mm..2.2mm:11, or a sample.")
         points = grid(axes)
     elif sampled.endswith(".csv"):
-        points = read_points(Path(sampled), in_si)
+        points = read_points(Path(sampled), si)
         axes = axes_of(points)
     else:
-        ranges = {name: each.range for name, each in scene.parameters.items() if each.range is not None}
-        axes = axes or tuple(Axis(name, low, high) for name, (low, high) in ranges.items())
+        axes = axes or ranges_of(scene)
         points = sample(sampled, axes)
-    units = (file_unit(scene, scene.parameters[axis.name].unit) for axis in axes)
-    return tuple(
-        axis if axis.unit else replace(axis, size=size, unit=unit)
-        for axis, (size, unit) in zip(axes, units, strict=True)
-    ), points
+    return in_file_units(scene, axes), points

@@ -10,13 +10,12 @@ from pathlib import Path
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.display_units import file_unit
 from comparisons.pairing import Solvers
 from comparisons.scatter.draws import Distribution, drawn
 from comparisons.scatter.statistics import Indices, constant, indices
 from comparisons.sweeps.demands import Bound, Measure, measures
 from comparisons.sweeps.outcome import Asked, Outcome
-from comparisons.sweeps.points import Axis
+from comparisons.sweeps.points import axes_of, in_file_units
 from comparisons.sweeps.running import Sweep, known_outcomes, run, tasks_of
 from comparisons.sweeps.workers import Workers
 from cprbm_scene import Scene
@@ -120,12 +119,8 @@ def study(
     values = drawn(distributions, count, indices=indexed)
     nominal = [scene.parameters[name].value for name in names]
     points = tuple(dict(zip(names, map(float, row), strict=True)) for row in (nominal, *values))
-    axes = []
-    for name, column in zip(names, values.T, strict=True):
-        size, unit = file_unit(scene, scene.parameters[name].unit)
-        axes.append(Axis(name, float(column.min()), float(column.max()), 0, unit, size))
     tasks = tasks_of(scene, points, asked, frozenset(), choices)
-    return Scatter(Sweep(scene, tuple(axes), tasks, {}), count, indexed, bounds)
+    return Scatter(Sweep(scene, in_file_units(scene, axes_of(points)), tasks, {}), count, indexed, bounds)
 
 
 def solved(

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, isfinite
 from pathlib import Path
 from typing import Literal
 
@@ -119,10 +119,15 @@ class Bound:
     least: float
     most: float
 
-    def excess(self, outcome: Outcome) -> float | None:
-        """Largest distance beyond the limit, negative within; None without a value."""
-        values = self.measure.values(outcome)
-        return max(max(self.least - value, value - self.most) for value in values) if values else None
+    @property
+    def scale(self) -> float:
+        """Largest magnitude of the finite ends, 1 without such a magnitude."""
+        return max(abs(end) for end in (self.least, self.most) if isfinite(end)) or 1.0
+
+    def excess(self, outcome: Outcome) -> float:
+        """Largest distance beyond the limit over the scale, negative within the limit; infinite without a value."""
+        values = self.measure.values(outcome) if outcome.completed else []
+        return max((max(self.least - each, each - self.most) / self.scale for each in values), default=inf)
 
     def __str__(self) -> str:
         parts = [f"at least {self.measure.text(self.least)}"] if self.least > -inf else []
@@ -131,9 +136,8 @@ class Bound:
 
 
 def meets(outcome: Outcome, bounds: Sequence[Bound]) -> bool:
-    """Whether a complete outcome is within all ``bounds``; a missing value is not."""
-    excesses = [bound.excess(outcome) for bound in bounds]
-    return outcome.completed and all(each is not None and each <= 0.0 for each in excesses)
+    """Whether a complete outcome is within all ``bounds``."""
+    return outcome.completed and all(bound.excess(outcome) <= 0.0 for bound in bounds)
 
 
 def read_demands(path: Path) -> Demands:
