@@ -27,7 +27,7 @@ from cprbm_scene.contact_records import (
     SplineContact,
 )
 from cprbm_scene.curve_records import shape_of
-from cprbm_scene.curves import Array, ParametricCurve, unit_vector
+from cprbm_scene.curves import Array, Curve, unit_vector
 
 _ON_EDGE = 257
 """Samples of a curve, from the nearest of which Newton's method starts."""
@@ -50,7 +50,7 @@ def distance_from(contact: RigidContact) -> Callable[[Array], Array]:
             upwards = (contact.side == "above") == (contact.range[0] < contact.range[1])
             sign = 1.0 if upwards == (contact.axis == "x") else -1.0
     assert isinstance(contact, FunctionContact | SplineContact | EllipseContact)
-    curve, closed = cast(ParametricCurve, shape_of(contact.curve)), isinstance(contact, EllipseContact)
+    curve, closed = cast(Curve, shape_of(contact.curve)), isinstance(contact, EllipseContact)
     return lambda p: _from_curve(curve, sign, p, closed=closed)
 
 
@@ -74,7 +74,7 @@ def _from_line(points: Array, sign: float, p: Array, *, closed: bool) -> Array:
     return np.asarray(np.where(behind, -1.0, 1.0) * np.hypot(*away.T))
 
 
-def _from_curve(curve: ParametricCurve, sign: float, p: Array, *, closed: bool) -> Array:
+def _from_curve(curve: Curve, sign: float, p: Array, *, closed: bool) -> Array:
     samples = curve.samples[:: max(1, len(curve.samples) // _ON_EDGE)]
     samples = samples if closed else np.append(samples, 1.0)
     places = curve.place(samples)

@@ -50,13 +50,14 @@ class Mistake:
         return f"{where}: found {self.found}; allowed: {self.allowed}"
 
 
-Rule = tuple[object, str, str, str]
-"""A condition that is true where the rule is broken; key, found and allowed of the mistake."""
+def broken(*rules: object) -> Iterator[Mistake]:
+    """Mistakes of the broken rules, in order; a rule is ``condition and Mistake(...)``, true where it is broken."""
+    return (rule for rule in rules if isinstance(rule, Mistake))
 
 
-def broken(*rules: Rule) -> Iterator[Mistake]:
-    """Mistakes of the broken ``rules``, in order."""
-    return (Mistake(*rule[1:]) for rule in rules if rule[0])
+def first_broken(*rules: object) -> Iterator[Mistake]:
+    """The mistake of the first broken rule, if any."""
+    return islice(broken(*rules), 1)
 
 
 MOST = 100
@@ -96,11 +97,6 @@ def unknown_name(key: str, name: str, what: str, known: Iterable[str]) -> Mistak
     listed = ", ".join(repr(each) for each in names[:_LISTED]) or "there is none"
     listed += ", ..." if len(names) > _LISTED else ""
     return Mistake(key, f"{name!r}, which names no {what}{hint(name, names)}", f"the name of a {what}: {listed}")
-
-
-def unknown_names(key: str, name: str | None, what: str, known: Iterable[str]) -> Iterator[Mistake]:
-    """The mistake of a name outside the ``known`` names, as :func:`unknown_name`; no mistake without a name."""
-    return iter(() if name is None or name in known else (unknown_name(key, name, what, known),))
 
 
 def written_place(place: Sequence[float] | NDArray[np.float64]) -> str:

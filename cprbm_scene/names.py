@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from cprbm_scene.mistakes import Mistake, unknown_name
-from cprbm_scene.record import Of, Record
 from cprbm_scene.statement import BeamContact, RigidContact, Scene
+from cprbm_scene.units import Of, Record
 
 RESERVED = "scene"
 """Name of the scene itself in a probe."""

@@ -11,7 +11,6 @@ from pydantic import Field, WithJsonSchema, model_validator
 
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
-from cprbm_scene.record import Name, Of, Record, Text
 from cprbm_scene.units import (
     ANGLE,
     FORCE,
@@ -19,9 +18,13 @@ from cprbm_scene.units import (
     MOMENT,
     STRESS,
     Following,
+    Name,
+    Of,
     Positive,
     PositiveShare,
     Reading,
+    Record,
+    Text,
     Unit,
     Units,
     mistake,
@@ -135,13 +138,13 @@ class Stage(Record):
             place = bisect(before, value)
             beside = [*before[max(0, place - 2) : place - 1], *before[place : place + 1]]
             again = any(isclose(value, other, rel_tol=1e-9) for other in beside)
-            yield from broken((again, f"stations[{j}]", f"{value:g} again", allowed))
+            yield from broken(again and Mistake(f"stations[{j}]", f"{value:g} again", allowed))
         first, once = self.together[:1] in ((), (self.steps,)), len(set(self.together)) == len(self.together)
         stations = set(self.stations)
         yield from broken(
-            (not (first and once), "steps", f"{list(self.together)}", "different loads, each once"),
+            not (first and once) and Mistake("steps", f"{list(self.together)}", "different loads, each once"),
             *(
-                (value not in stations, f"shown[{j}]", f"{value:g}", "one of the stage's stations")
+                value not in stations and Mistake(f"shown[{j}]", f"{value:g}", "one of the stage's stations")
                 for j, value in enumerate(self.shown)
             ),
         )
@@ -174,7 +177,7 @@ class Probe(Record):
         """Places of quantities other than stress."""
         wrong = "points" in self.model_fields_set and self.quantity not in STRESSES
         allowed = "points for 'bending_stress' and 'combined_stress' only"
-        return broken((wrong, "points", f"places along {self.name!r}", allowed))
+        return broken(wrong and Mistake("points", f"places along {self.name!r}", allowed))
 
 
 class Claim(Record):

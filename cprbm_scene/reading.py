@@ -14,17 +14,15 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from cprbm_scene.clearance import wrong_clearance
-from cprbm_scene.freedoms import wrong_actions
 from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
 from cprbm_scene.mistakes import Mistake, SceneError, first_of, unknown_name
-from cprbm_scene.mobility import wrong_mobility
+from cprbm_scene.mobility import wrong_actions, wrong_mobility
 from cprbm_scene.names import records, repeated_contacts, repeated_names, unknown_names
 from cprbm_scene.offset import OffsetQuestion
 from cprbm_scene.parameters import register
 from cprbm_scene.questions import wrong_claims, wrong_probes, wrong_spacings, wrong_stages
-from cprbm_scene.record import Record
 from cprbm_scene.statement import Scene
-from cprbm_scene.units import Reading, Units
+from cprbm_scene.units import Reading, Record, Units
 from cprbm_scene.wording import in_words, keys_at, repeats_another
 
 

@@ -67,8 +67,7 @@ from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.parameters import Parameter, Tolerance, register
 from cprbm_scene.question_records import CRITICAL, STRESSES, UNITS, Claim, Probe, Quantity, Stage
-from cprbm_scene.record import Name, Named, Of, Record, Text, Title
-from cprbm_scene.units import Point, PositiveShare, Reading, Units
+from cprbm_scene.units import Name, Named, Of, Point, PositiveShare, Reading, Record, Text, Title, Units
 
 __all__ = [
     "CRITICAL",
@@ -181,7 +180,7 @@ class Scene(Record):
         """Pairs of the same name."""
         return broken(
             *(
-                (one == other, f"may_cross[{i}]", f"{one!r} twice", "two different names")
+                one == other and Mistake(f"may_cross[{i}]", f"{one!r} twice", "two different names")
                 for i, (one, other) in enumerate(self.may_cross)
             )
         )

@@ -13,7 +13,7 @@ from pydantic import BaseModel, Tag
 from pydantic_core import ErrorDetails
 
 from cprbm_scene.mistakes import Mistake, SceneError, hint, unknown_name
-from cprbm_scene.record import Record
+from cprbm_scene.units import Record
 
 
 def keys_at(loc: tuple[int | str, ...], root: type[Record]) -> tuple[str, ...]:
