@@ -27,7 +27,7 @@ from comparisons.quantities import COMPONENTS, unit_of
 from comparisons.sweeps.outcome import Outcome
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.reading import toml_data
-from cprbm_scene.record import Record
+from cprbm_scene.statement import Record
 from cprbm_scene.wording import in_words
 
 
