@@ -72,6 +72,10 @@ def _pressed(view: View, geometry: Geometry, places: Places, k: int) -> Pressed:
     weights = np.empty((2, STENCIL))
     at = tuple(np.array(curve_point(z, arrays, p, t, 0, weights)) for p, t in ((piece, xi), (foot, eta)))
     force = float(places.force[k]) * normal
+    law = geometry.law
+    if law is not None and law.measures(places)[k]:
+        force = law.force(z, places, k)
+        normal = force / np.hypot(*force) if force.any() else normal
     surface = at[0] - normal * (arrays.thickness[piece] + xi * arrays.thickening[piece])
     on_first = places.curve[k] == geometry.pairs[places.pair[k]].first
     # of a beam with itself the smaller arc length counts as the first

@@ -16,6 +16,7 @@ from cprbm.continuation.driver import ContactEvent, Driver, Passed, StepError
 from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.system import System, system_of
+from cprbm.paper import paper_geometry
 from cprbm.results.contacts import states_of_contacts, touching_places
 from cprbm.results.forces import point_forces
 from cprbm.results.probes import displacement, probe_values
@@ -72,6 +73,8 @@ class Run:
         links = {beam: self.settings.links_of(beam) for beam in self.scene.beams}
         mechanism = mechanism_of(self.scene, links, self.scene.theory, corrected=corrected)
         add_rows(mechanism)
+        if self.settings.formulation == "paper":
+            return system_of(mechanism, paper_geometry(mechanism, self.settings.degree))
         return system_of(mechanism, contact_geometry(mechanism))
 
     def answer(self) -> Answer:
