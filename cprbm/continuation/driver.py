@@ -225,7 +225,7 @@ class Driver:
             name = rows[change.row].name.rpartition(".")[0]
         else:
             state = kept_open(before.state, frozenset() if change.closes else change.pairs)
-            name = pair_name(self.system, min(change.pairs))
+            name = pair_name(self.system, change.first)
         try:
             after = self._equilibrium(state)
         except NotConvergedError as failure:

@@ -128,13 +128,15 @@ def solve_set(
     begin = begin_iteration if geometry.law is None else partial(begin_by_law, geometry.law)
     settle_near(z, *settling, FINDING)
     seen: dict[bytes, int] = {}
-    last = np.inf
+    last, free_changes = np.inf, FREE_CHANGES
     for iteration in range(1, iterations + 1):
-        most = 0 if iteration == 1 else len(closed) if iteration <= FREE_CHANGES else 1
+        most = 0 if iteration == 1 else len(closed) if iteration <= free_changes else 1
         changed, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
         if changed:
             seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
-            if seen[closed.tobytes()] > RETURNS:
+            if seen[closed.tobytes()] > RETURNS and geometry.joints_alone and iteration <= free_changes:
+                free_changes, seen = iteration, {}
+            elif seen[closed.tobytes()] > RETURNS:
                 raise NotConvergedError("the set of closed places returns")
         try:
             factors = factors_of(system, driven, work, bordered)

@@ -169,9 +169,7 @@ def _add_point(
 
 
 @compiled
-def fitted_columns(
-    z: Array, b: Boundary, force: Array, closed: Flags, gradient: Array
-) -> Columns:  # pragma: no cover
+def fitted_columns(z: Array, b: Boundary, force: Array, closed: Flags, gradient: Array) -> Columns:  # pragma: no cover
     """Columns of the constrained joints marked ``closed`` (m,); adds the gradient of −Σ F g to ``gradient``."""
     n, size, joints = b.points.size, b.degree + 1, np.flatnonzero(closed)
     k, fit = joints.size, fitted(z, b)
