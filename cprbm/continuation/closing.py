@@ -109,17 +109,18 @@ class Pressed(NamedTuple):
         return 0.0 if contacts is None else float(contacts.places.force[self.places(solved)].sum())
 
 
+def pressing_joints(solved: Solved) -> list[Pressed]:
+    """Closed joints where all places are joints; else empty."""
+    geometry, contacts = solved.system.geometry, solved.state.contacts
+    if geometry is None or contacts is None or not geometry.joints_alone:
+        return []
+    pair, piece = contacts.places.pair[contacts.closed], contacts.places.piece[contacts.closed]
+    return [Pressed(*each) for each in zip(pair.tolist(), piece.tolist(), strict=True)]
+
+
 def may_lift(solved: Solved) -> list[Pressed]:
-    """Closed pairs, and where all places are joints the closed joints of a pair."""
-    found, geometry, contacts = [Pressed(pair) for pair in sorted(pressing(solved))], solved.system.geometry, None
-    if geometry is not None and geometry.joints_alone:
-        contacts = solved.state.contacts
-    if contacts is not None:
-        found += [
-            Pressed(int(contacts.places.pair[k]), int(contacts.places.piece[k]))
-            for k in np.flatnonzero(contacts.closed)
-        ]
-    return found
+    """Closed pairs, and where all places are joints every closed joint."""
+    return [*(Pressed(pair) for pair in sorted(pressing(solved))), *pressing_joints(solved)]
 
 
 def without(solved: Solved, lifted: Pressed) -> Solved:
