@@ -5,7 +5,8 @@
 * :mod:`cprbm.contact.closest`: points, closest points, boxes; :mod:`cprbm.contact.gap`: gap and derivatives;
 * :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
 * :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.own_pin`, :mod:`cprbm.contact.candidates`: contacts of a scene.
-* :mod:`cprbm.contact.law`: gaps that another law measures; :mod:`cprbm.contact.contacts`: places and closed set of a state.
+* :mod:`cprbm.contact.law`: gaps that another law measures;
+* :mod:`cprbm.contact.contacts`: places and closed set of a state.
 """
 
 from cprbm.contact.candidates import (

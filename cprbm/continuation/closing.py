@@ -101,7 +101,8 @@ class Pressed(NamedTuple):
         contacts = solved.state.contacts
         if contacts is None:
             return np.zeros(0, dtype=bool)
-        return contacts.pressing(self.pair) & ((contacts.places.piece == self.piece) | (self.piece < 0))
+        joint = (contacts.places.piece == self.piece) | (self.piece < 0)
+        return np.asarray(contacts.pressing(self.pair) & joint)
 
     def force(self, solved: Solved) -> float:
         """Sum of the contact forces."""

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm.chain import Mechanism
-from cprbm.contact import Columns, CurveArrays, Geometry, Pair, Places, contact_geometry, places_at
+from cprbm.contact import Columns, CurveArrays, Geometry, Places, contact_geometry, places_at
 from cprbm.equilibrium.columns import contact_columns
 from cprbm.paper.boundaries import fitted_boundary
 from cprbm.paper.fit import Boundary, fitted, fitted_columns, write_basis, write_fitted_gaps
@@ -33,6 +33,7 @@ class FittedLaw:
 
     Attributes:
         boundaries, pairs, names: boundaries, numbers of their pairs, names of their contacts.
+        fitted: whether the law measures a pair (pairs,).
         arrays: of the geometry's curves.
         beyond: distance beyond the ends of a boundary within which a joint may press, in units.
         unit: of length, m.
@@ -41,13 +42,14 @@ class FittedLaw:
     boundaries: Sequence[Boundary]
     pairs: Sequence[int]
     names: Sequence[str]
+    fitted: Flags
     arrays: CurveArrays
     beyond: float
     unit: float
 
     def measures(self, places: Places) -> Flags:
         """Places of the law's pairs."""
-        return np.isin(places.pair, self.pairs)
+        return np.asarray(self.fitted[places.pair])
 
     def write_gaps(self, z: Array, places: Places, gaps: Array) -> None:
         """Write the gaps of the law's places at a state; a foot on a fitted boundary is no point."""
@@ -105,14 +107,13 @@ def paper_geometry(m: Mechanism, degree: int) -> Geometry | None:
     Raises:
         SceneError: the formulation has no form for a contact, or lacks data.
     """
-    _refuse(m.scene)
+    refuse_contacts(m.scene)
     geometry = contact_geometry(m)
     if geometry is None:
         return None
     pins = {f"{contact}.pin" for contact in m.scene.contacts}
     m.rows[:] = [row for row in m.rows if row.name not in pins]
-    rigid, of_beams, law = list[Pair](), list[Pair](), list[tuple[Boundary, int, str]]()
-    rows, fitted_rows, pairs = [], [], list(geometry.pairs)
+    law, pairs, rows, fitted_rows = list[tuple[Boundary, int, str]](), list(geometry.pairs), [], []
     for number, pair in enumerate(geometry.pairs):
         contact = m.scene.contacts[pair.name]
         if isinstance(contact, BeamContact):
@@ -140,10 +141,12 @@ def paper_geometry(m: Mechanism, degree: int) -> Geometry | None:
 def _law(m: Mechanism, geometry: Geometry, law: Sequence[tuple[Boundary, int, str]]) -> FittedLaw:
     longest = max(float(np.max(np.diff(chain.borders))) for chain in m.chains.values())
     boundaries, pairs, names = zip(*law, strict=True)
-    return FittedLaw(boundaries, pairs, names, geometry.arrays, BEYOND * longest, m.units.length)
+    fitted = np.zeros(len(geometry.pairs), dtype=bool)
+    fitted[list(pairs)] = True
+    return FittedLaw(boundaries, pairs, names, fitted, geometry.arrays, BEYOND * longest, m.units.length)
 
 
-def _refuse(scene: Scene) -> None:
+def refuse_contacts(scene: Scene) -> None:
     """Refuse contacts for which the paper has no form.
 
     Raises:

@@ -118,8 +118,12 @@ def fitted(z: Array, b: Boundary) -> Fit:  # pragma: no cover
             load[r] += V[i, 0, r] * points[1, i]
             for s in range(size):
                 normal[r, s] += V[i, 0, r] * V[i, 0, s]
-    inverse = np.linalg.inv(normal)
-    return Fit(points, offsets, turns, V, inverse, inverse @ load, middle, width)
+    inverse, q = np.empty((size, size)), np.zeros(size)
+    inverse[:] = np.linalg.inv(normal)
+    for r in range(size):
+        for s in range(size):
+            q[r] += inverse[r, s] * load[s]
+    return Fit(points, offsets, turns, V, inverse, q, middle, width)
 
 
 @compiled

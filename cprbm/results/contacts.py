@@ -129,15 +129,16 @@ def forces_of_contacts(view: View) -> Iterator[PointForce]:
 def _spread_forces(view: View, contact: str) -> Iterator[PointForce]:
     """Forces on nodes and moments on links of both beams of a contact that a law measures."""
     geometry, contacts = view.solved.system.geometry, view.solved.state.contacts
-    assert geometry is not None and contacts is not None
+    assert geometry is not None
+    assert contacts is not None
     pair = next(k for k, each in enumerate(geometry.pairs) if each.name == contact)
     pull = contact_terms(geometry, view.z, contacts.places, contacts.pressing(pair))[1]
     for beam in view.scene.contacts[contact].beams:
         arcs, places = view.chain(beam).arcs, view.nodes(beam)
         nodes, angles = view.mechanism.beam_nodes(beam), view.mechanism.beam_angles(beam)
-        for s, place, node in zip(arcs, places, nodes.tolist(), strict=True):
-            if pull[node : node + 2].any():
-                yield PointForce(contact, beam, float(s), place, -pull[node : node + 2], 0.0)
+        forces = -pull[np.column_stack([nodes, nodes + 1])]
+        for node in np.flatnonzero(forces.any(axis=1)).tolist():
+            yield PointForce(contact, beam, float(arcs[node]), places[node], forces[node], 0.0)
         for link in np.flatnonzero(pull[angles]).tolist():
             s, place = 0.5 * (arcs[link] + arcs[link + 1]), 0.5 * (places[link] + places[link + 1])
             yield PointForce(contact, beam, float(s), place, NO_FORCE, -float(pull[angles[link]]))

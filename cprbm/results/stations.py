@@ -16,7 +16,7 @@ from cprbm.continuation.driver import ContactEvent, Driver, Passed, StepError
 from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.system import System, system_of
-from cprbm.paper import paper_geometry
+from cprbm.paper.contacts import paper_geometry
 from cprbm.results.contacts import states_of_contacts, touching_places
 from cprbm.results.forces import point_forces
 from cprbm.results.probes import displacement, probe_values
