@@ -12,6 +12,7 @@ from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.factors import factorise
 from cprbm.equilibrium.system import system_of
 from cprbm.paper.contacts import paper_geometry
+from tests.cprbm.contact.workshop import settled
 from tests.cprbm.second.systems import disturbed
 
 SCENES = {"hinge": 24, "gripper": 17, "five-bar": 16}
@@ -29,6 +30,7 @@ def random_contact(case, seed, degree=4):
     contacts = state.contacts
     near = np.ones(len(geometry.pairs), dtype=bool)
     places = fixed_places(geometry, state.z, contacts.sides, near, contacts.counters)
+    settled(geometry, state.z, places)
     closed = random.random(len(places.pair)) < 0.25
     for pair in range(len(geometry.pairs)):
         # the first joint of the gripper's circle hangs on a clamped link
@@ -82,7 +84,7 @@ def test_solution_and_inertia_are_those_of_the_dense_matrix(case, seed):
         moved = contacts.places._replace(force=places.force.copy())
         moved.force[own] += offset[size:]
         here = replace(state, z=state.z + offset[:size])
-        replace(contacts, places=moved).gaps(geometry, here.z)
+        settled(geometry, here.z, moved)
         columns, pressing = contact_terms(geometry, here.z, moved, closed)
         return np.concatenate([factorise(system, here)[1] + pressing, -columns.values])[kept]
 
