@@ -17,6 +17,7 @@ from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.system import System, system_of
 from cprbm.paper.contacts import paper_geometry
+from cprbm.paper.remarks import Remarks
 from cprbm.results.contacts import states_of_contacts, touching_places
 from cprbm.results.forces import point_forces
 from cprbm.results.probes import displacement, probe_values
@@ -50,6 +51,7 @@ class Run:
         values: present values (SI) of loads and drives.
         closing: values (SI) at which contacts first closed.
         stations, events, critical, gone_over, notes: of the answer.
+        remarks: on the formulation ``paper``.
     """
 
     scene: Scene
@@ -62,6 +64,7 @@ class Run:
     critical: list[Critical] = field(default_factory=list)
     gone_over: list[GoneOver] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    remarks: Remarks = field(default_factory=Remarks)
     seconds: float = 0.0
 
     def __post_init__(self) -> None:
@@ -89,6 +92,8 @@ class Run:
                 self.values, self.closing = {}, {}
                 self.notes = [PLAIN]
                 ending, sentence = self._solve()
+        if self.settings.formulation == "paper" and self.driver is not None:
+            self.notes += self.remarks.told(self.driver.solved)
         return Answer(
             solver="cprbm",
             scene=self.scene.name,
@@ -142,6 +147,8 @@ class Run:
         certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent, driver.acting)
         if ending is not Ending.COMPLETED:
             raise StepError(ending, certificate.failures[0])
+        if self.settings.formulation == "paper":
+            self.remarks.look(driver.solved, f"{stage.name} {station:.6g}")
         self.stations.append(self._station(driver, stage, station, certificate))
         station_reached(LOGGER, self.scene, len(self.stations), self.stations[-1])
 
