@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm.chain import Mechanism
-from cprbm.contact import Columns, CurveArrays, Geometry, Places, contact_geometry, places_at
+from cprbm.contact import Columns, CurveArrays, Geometry, Places, places_at
 from cprbm.equilibrium.columns import contact_columns
 from cprbm.paper.boundaries import fitted_boundary
 from cprbm.paper.fit import Boundary, fitted, fitted_columns, write_basis, write_fitted_gaps
@@ -32,7 +32,8 @@ class FittedLaw:
     """Law of the fitted boundaries.
 
     Attributes:
-        boundaries, pairs, names: boundaries, numbers of their pairs, names of their contacts.
+        boundaries, pairs, names, beams: boundaries, numbers of the pairs, names of the contacts and of the beams with
+            constrained joints.
         fitted: whether the law measures a pair (pairs,).
         arrays: of the geometry's curves.
         beyond: distance beyond the ends of a boundary within which a joint may press, in units.
@@ -42,6 +43,7 @@ class FittedLaw:
     boundaries: Sequence[Boundary]
     pairs: Sequence[int]
     names: Sequence[str]
+    beams: Sequence[str]
     fitted: Flags
     arrays: CurveArrays
     beyond: float
@@ -82,7 +84,7 @@ class FittedLaw:
 
     def invalid(self, z: Array, places: Places, closed: Flags) -> str:
         """Sentence on a joint that presses beyond the ends of the boundary; empty without such a joint."""
-        for boundary, pair, name in zip(self.boundaries, self.pairs, self.names, strict=True):
+        for boundary, pair, name, beam in zip(self.boundaries, self.pairs, self.names, self.beams, strict=True):
             pressing = (closed & (places.force > 0.0))[places.pair == pair]
             if not pressing.any():
                 continue
@@ -95,30 +97,28 @@ class FittedLaw:
                 curve = int(places.curve[places.pair == pair][0])
                 number = piece - int(self.arrays.first[curve])
                 return (
-                    f"in contact '{name}' joint {number} presses {beyond[worst] * self.unit:.2g} m beyond the end of "
-                    "the range of the fitted polynomial"
+                    f"in contact '{name}' joint {number} of {beam} presses {beyond[worst] * self.unit:.2g} m beyond "
+                    "the end of the range of the fitted polynomial"
                 )
         return ""
 
 
-def paper_geometry(m: Mechanism, degree: int) -> Geometry | None:
-    """Geometry of a mechanism's contacts in the formulation ``paper``, None without contacts.
+def paper_geometry(m: Mechanism, every: Geometry, degree: int) -> Geometry:
+    """Geometry of a mechanism's contacts in the formulation ``paper``, from the geometry of all joints.
+
+    Removes the angle stops at own pins from the mechanism's rows.
 
     Raises:
         SceneError: the formulation has no form for a contact, or lacks data.
     """
-    refuse_contacts(m.scene)
-    geometry = contact_geometry(m)
-    if geometry is None:
-        return None
     pins = {f"{contact}.pin" for contact in m.scene.contacts}
     m.rows[:] = [row for row in m.rows if row.name not in pins]
-    law, pairs, rows, fitted_rows = list[tuple[Boundary, int, str]](), list(geometry.pairs), [], []
-    for number, pair in enumerate(geometry.pairs):
+    law, pairs, rows, fitted_rows = list[tuple[Boundary, int, str, str]](), list(every.pairs), [], []
+    for number, pair in enumerate(every.pairs):
         contact = m.scene.contacts[pair.name]
         if isinstance(contact, BeamContact):
             boundary, beam = fitted_boundary(m, pair.name, degree)
-            law.append((boundary, number, pair.name))
+            law.append((boundary, number, pair.name, beam))
             joints = np.searchsorted(m.beam_nodes(beam), boundary.joints)
             own, other = (pair.first, pair.second) if beam == contact.between[0] else (pair.second, pair.first)
             fitted_rows += [(number, own, other, joint, m.chains[beam].links) for joint in joints.tolist()]
@@ -127,23 +127,23 @@ def paper_geometry(m: Mechanism, degree: int) -> Geometry | None:
             (beam,) = contact.beams
             joints = related_joints(m, pair.name, beam, fewest=1)
             rows += [(number, pair.first, pair.second, joint, m.chains[beam].links) for joint in joints.tolist()]
-    possible, node = places_at(geometry.arrays, np.array(rows + fitted_rows, dtype=np.int64))
+    possible, node = places_at(every.arrays, np.array(rows + fitted_rows, dtype=np.int64))
     return replace(
-        geometry,
+        every,
         pairs=pairs,
         possible=possible,
         node=node,
-        law=_law(m, geometry, law) if law else None,
+        law=_law(m, every, law) if law else None,
         joints_alone=True,
     )
 
 
-def _law(m: Mechanism, geometry: Geometry, law: Sequence[tuple[Boundary, int, str]]) -> FittedLaw:
+def _law(m: Mechanism, geometry: Geometry, law: Sequence[tuple[Boundary, int, str, str]]) -> FittedLaw:
     longest = max(float(np.max(np.diff(chain.borders))) for chain in m.chains.values())
-    boundaries, pairs, names = zip(*law, strict=True)
+    boundaries, pairs, names, beams = zip(*law, strict=True)
     fitted = np.zeros(len(geometry.pairs), dtype=bool)
     fitted[list(pairs)] = True
-    return FittedLaw(boundaries, pairs, names, fitted, geometry.arrays, BEYOND * longest, m.units.length)
+    return FittedLaw(boundaries, pairs, names, beams, fitted, geometry.arrays, BEYOND * longest, m.units.length)
 
 
 def refuse_contacts(scene: Scene) -> None:

@@ -16,7 +16,8 @@ from cprbm.continuation.driver import ContactEvent, Driver, Passed, StepError
 from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.system import System, system_of
-from cprbm.paper.contacts import paper_geometry
+from cprbm.paper.contacts import paper_geometry, refuse_contacts
+from cprbm.paper.crossing import Crossings, crossings_of
 from cprbm.paper.remarks import Remarks
 from cprbm.results.contacts import states_of_contacts, touching_places
 from cprbm.results.forces import point_forces
@@ -51,7 +52,7 @@ class Run:
         values: present values (SI) of loads and drives.
         closing: values (SI) at which contacts first closed.
         stations, events, critical, gone_over, notes: of the answer.
-        remarks: on the formulation ``paper``.
+        remarks, crossings: of contacts in the formulation ``paper``.
     """
 
     scene: Scene
@@ -65,6 +66,7 @@ class Run:
     gone_over: list[GoneOver] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     remarks: Remarks = field(default_factory=Remarks)
+    crossings: Crossings | None = None
     seconds: float = 0.0
 
     def __post_init__(self) -> None:
@@ -76,9 +78,12 @@ class Run:
         links = {beam: self.settings.links_of(beam) for beam in self.scene.beams}
         mechanism = mechanism_of(self.scene, links, self.scene.theory, corrected=corrected)
         add_rows(mechanism)
-        if self.settings.formulation == "paper":
-            return system_of(mechanism, paper_geometry(mechanism, self.settings.degree))
-        return system_of(mechanism, contact_geometry(mechanism))
+        geometry = contact_geometry(mechanism)
+        if self.settings.formulation == "paper" and geometry is not None:
+            refuse_contacts(self.scene)
+            every, geometry = geometry, paper_geometry(mechanism, geometry, self.settings.degree)
+            self.crossings = crossings_of(mechanism, every)
+        return system_of(mechanism, geometry)
 
     def answer(self) -> Answer:
         """Solve the scene."""
@@ -147,7 +152,10 @@ class Run:
         certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent, driver.acting)
         if ending is not Ending.COMPLETED:
             raise StepError(ending, certificate.failures[0])
-        if self.settings.formulation == "paper":
+        if self.crossings is not None:
+            crossed = self.crossings.found(driver.solved)
+            if crossed:
+                raise StepError(Ending.BEAMS_CROSSED, crossed)
             self.remarks.look(driver.solved, f"{stage.name} {station:.6g}")
         self.stations.append(self._station(driver, stage, station, certificate))
         station_reached(LOGGER, self.scene, len(self.stations), self.stations[-1])

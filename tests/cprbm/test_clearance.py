@@ -55,9 +55,8 @@ def last_station(name: str) -> Scene:
     return scene.model_copy(update={"stages": stages})
 
 
-@pytest.mark.parametrize("formulation", ["auto", "paper"])
-def test_far_obstacles_change_nothing_and_are_never_made(monkeypatch, formulation):
-    scene, settings = last_station("hinge"), cprbm.Settings(links=21, formulation=formulation)
+def test_far_obstacles_change_nothing_and_are_never_made(monkeypatch):
+    scene, settings = last_station("hinge"), cprbm.Settings(links=21)
     made: list[str] = []
 
     def noted(make):

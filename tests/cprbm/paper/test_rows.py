@@ -7,7 +7,7 @@ import pytest
 
 from comparisons import cases
 from cprbm.chain import add_rows, mechanism_of
-from cprbm.contact import fixed_places
+from cprbm.contact import contact_geometry, fixed_places
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.factors import factorise
 from cprbm.equilibrium.system import system_of
@@ -24,7 +24,7 @@ def random_contact(case, seed, degree=4):
     scene = cases.opened(case)
     m = mechanism_of(scene, dict.fromkeys(scene.beams, SCENES[case]), scene.theory, corrected=False)
     add_rows(m)
-    geometry = paper_geometry(m, degree)
+    geometry = paper_geometry(m, contact_geometry(m), degree)
     system, random = system_of(m, geometry), np.random.default_rng(seed)
     state = disturbed(system, seed, 1e-3)
     contacts = state.contacts
