@@ -204,8 +204,13 @@ class Run:
         view = View(driver.solved, dict(self.values), self.scene.theory == "shear", self.closing)
         units = self.system.mechanism.units
         touching = touching_places(view)
+        # the paper's contacts press on joints and turn links: no places of the line carry the forces
+        told = self.crossings is None
         forces = PointForces.collected(
-            point_forces(view), units.length, units.force, (float(units.origin[0]), float(units.origin[1]))
+            point_forces(view) if told else (),
+            units.length,
+            units.force,
+            (float(units.origin[0]), float(units.origin[1])),
         )
         return StationAnswer(
             stage=stage.name,
@@ -215,7 +220,7 @@ class Run:
             touching=touching,
             certificate=certificate,
             branch=len(self.critical),
-            beams={beam: beam_state(view, beam) for beam in self.scene.beams},
+            beams={beam: beam_state(view, beam) for beam in self.scene.beams if told},
             forces=forces,
             contacts=states_of_contacts(view, forces, touching),
             bodies=_motions(view),
