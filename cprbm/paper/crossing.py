@@ -16,7 +16,13 @@ from cprbm.equilibrium.newton import Solved
 from cprbm_scene.answer import Array
 
 OVERLAP = 0.5
-"""Allowed overlap over the mean thickness, of lines over the longest beam."""
+"""Allowed overlap over the mean thickness, of two lines over the longest beam."""
+
+THINNEST = 1e-3
+"""Least thickness, over the longest beam, by which an overlap with a rigid shape is measured."""
+
+SAG = 0.25
+"""Distance of a beam from the chord, over the link's length and the turn of the joint: twice the sag of an arc."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,10 +40,12 @@ class Crossings:
         places = fixed_places(self.geometry, z, self.sides, near, counters)
         gaps = np.empty(len(places.pair))
         settle(z, arrays, places, gaps, np.empty(len(gaps)), counters, 0)
-        thickness = (
-            arrays.thickness[places.piece] + arrays.thickness[places.foot] * (arrays.last > arrays.first)[places.other]
-        )
-        overlap = -gaps / np.where(thickness > 0.0, thickness, 1.0)
+        rigid, angles = self.geometry.ends.rigid[places.other], z[solved.system.angles]
+        before = solved.system.joints.before
+        sag = SAG * float(solved.system.metric.max() * np.abs(angles[before + 1] - angles[before]).max())
+        thickness = arrays.thickness[places.piece] + arrays.thickness[places.foot] * ~rigid
+        least = np.where(rigid, THINNEST, np.where(thickness > 0.0, 0.0, 1.0))
+        overlap = (-gaps - sag) / np.maximum(thickness, least)
         if not len(overlap) or overlap.max() <= OVERLAP:
             return ""
         name = self.geometry.pairs[int(places.pair[np.argmax(overlap)])].name
