@@ -3,6 +3,7 @@
 * :mod:`cprbm.contact.curve`: pieces, linear in the positions of nodes;
 * :mod:`cprbm.contact.compliance`: compliance lost by a chain under a point force;
 * :mod:`cprbm.contact.closest`: points, closest points, boxes; :mod:`cprbm.contact.gap`: gap and derivatives;
+* :mod:`cprbm.contact.corners`, :mod:`cprbm.contact.edges`: corners of rigid solids, places at corners;
 * :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
 * :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.own_pin`, :mod:`cprbm.contact.candidates`: contacts of a scene.
 * :mod:`cprbm.contact.contacts`: places and closed set of a state.
@@ -14,12 +15,14 @@ from cprbm.contact.candidates import (
     fixed_places,
     joined,
     may_move,
+    on_edge,
     sides_at_rest,
     taken,
 )
 from cprbm.contact.closest import curve_point, lost_at
 from cprbm.contact.contacts import TOUCHING, Contacts, open_contacts, touching_as_drawn
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
+from cprbm.contact.edges import left_corner, write_corner_sides
 from cprbm.contact.gap import (
     COUPLING,
     GRADIENT,
@@ -78,12 +81,14 @@ __all__ = [
     "gap_frame",
     "gap_row",
     "joined",
+    "left_corner",
     "local_indices",
     "lost_at",
     "may_move",
     "move_places",
     "near_pairs",
     "new_counters",
+    "on_edge",
     "open_contacts",
     "separations",
     "settle",
@@ -91,4 +96,5 @@ __all__ = [
     "sides_at_rest",
     "taken",
     "touching_as_drawn",
+    "write_corner_sides",
 ]

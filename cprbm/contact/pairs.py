@@ -1,6 +1,7 @@
 """Curves of a scene's contacts, and pairs of curves.
 
-A place lies on the first curve of a pair, the foot on the second; the ends of a second beam are places too.
+A place lies on the first curve of a pair, the foot on the second; the ends of a second beam and the corners of a rigid
+curve are places too.
 A beam lies on the side +1 (left) or −1 (right) of a rigid curve, as the scene says.  The side of two beams is 0 here;
 the state as drawn decides, :mod:`cprbm.contact.candidates`.
 """
@@ -12,9 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.chain import Mechanism
+from cprbm.contact.corners import Corner, corner_curve, sharp_corners, sides_behind, with_corners
 from cprbm.contact.curve import Curve, Frames, beam_curve
 from cprbm.contact.own_pin import pin_rows
 from cprbm_scene import BeamContact, CircleContact, FunctionContact, HalfPlaneContact, LineContact, SelfContact
+from cprbm_scene.answer import Array
 from cprbm_scene.geometry import arc_length, points_on, tangents_on
 from cprbm_scene.statement import EllipseContact, RigidContact, SplineContact
 
@@ -22,17 +25,20 @@ PIECES = 256
 """Pieces of a smooth edge.  The error is κ³ h⁴/384: 2e-7 of the longer axis at the tip of an ellipse of 3 to 1."""
 
 REACH = 10.0
-"""Half length of a half-plane's edge, over the longest beam."""
+"""Half length of a half-plane's edge, and length of a solid's sides, over the longest beam."""
+
+NO_SIDES = np.zeros((0, 2)), np.zeros((0, 2))
 
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Two curves of the contact ``name`` by number, and the ``side`` of the first over the second."""
+    """Two curves of the contact ``name`` by number, the ``side`` of the first over the second, corners of the second."""
 
     name: str
     first: int
     second: int
     side: int
+    corners: tuple[Corner, ...] = ()
 
     @property
     def itself(self) -> bool:
@@ -57,8 +63,13 @@ def contact_pairs(m: Mechanism) -> tuple[list[Curve], list[Pair]]:
         if isinstance(contact, BeamContact | SelfContact):
             pairs.append(Pair(name, own[0], own[-1], 0))
             continue
-        curve, side = _rigid_curve(m, frames, name, contact)
-        pairs.append(Pair(name, own[0], number(curve), side))
+        edge, side = _rigid_curve(m, frames, name, contact)
+        chain = m.chains[contact.beam]
+        pieces = sharp_corners(edge, side, chain.length / chain.links)
+        second = number(with_corners(edge, pieces))
+        points = [second if edge.is_point else number(corner_curve(edge, piece)) for piece in pieces]
+        corners = [Corner(point, (piece - 1) % edge.pieces, piece) for point, piece in zip(points, pieces, strict=True)]
+        pairs.append(Pair(name, own[0], second, side, tuple(corners)))
     return list(curves.values()), pairs
 
 
@@ -73,7 +84,7 @@ def _rigid_curve(m: Mechanism, frames: Frames, contact_name: str, contact: Rigid
             around = np.column_stack([np.cos(angle), np.sin(angle)])
             tangents = np.column_stack([-around[:, 1], around[:, 0]])
             points, length = place(contact.center + contact.radius * around), 2.0 * np.pi * contact.radius
-            return frames.smooth_edge(name, contact.body, points, tangents, length / m.units.length), 1
+            return frames.smooth_edge(name, contact.body, points, tangents, length / m.units.length, NO_SIDES), 1
         case HalfPlaneContact():
             normal = np.array(contact.normal) / np.hypot(*contact.normal)
             along = REACH * np.array([normal[1], -normal[0]])
@@ -83,25 +94,31 @@ def _rigid_curve(m: Mechanism, frames: Frames, contact_name: str, contact: Rigid
         case LineContact():
             points, side = place(contact.points), 1 if contact.side == "left" else -1
             m.rows.extend(pin_rows(m, contact_name, contact, points, side))
+            if not contact.closed:
+                begin, end = sides_behind(points, side, REACH)
+                points = np.concatenate([begin, points, end])
             return frames.polyline(name, contact.body, points), side
         case FunctionContact():
             ascends = contact.range[1] > contact.range[0]
             left = (contact.side == "above") == (ascends == (contact.axis == "x"))
-            edge, side = _smooth(m, frames, name, contact), 1 if left else -1
+            side = 1 if left else -1
             points = place(points_on(contact.curve, np.linspace(0.0, 1.0, PIECES + 1)))
             m.rows.extend(pin_rows(m, contact_name, contact, points, side))
-            return edge, side
+            return _smooth(m, frames, name, contact, side), side
         case SplineContact():
-            return _smooth(m, frames, name, contact), 1 if contact.side == "left" else -1
+            side = 1 if contact.side == "left" else -1
+            return _smooth(m, frames, name, contact, side), side
         case EllipseContact():
-            return _smooth(m, frames, name, contact), 1 if contact.side == "inside" else -1
+            side = 1 if contact.side == "inside" else -1
+            return _smooth(m, frames, name, contact, side), side
     raise TypeError(f"found a rigid contact of the class {type(contact).__name__}")
 
 
 def _smooth(
-    m: Mechanism, frames: Frames, name: str, contact: FunctionContact | SplineContact | EllipseContact
+    m: Mechanism, frames: Frames, name: str, contact: FunctionContact | SplineContact | EllipseContact, side: int
 ) -> Curve:
-    """Smooth edge of a body, at even arc lengths."""
+    """Smooth edge of a body, at even arc lengths, and the sides of the solid behind an open edge."""
     u = np.linspace(0.0, 1.0, PIECES + 1)
     points, tangents = m.units.place(points_on(contact.curve, u)), tangents_on(contact.curve, u)
-    return frames.smooth_edge(name, contact.body, points, tangents, arc_length(contact.curve) / m.units.length)
+    sides = NO_SIDES if isinstance(contact, EllipseContact) else sides_behind(points, side, REACH)
+    return frames.smooth_edge(name, contact.body, points, tangents, arc_length(contact.curve) / m.units.length, sides)

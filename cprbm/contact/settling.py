@@ -173,6 +173,8 @@ def move_places(
         if not places.moves[k]:
             continue
         row = gap_row(z, curves, places, k, vectors, weights)
+        if row.curvature == 0.0:
+            continue
         local_indices(curves, places, k, index)
         slope = row.slope + row.slope_by_force * by_force[k]
         for i in range(LOCAL):
@@ -198,10 +200,10 @@ def separations(z: Array, curves: CurveArrays, places: Places) -> Array:  # prag
 
 @compiled
 def choose_sides(z: Array, curves: CurveArrays, places: Places) -> None:  # pragma: no cover
-    """Write the present sides of places whose side is 0; the feet must be found."""
+    """Write the present sides of places of a beam on itself; the feet must be found."""
     weights = np.empty((2, STENCIL))
     for k in range(places.piece.size):
-        if places.side[k] == 0.0 and not is_unturned(z, curves, places, k):
+        if places.curve[k] == places.other[k] and not is_unturned(z, curves, places, k):
             ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights)
             bx, by = curve_point(z, curves, places.foot[k], places.eta[k], 0, weights)
             tx, ty = curve_point(z, curves, places.foot[k], places.eta[k], 1, weights)

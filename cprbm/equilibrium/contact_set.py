@@ -19,9 +19,11 @@ from cprbm.contact import (
     fixed_places,
     joined,
     near_pairs,
+    on_edge,
     separations,
     settle_near,
     taken,
+    write_corner_sides,
 )
 from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_of, new_work, pulls, solved_border
 from cprbm.equilibrium.iteration import begin_iteration, change_set, end_iteration
@@ -67,16 +69,21 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     near[old.pair[contacts.closed]] = True
     near[list(contacts.kept_open)] = False
     fixed = fixed_places(geometry, z, contacts.sides, near, contacts.counters)
-    known = {_identity(old, k): k for k in range(len(old.pair)) if not old.moves[k]}
-    closed = np.zeros(len(fixed.pair), dtype=bool)
+    moving = old.moves & ~on_edge(geometry.arrays, old)
+    known = {_identity(old, k): k for k in np.flatnonzero(~moving).tolist()}
+    closed, sides = np.zeros(len(fixed.pair), dtype=bool), np.zeros(len(fixed.pair))
     for k in range(len(closed)):
         before = known.get(_identity(fixed, k))
-        if before is not None and contacts.closed[before]:
+        if before is None:
+            continue
+        sides[k] = old.side[before]
+        if contacts.closed[before]:
             closed[k], fixed.force[k] = True, old.force[before]
             fixed.foot[k], fixed.eta[k] = old.foot[before], old.eta[before]
     choose_sides(z, geometry.arrays, fixed)
-    both = joined(fixed, taken(old, old.moves))
-    return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[old.moves]]))
+    write_corner_sides(geometry, z, fixed, sides, contacts.counters)
+    both = joined(fixed, taken(old, moving))
+    return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[moving]]))
 
 
 def passed_through(geometry: Geometry, before: Array, old: Places, after: Array, new: Places) -> bool:
@@ -155,5 +162,7 @@ def solve_set(
 
 
 def arc_of(geometry: Geometry, places: Places) -> Array:
-    """Arc lengths of places on their own curves."""
-    return np.asarray(geometry.arrays.arc[places.piece] + places.xi * geometry.arrays.span[places.piece])
+    """Arc lengths of places on their beams: of the feet of corners."""
+    corner = on_edge(geometry.arrays, places)
+    piece, at = np.where(corner, places.foot, places.piece), np.where(corner, places.eta, places.xi)
+    return np.asarray(geometry.arrays.arc[piece] + at * geometry.arrays.span[piece])

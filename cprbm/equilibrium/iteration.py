@@ -62,6 +62,10 @@ def _wanted(
         if places.shares[k] != 0:
             continue
         thick = curves.thickness[places.piece[k]] + curves.thickness[places.foot[k]] > 0.0
+        # a corner is a place of its own, but a round end of a beam presses on the corner by the end's place
+        end = places.xi[k] == 0.0 and places.piece[k] == curves.first[places.curve[k]]
+        end = end or (places.xi[k] == 1.0 and places.piece[k] == curves.last[places.curve[k]])
+        beside[k] = beside[k] or (places.at_point[k] and curves.corner[places.foot[k]] and not end)
         opens[k] = closed[k] and (places.force[k] < 0.0 or beside[k])
         closes[k] = not closed[k] and not beside[k] and gap[k] < -OVERLAP - depth[k]
         # a foot on an end of the first curve is the foot of that end's own place
@@ -74,9 +78,10 @@ def _wanted(
 
 @compiled
 def beside_points(curves: CurveArrays, places: Places, closed: Flags) -> tuple[Flags, Array]:  # pragma: no cover
-    """Fixed places within a piece of a closed moving place, and the overlap of every pair's point contact.
+    """Places within a piece of a closed point contact, and the overlap of every pair's point contact.
 
-    Outside of the point the other places of the pair may overlap by as much without contact.
+    Outside of the point the other places of the pair may overlap by as much without contact.  Closed point contacts
+    stay closed beside each other, but not at two corners.
     """
     beside, depth = np.zeros(closed.size, np.bool_), np.zeros(closed.size)
     for k in range(closed.size):
@@ -85,14 +90,26 @@ def beside_points(curves: CurveArrays, places: Places, closed: Flags) -> tuple[F
         piece, foot, lost = places.piece[k], places.foot[k], 0.0
         for i in range(curves.lost.shape[1]):
             lost += (curves.lost[piece, i] + curves.lost[foot, i]) * 0.5**i
-        arc = curves.arc[piece] + places.xi[k] * curves.span[piece]
+        corner = curves.angle[piece] < 0
+        curve, arc, span = place_on_beam(curves, places, k)
         for j in range(closed.size):
-            if places.moves[j] or places.pair[j] != places.pair[k]:
+            stays = closed[j] and places.moves[j] and not (corner and j > k and curves.angle[places.piece[j]] < 0)
+            if stays or places.pair[j] != places.pair[k]:
                 continue
             depth[j] = max(depth[j], lost * places.force[k])
-            apart = abs(curves.arc[places.piece[j]] + places.xi[j] * curves.span[places.piece[j]] - arc)
-            beside[j] = beside[j] or (places.curve[j] == places.curve[k] and apart < curves.span[piece])
+            other, at, _ = place_on_beam(curves, places, j)
+            beside[j] = beside[j] or (other == curve and abs(at - arc) < span)
     return beside, depth
+
+
+@compiled
+def place_on_beam(curves: CurveArrays, places: Places, k: int) -> tuple[int, float, float]:  # pragma: no cover
+    """Curve, arc length and span of the piece: of a place on a beam, or of the foot of a corner."""
+    if curves.angle[places.piece[k]] < 0:
+        piece, at, curve = places.foot[k], places.eta[k], places.other[k]
+    else:
+        piece, at, curve = places.piece[k], places.xi[k], places.curve[k]
+    return curve, curves.arc[piece] + at * curves.span[piece], curves.span[piece]
 
 
 @compiled

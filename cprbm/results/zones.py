@@ -46,7 +46,7 @@ def contact_ends(view: View, contact: str) -> list[float]:
     arcs = [each.arcs[0] for each in found] + pins
     low, high = min(arcs), max(arcs)
     pair = next(k for k, each in enumerate(geometry.pairs) if each.name == contact)
-    of_joints = all(each.on_first for each in found) and not geometry.pairs[pair].itself
+    of_joints = all(each.on_first or each.moves for each in found) and not geometry.pairs[pair].itself
     if (len(found) < ZONE and not pins) or not of_joints:
         return [low, high]
     length = float(geometry.curves[geometry.pairs[pair].first].arcs[-1])

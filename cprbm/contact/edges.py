@@ -1,0 +1,104 @@
+"""Places at corners: the side of a beam on which a corner lies, and the way from a corner to a face.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+a, b     unit tangents of the faces before and behind a corner, in the sense of the edge
+σ, n     side of the beam on which the corner lies, left normal of the beam
+N        σ n, from the beam to the corner
+=======  ====================================================================================
+
+A beam that touches a corner has both faces behind it: −N·a ≥ 0 and N·b ≥ 0.  Hence σ has the sign of n·(b − a) there.
+Farther away the position of the corner tells σ.  A corner that overlaps by the lost compliance keeps the last side.
+Beyond a beam's end a corner has no side: the beam may come back on either side.
+
+Where N·b < 0 the distance falls along the face behind the corner: the point of contact leaves the corner, and is the
+minimum of the gap between beam and face.  The same holds for the face before the corner, where N·a > 0.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cprbm.contact.candidates import Geometry, may_move, on_edge, taken
+from cprbm.contact.closest import curve_point
+from cprbm.contact.corners import Corner
+from cprbm.contact.curve import STENCIL
+from cprbm.contact.gap import Places, gap_frame
+from cprbm.contact.settling import separations, settle
+from cprbm_scene.answer import Array, Ints
+
+SURE = 1e-3
+"""Distance of a corner from a beam's neutral line, over the longest beam, from which the position tells the side."""
+
+SLIDING = 1e-9
+"""Least −N·b at which a point of contact leaves a corner: round-off."""
+
+STEPS = 40
+"""Iterations of a place on a frozen state."""
+
+BESIDE = 1.5
+"""Farthest place of contact beside a corner that the point of contact leaves, pieces."""
+
+
+def corner_of(geometry: Geometry, places: Places, k: int) -> Corner:
+    """The corner of a place on a rigid curve."""
+    return next(each for each in geometry.pairs[places.pair[k]].corners if each.curve == places.curve[k])
+
+
+def write_corner_sides(geometry: Geometry, z: Array, places: Places, known: Array, counters: Ints) -> None:
+    """Write the sides of all places at corners; ``known`` (places,) are the last sides, 0 without."""
+    at = np.flatnonzero(on_edge(geometry.arrays, places))
+    mine = taken(places, at)
+    settle(z, geometry.arrays, mine, np.empty(len(at)), np.empty(len(at)), counters, 0)
+    apart = separations(z, geometry.arrays, mine)
+    weights = np.empty((2, STENCIL))
+    for i, k in enumerate(at.tolist()):
+        tangent = curve_point(z, geometry.arrays, mine.foot[i], mine.eta[i], 1, weights)
+        normal = np.array([-tangent[1], tangent[0]])
+        near = float(np.hypot(*apart[i])) < SURE
+        if mine.at_point[i]:
+            places.side[k] = 0.0
+        elif near and known[k] != 0.0:
+            places.side[k] = known[k]
+        else:
+            a, b = _faces(geometry, z, places, k)
+            places.side[k] = 1.0 if normal @ (b - a if near else apart[i]) >= 0.0 else -1.0
+
+
+def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Array, counters: Ints) -> Places | None:
+    """The place on a face to which the point of contact at a corner goes; None where the point stays.
+
+    Args:
+        geometry, z, places: a state in equilibrium.
+        k: number of a closed place at a corner.
+        sides: of the pairs (pairs, 2).
+        counters: count the gaps.
+    """
+    corner, arrays, pair = corner_of(geometry, places, k), geometry.arrays, geometry.pairs[places.pair[k]]
+    frame = gap_frame(z, arrays, places, k, np.empty((4, 2, STENCIL)))
+    a, b = (frame.nx * x + frame.ny * y for x, y in _faces(geometry, z, places, k))
+    if places.at_point[k] or max(a, -b) < SLIDING:
+        return None
+    trial, first = taken(places, np.array([k])), arrays.first[pair.second]
+    trial.curve[:], trial.piece[:], trial.xi[:] = pair.first, places.foot[k], places.eta[k]
+    trial.other[:], trial.side[:] = pair.second, sides[places.pair[k], 0]
+    trial.foot[:], trial.eta[:] = (first + corner.behind, 0.0) if -b > a else (first + corner.before, 1.0)
+    gap, curvature = np.empty(1), np.empty(1)
+    settle(z, arrays, trial, gap, curvature, counters, STEPS)
+    apart = arrays.arc[trial.piece] + trial.xi * arrays.span[trial.piece]
+    apart -= arrays.arc[places.foot[k]] + places.eta[k] * arrays.span[places.foot[k]]
+    near = abs(apart[0]) < BESIDE * arrays.span[trial.piece[0]]
+    goes = near and curvature[0] > 0.0 and not trial.at_point[0] and may_move(geometry, trial)[0]
+    return trial if goes else None
+
+
+def _faces(geometry: Geometry, z: Array, places: Places, k: int) -> tuple[Array, Array]:
+    """a and b of a corner; both are zero for a circle."""
+    corner, first = corner_of(geometry, places, k), geometry.arrays.first[geometry.pairs[places.pair[k]].second]
+    weights = np.empty((2, STENCIL))
+    found = []
+    for piece, xi in ((corner.before, 1.0), (corner.behind, 0.0)):
+        tangent = np.array(curve_point(z, geometry.arrays, int(first + piece), xi, 1, weights))
+        found.append(tangent / max(float(np.hypot(*tangent)), 1e-300))
+    return found[0], found[1]
