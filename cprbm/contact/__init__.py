@@ -22,7 +22,7 @@ from cprbm.contact.candidates import (
 from cprbm.contact.closest import curve_point, lost_at
 from cprbm.contact.contacts import TOUCHING, Contacts, open_contacts, touching_as_drawn
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
-from cprbm.contact.edges import left_corner, write_corner_sides
+from cprbm.contact.edges import corner_sides, left_corner
 from cprbm.contact.gap import (
     COUPLING,
     GRADIENT,
@@ -73,6 +73,7 @@ __all__ = [
     "Row",
     "beam_curve",
     "choose_sides",
+    "corner_sides",
     "contact_geometry",
     "curve_arrays",
     "curve_point",
@@ -96,5 +97,4 @@ __all__ = [
     "sides_at_rest",
     "taken",
     "touching_as_drawn",
-    "write_corner_sides",
 ]

@@ -25,7 +25,7 @@ from cprbm.contact.closest import curve_point
 from cprbm.contact.corners import Corner
 from cprbm.contact.curve import STENCIL
 from cprbm.contact.gap import Places, gap_frame
-from cprbm.contact.settling import separations, settle
+from cprbm.contact.settling import find_feet, near_pairs, separations, settle
 from cprbm_scene.answer import Array, Ints
 
 SURE = 1e-3
@@ -33,6 +33,9 @@ SURE = 1e-3
 
 SLIDING = 1e-9
 """Least −N·b at which a point of contact leaves a corner: round-off."""
+
+FAR = 1.0
+"""Distance of two boxes, over the longest beam, beyond which a beam does not pass a corner in a step."""
 
 STEPS = 40
 """Iterations of a place on a frozen state."""
@@ -46,24 +49,31 @@ def corner_of(geometry: Geometry, places: Places, k: int) -> Corner:
     return next(each for each in geometry.pairs[places.pair[k]].corners if each.curve == places.curve[k])
 
 
-def write_corner_sides(geometry: Geometry, z: Array, places: Places, known: Array, counters: Ints) -> None:
-    """Write the sides of all places at corners; ``known`` (places,) are the last sides, 0 without."""
-    at = np.flatnonzero(on_edge(geometry.arrays, places))
-    mine = taken(places, at)
-    settle(z, geometry.arrays, mine, np.empty(len(at)), np.empty(len(at)), counters, 0)
-    apart = separations(z, geometry.arrays, mine)
+def corner_sides(geometry: Geometry, z: Array, known: Array, counters: Ints) -> Array:
+    """Sides (curves,) of the corners' curves in an accepted state; 0 beyond a beam's end, and for other curves.
+
+    Args:
+        geometry, z: the state.
+        known: the last sides (curves,), 0 without.
+        counters: count box tests and searches.
+    """
+    arrays, sides = geometry.arrays, known.copy()
+    near = near_pairs(z, arrays, geometry.columns, np.full(len(geometry.pairs), FAR), counters)
+    places = taken(geometry.possible, near[geometry.possible.pair] & on_edge(arrays, geometry.possible))
+    nothing = np.empty(len(places.pair))
+    find_feet(z, arrays, places, nothing, counters)
+    settle(z, arrays, places, nothing, nothing, counters, 0)
+    apart = separations(z, arrays, places)
     weights = np.empty((2, STENCIL))
-    for i, k in enumerate(at.tolist()):
-        tangent = curve_point(z, geometry.arrays, mine.foot[i], mine.eta[i], 1, weights)
-        normal = np.array([-tangent[1], tangent[0]])
-        near = float(np.hypot(*apart[i])) < SURE
-        if mine.at_point[i]:
-            places.side[k] = 0.0
-        elif near and known[k] != 0.0:
-            places.side[k] = known[k]
-        else:
+    for k, curve in enumerate(places.curve.tolist()):
+        x, y = curve_point(z, arrays, places.foot[k], places.eta[k], 1, weights)
+        touching = float(np.hypot(*apart[k])) < SURE
+        if places.at_point[k]:
+            sides[curve] = 0.0
+        elif not touching or known[curve] == 0.0:
             a, b = _faces(geometry, z, places, k)
-            places.side[k] = 1.0 if normal @ (b - a if near else apart[i]) >= 0.0 else -1.0
+            sides[curve] = 1.0 if np.array([-y, x]) @ (b - a if touching else apart[k]) >= 0.0 else -1.0
+    return sides
 
 
 def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Array, counters: Ints) -> Places | None:

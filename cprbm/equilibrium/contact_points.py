@@ -17,7 +17,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from cprbm.contact import Contacts, Geometry, Places, joined, left_corner, may_move, on_edge, settle, taken
+from cprbm.contact import (
+    Contacts,
+    Geometry,
+    Places,
+    corner_sides,
+    joined,
+    left_corner,
+    may_move,
+    on_edge,
+    settle,
+    taken,
+)
 from cprbm.equilibrium.contact_gaps import as_point, joints_of, minima
 from cprbm.equilibrium.contact_set import (
     FINDING,
@@ -59,7 +70,9 @@ def touched_equilibrium(
     Raises:
         NotConvergedError: no equilibrium was found, the places do not settle, or a beam passed through itself.
     """
-    contacts = with_fixed_places(geometry, start.z, replace(contacts, given_up=frozenset()))
+    corners = corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters)
+    contacts = replace(contacts, given_up=frozenset(), corner_sides=corners)
+    contacts = with_fixed_places(geometry, start.z, contacts)
     joints_tried, before, old = False, start.z, contacts.places
     for _ in range(ROUNDS):
         try:

@@ -23,7 +23,6 @@ from cprbm.contact import (
     separations,
     settle_near,
     taken,
-    write_corner_sides,
 )
 from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_of, new_work, pulls, solved_border
 from cprbm.equilibrium.iteration import begin_iteration, change_set, end_iteration
@@ -71,17 +70,14 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     fixed = fixed_places(geometry, z, contacts.sides, near, contacts.counters)
     moving = old.moves & ~on_edge(geometry.arrays, old)
     known = {_identity(old, k): k for k in np.flatnonzero(~moving).tolist()}
-    closed, sides = np.zeros(len(fixed.pair), dtype=bool), np.zeros(len(fixed.pair))
+    closed, corner = np.zeros(len(fixed.pair), dtype=bool), on_edge(geometry.arrays, fixed)
     for k in range(len(closed)):
         before = known.get(_identity(fixed, k))
-        if before is None:
-            continue
-        sides[k] = old.side[before]
-        if contacts.closed[before]:
+        if before is not None and contacts.closed[before]:
             closed[k], fixed.force[k] = True, old.force[before]
             fixed.foot[k], fixed.eta[k] = old.foot[before], old.eta[before]
     choose_sides(z, geometry.arrays, fixed)
-    write_corner_sides(geometry, z, fixed, sides, contacts.counters)
+    fixed.side[corner] = contacts.corner_sides[fixed.curve[corner]]
     both = joined(fixed, taken(old, moving))
     return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[moving]]))
 
