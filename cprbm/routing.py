@@ -20,11 +20,4 @@ def by_second_edition(scene: Scene, formulation: str, links_of: Callable[[str], 
         return True
     if formulation == "paper":
         return False
-    return all(_is_even(scene, contact, links_of) for contact in scene.contacts.values())
-
-
-def _is_even(scene: Scene, contact: Contact, links_of: Callable[[str], int]) -> bool:
-    """True if all smooth features of a contact's rigid edge are longer than a link."""
-    if isinstance(contact, BeamContact | SelfContact | HalfPlaneContact | CircleContact | LineContact):
-        return True
-    return False
+    return True

@@ -21,7 +21,7 @@ from cprbm.contact.candidates import (
 )
 from cprbm.contact.closest import curve_point, lost_at
 from cprbm.contact.contacts import TOUCHING, Contacts, open_contacts, touching_as_drawn
-from cprbm.contact.curve import STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
+from cprbm.contact.curve import BEND, CORNER, STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
 from cprbm.contact.edges import corner_sides, left_corner
 from cprbm.contact.gap import (
     COUPLING,
@@ -42,6 +42,7 @@ from cprbm.contact.settling import (
     GAPS,
     SEARCHES,
     choose_sides,
+    find_bends,
     find_feet,
     move_places,
     near_pairs,
@@ -52,7 +53,9 @@ from cprbm.contact.settling import (
 )
 
 __all__ = [
+    "BEND",
     "BOX_TESTS",
+    "CORNER",
     "COUPLING",
     "GAPS",
     "GRADIENT",
@@ -77,6 +80,7 @@ __all__ = [
     "contact_geometry",
     "curve_arrays",
     "curve_point",
+    "find_bends",
     "find_feet",
     "fixed_places",
     "gap_frame",

@@ -113,6 +113,7 @@ def fixed_places(
     kept_welds = welded & (welds & geometry.ends.rigid[places.other])[:, None]
     held = (start & (before == 0) & ~kept_welds[:, 0]) | (end & (behind == 0) & ~kept_welds[:, 1])
     corner = on_edge(arrays, places)
+    places.side[corner] = 0.0
     first, last = places.foot == arrays.first[places.other], places.foot == arrays.last[places.other]
     held = np.where(corner, (start & first) | (end & last), held)
     kept = ~held & np.isfinite(distance) & ~(itself & (places.foot < places.piece) & (behind > 0))

@@ -1,4 +1,4 @@
-"""Boundaries of rigid solids, and corners of rigid curves.
+"""Boundaries of rigid solids, corners and sharp bends of rigid curves.
 
 =======  ====================================================================================
 symbol   meaning
@@ -13,7 +13,8 @@ sides meet, or a side comes to the edge from behind.
 At a convex corner the boundary turns away from the beam.  The corner is a place of contact: a point of the boundary
 before the beam's curve.  The boundary cannot pass the beam between two joints there.  A row of corners with less than h
 between them is an edge with the corners' mean curvature; only where the row turns by more than a radian over h the
-corners are places.  A circle smaller than a link is a corner too.
+corners are places.  A circle smaller than a link is a corner too.  A bend of a smooth edge with a radius below a link
+is a curve of its own, on which a point of contact moves.
 """
 
 from __future__ import annotations
@@ -23,8 +24,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.contact.curve import Curve
-from cprbm_scene.answer import Array
+from cprbm.contact.curve import BEND, CORNER, Curve
+from cprbm_scene.answer import Array, Ints
 
 KINK = 1e-6
 """Least turn of a corner, rad: borders of a smooth edge's pieces turn by round-off."""
@@ -37,7 +38,10 @@ BEHIND = 1e-9
 
 
 class Corner(NamedTuple):
-    """Number of a corner's curve of one point, and numbers of the edge's pieces ``before`` and ``behind``."""
+    """Number of the curve of a corner or a bend, and numbers of the edge's pieces ``before`` and ``behind``.
+
+    The curve of a corner is a point.  Piece ``behind`` of the edge is the first piece of a bend's curve.
+    """
 
     curve: int
     before: int
@@ -106,26 +110,55 @@ def sharp_corners(curve: Curve, side: int, link: float) -> list[int]:
     ]
 
 
-def with_corners(curve: Curve, corners: list[int]) -> Curve:
-    """The curve with marks at its corners."""
-    marks = np.zeros(curve.pieces, dtype=bool)
-    marks[corners] = True
+def sharp_bends(curve: Curve, side: int, link: float) -> list[Ints]:
+    """Numbers of the pieces of every convex bend of a rigid curve with a least radius below a link.
+
+    A bend reaches to twice the radius, so that the point of contact leaves the bend inside.
+    """
+    if curve.is_point:
+        return []
+    c, xi = curve.weights[:, 1, :, None], np.array([0.0, 0.5, 1.0])
+    slope, second = c[:, 1] + xi * (2.0 * c[:, 2] + 3.0 * xi * c[:, 3]), 2.0 * c[:, 2] + 6.0 * xi * c[:, 3]
+    bent = link * np.max(-side * np.imag(np.conj(slope) * second) / np.abs(slope) ** 3, axis=1)
+    wide = bent > 0.5
+    if curve.closed and wide.all():
+        return [np.arange(curve.pieces)]
+    begin = int(np.argmin(wide)) if curve.closed else 0
+    order = (np.arange(curve.pieces) + begin) % curve.pieces
+    runs = np.split(order, np.flatnonzero(np.diff(wide[order].astype(np.int64))) + 1)
+    return [run for run in runs if bent[run].max() > 1.0]
+
+
+def with_marks(curve: Curve, corners: list[int], bends: list[Ints]) -> Curve:
+    """The curve with marks of corners and bends."""
+    marks = np.zeros(curve.pieces, dtype=np.int64)
+    for run in bends:
+        marks[run] = BEND
+    marks[corners] = CORNER
     return replace(curve, corner=marks)
+
+
+def part_of(curve: Curve, run: Ints) -> Curve:
+    """A run of pieces of a rigid curve without thickness, as a curve."""
+    whole = len(run) == curve.pieces
+    spans = np.diff(curve.arcs)[run]
+    return replace(
+        curve,
+        name=f"{curve.name}, bend {run[0]}",
+        stencil=curve.stencil[run],
+        weights=curve.weights[run],
+        arcs=np.concatenate([[0.0], np.cumsum(spans)]),
+        half_thickness=curve.half_thickness[: len(run) + 1],
+        lost=curve.lost[run],
+        angles=curve.angles[run],
+        corner=np.zeros(len(run), dtype=np.int64),
+        closed=curve.closed and whole,
+    )
 
 
 def corner_curve(curve: Curve, piece: int) -> Curve:
     """Curve of a single point: the begin of a piece of a rigid curve."""
     weights = curve.weights[[piece]].copy()
     weights[:, :, 1:] = 0.0
-    return replace(
-        curve,
-        name=f"{curve.name}, corner {piece}",
-        stencil=curve.stencil[[piece]],
-        weights=weights,
-        arcs=np.zeros(2),
-        half_thickness=np.zeros(2),
-        lost=curve.lost[[piece]],
-        angles=curve.angles[[piece]],
-        corner=np.zeros(1, dtype=bool),
-        closed=False,
-    )
+    point = part_of(curve, np.array([piece]))
+    return replace(point, name=f"{curve.name}, corner {piece}", weights=weights, arcs=np.zeros(2), closed=False)

@@ -44,6 +44,13 @@ CLOSED = 1e-9
 """Distance of a curve's ends, over its length, below which the curve is closed: round-off of coordinates."""
 
 
+CORNER, BEND = 1, 2
+"""Marks of pieces of a rigid curve that begin at a corner, and of pieces of a sharp bend."""
+
+NO_SIDES = np.zeros((0, 2)), np.zeros((0, 2))
+"""Points before and behind an edge without straight sides."""
+
+
 @dataclass(frozen=True, eq=False)
 class Curve:
     """A curve, by pieces; lengths are in the mechanism's units.
@@ -56,7 +63,7 @@ class Curve:
         half_thickness: T at the pieces' ends (pieces + 1,).
         lost: compliance that a point force lacks on every piece (pieces, POWERS), lowest power first.
         angles: index of the angle of every link (pieces,), −1 without a link.
-        corner: whether a piece begins at a corner that is a place of contact (pieces,).
+        corner: ``CORNER`` of a piece that begins at a corner with a place, ``BEND`` of a piece of a sharp bend, else 0.
         beam: name of the beam, empty for a rigid curve; body: name of the body of a rigid curve, else empty.
         closed: whether the last piece leads to the first.
     """
@@ -68,7 +75,7 @@ class Curve:
     half_thickness: Array
     lost: Array
     angles: Ints
-    corner: Flags
+    corner: Ints
     beam: str = ""
     body: str = ""
     closed: bool = False
@@ -105,7 +112,7 @@ class CurveArrays(NamedTuple):
     thickening: Array
     lost: Array
     angle: Ints
-    corner: Flags
+    corner: Ints
 
 
 def curve_arrays(curves: Sequence[Curve]) -> CurveArrays:
@@ -143,7 +150,7 @@ def beam_curve(m: Mechanism, beam: str, *, thick: bool) -> Curve:
         half_thickness=half_thickness,
         lost=_lost(m, chain),
         angles=m.beam_angles(beam),
-        corner=np.zeros(chain.links, dtype=bool),
+        corner=np.zeros(chain.links, dtype=np.int64),
         beam=beam,
     )
 
@@ -221,7 +228,7 @@ class Frames:
             half_thickness=np.full(pieces + 1, radius),
             lost=np.zeros((pieces, POWERS)),
             angles=np.full(pieces, -1, dtype=np.int64),
-            corner=np.zeros(pieces, dtype=bool),
+            corner=np.zeros(pieces, dtype=np.int64),
             body=body,
             closed=pieces > 1 and abs(polynomials[-1].sum() - polynomials[0, 0]) < CLOSED * arcs[-1],
         )
@@ -239,7 +246,7 @@ class Frames:
         )
 
     def smooth_edge(
-        self, name: str, body: str, points: Array, tangents: Array, length: float, sides: tuple[Array, Array]
+        self, name: str, body: str, points: Array, tangents: Array, length: float, sides: tuple[Array, Array] = NO_SIDES
     ) -> Curve:
         """Cubic spline through ``points`` (k, 2), even by arc length, with unit ``tangents`` at both ends.
 

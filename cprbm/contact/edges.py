@@ -13,7 +13,8 @@ Farther away the position of the corner tells σ.  A corner that overlaps by the
 Beyond a beam's end a corner has no side: the beam may come back on either side.
 
 Where N·b < 0 the distance falls along the face behind the corner: the point of contact leaves the corner, and is the
-minimum of the gap between beam and face.  The same holds for the face before the corner, where N·a > 0.
+minimum of the gap between beam and face.  The same holds for the face before the corner, where N·a > 0.  A point of
+contact on a bend is the same point of the beam, which moves on with the beam.
 """
 
 from __future__ import annotations
@@ -29,7 +30,10 @@ from cprbm.contact.settling import find_feet, near_pairs, separations, settle
 from cprbm_scene.answer import Array, Ints
 
 SURE = 1e-3
-"""Distance of a corner from a beam's neutral line, over the longest beam, from which the position tells the side."""
+"""Distance of a corner from a beam's neutral line, over the longest beam, from which the last side does not count."""
+
+ON_BEAM = 1e-9
+"""Distance of a corner from a beam as drawn, over the longest beam, below which only the faces tell the side."""
 
 SLIDING = 1e-9
 """Least −N·b at which a point of contact leaves a corner: round-off."""
@@ -67,17 +71,17 @@ def corner_sides(geometry: Geometry, z: Array, known: Array, counters: Ints) -> 
     weights = np.empty((2, STENCIL))
     for k, curve in enumerate(places.curve.tolist()):
         x, y = curve_point(z, arrays, places.foot[k], places.eta[k], 1, weights)
-        touching = float(np.hypot(*apart[k])) < SURE
+        distance = float(np.hypot(*apart[k]))
         if places.at_point[k]:
             sides[curve] = 0.0
-        elif not touching or known[curve] == 0.0:
+        elif distance >= SURE or known[curve] == 0.0:
             a, b = _faces(geometry, z, places, k)
-            sides[curve] = 1.0 if np.array([-y, x]) @ (b - a if touching else apart[k]) >= 0.0 else -1.0
+            sides[curve] = 1.0 if np.array([-y, x]) @ (apart[k] if distance >= ON_BEAM else b - a) >= 0.0 else -1.0
     return sides
 
 
 def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Array, counters: Ints) -> Places | None:
-    """The place on a face to which the point of contact at a corner goes; None where the point stays.
+    """The place of the beam to which the point of contact at a corner or on a bend goes; None where the point stays.
 
     Args:
         geometry, z, places: a state in equilibrium.
@@ -88,12 +92,17 @@ def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Arr
     corner, arrays, pair = corner_of(geometry, places, k), geometry.arrays, geometry.pairs[places.pair[k]]
     frame = gap_frame(z, arrays, places, k, np.empty((4, 2, STENCIL)))
     a, b = (frame.nx * x + frame.ny * y for x, y in _faces(geometry, z, places, k))
-    if places.at_point[k] or max(a, -b) < SLIDING:
+    bends, first = not arrays.is_point[places.curve[k]], arrays.first[pair.second]
+    if places.at_point[k] or not (bends or max(a, -b) > SLIDING):
         return None
-    trial, first = taken(places, np.array([k])), arrays.first[pair.second]
+    trial = taken(places, np.array([k]))
     trial.curve[:], trial.piece[:], trial.xi[:] = pair.first, places.foot[k], places.eta[k]
     trial.other[:], trial.side[:] = pair.second, sides[places.pair[k], 0]
-    trial.foot[:], trial.eta[:] = (first + corner.behind, 0.0) if -b > a else (first + corner.before, 1.0)
+    if bends:
+        along, pieces = places.piece[k] - arrays.first[places.curve[k]], arrays.last[pair.second] - first + 1
+        trial.foot[:], trial.eta[:] = first + (corner.behind + along) % pieces, places.xi[k]
+    else:
+        trial.foot[:], trial.eta[:] = (first + corner.behind, 0.0) if -b > a else (first + corner.before, 1.0)
     gap, curvature = np.empty(1), np.empty(1)
     settle(z, arrays, trial, gap, curvature, counters, STEPS)
     apart = arrays.arc[trial.piece] + trial.xi * arrays.span[trial.piece]

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.chain import Mechanism
-from cprbm.contact.corners import Corner, corner_curve, sharp_corners, sides_behind, with_corners
-from cprbm.contact.curve import Curve, Frames, beam_curve
+from cprbm.contact.corners import Corner, corner_curve, part_of, sharp_bends, sharp_corners, sides_behind, with_marks
+from cprbm.contact.curve import NO_SIDES, Curve, Frames, beam_curve
 from cprbm.contact.own_pin import pin_rows
 from cprbm_scene import BeamContact, CircleContact, FunctionContact, HalfPlaneContact, LineContact, SelfContact
 from cprbm_scene.answer import Array
@@ -26,8 +26,6 @@ PIECES = 256
 
 REACH = 10.0
 """Half length of a half-plane's edge, and length of a solid's sides, over the longest beam."""
-
-NO_SIDES = np.zeros((0, 2)), np.zeros((0, 2))
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +63,13 @@ def contact_pairs(m: Mechanism) -> tuple[list[Curve], list[Pair]]:
             continue
         edge, side = _rigid_curve(m, frames, name, contact)
         chain = m.chains[contact.beam]
-        pieces = sharp_corners(edge, side, chain.length / chain.links)
-        second = number(with_corners(edge, pieces))
-        points = [second if edge.is_point else number(corner_curve(edge, piece)) for piece in pieces]
-        corners = [Corner(point, (piece - 1) % edge.pieces, piece) for point, piece in zip(points, pieces, strict=True)]
-        pairs.append(Pair(name, own[0], second, side, tuple(corners)))
+        link = chain.length / chain.links
+        sharp, bends = sharp_corners(edge, side, link), sharp_bends(edge, side, link)
+        second = number(with_marks(edge, sharp, bends))
+        points = [second if edge.is_point else number(corner_curve(edge, piece)) for piece in sharp]
+        starts = [*zip(points, sharp, strict=True), *((number(part_of(edge, run)), int(run[0])) for run in bends)]
+        corners = tuple(Corner(curve, (piece - 1) % edge.pieces, piece) for curve, piece in starts)
+        pairs.append(Pair(name, own[0], second, side, corners))
     return list(curves.values()), pairs
 
 
@@ -84,7 +84,7 @@ def _rigid_curve(m: Mechanism, frames: Frames, contact_name: str, contact: Rigid
             around = np.column_stack([np.cos(angle), np.sin(angle)])
             tangents = np.column_stack([-around[:, 1], around[:, 0]])
             points, length = place(contact.center + contact.radius * around), 2.0 * np.pi * contact.radius
-            return frames.smooth_edge(name, contact.body, points, tangents, length / m.units.length, NO_SIDES), 1
+            return frames.smooth_edge(name, contact.body, points, tangents, length / m.units.length), 1
         case HalfPlaneContact():
             normal = np.array(contact.normal) / np.hypot(*contact.normal)
             along = REACH * np.array([normal[1], -normal[0]])

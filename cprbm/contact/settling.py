@@ -65,6 +65,20 @@ def find_feet(
 
 
 @compiled
+def find_bends(z: Array, curves: CurveArrays, places: Places, rounds: int) -> None:  # pragma: no cover
+    """Move places on bends to the beams, from chord to chord and back in some rounds; write the feet."""
+    weights = np.empty((2, STENCIL))
+    for k in range(places.piece.size):
+        if curves.angle[places.piece[k]] >= 0 or curves.is_point[places.curve[k]]:
+            continue
+        for _ in range(rounds):
+            x, y = curve_point(z, curves, places.foot[k], places.eta[k], 0, weights)
+            places.piece[k], places.xi[k], _ = closest_chord(z, curves, places.curve[k], x, y, 0.0, 0.0, weights)
+            x, y = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights)
+            places.foot[k], places.eta[k], _ = closest_chord(z, curves, places.other[k], x, y, 0.0, 0.0, weights)
+
+
+@compiled
 def is_unturned(z: Array, curves: CurveArrays, places: Places, k: int) -> bool:  # pragma: no cover
     """True if a beam has not turned back between a place and a foot on the same beam: no contact there."""
     if places.curve[k] != places.other[k]:
@@ -102,6 +116,8 @@ def _settle_place(
         if not places.moves[k] or f.curvature == 0.0:
             break
         if steps == 0:
+            if curves.angle[places.piece[k]] < 0:
+                break
             gaps[k] -= 0.5 * f.slope * f.slope / abs(f.curvature)
             break
         step = -f.slope / abs(f.curvature)
@@ -117,7 +133,7 @@ def settle(
 ) -> None:  # pragma: no cover
     """Move all feet, and in at most ``steps`` the moving places; write gaps and curvatures λ'' by arc length.
 
-    Without steps the gap of a moving place is the minimum of the parabola.
+    Without steps the gap of a place that moves along a beam is the minimum of the parabola.
     """
     weights = np.empty((4, 2, STENCIL))
     for k in range(places.piece.size):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.contact import Contacts, Geometry, Places, may_move, on_edge, settle, taken
+from cprbm.contact import CORNER, Contacts, Geometry, Places, may_move, on_edge, settle, taken
 from cprbm.equilibrium.contact_set import FINDING, arc_of, with_fixed_places
 from cprbm.equilibrium.iteration import beside_points
 from cprbm.equilibrium.newton import Solved
@@ -44,13 +44,17 @@ def minima(geometry: Geometry, contacts: Contacts, gaps: Array, pair: int) -> In
 
 
 def as_point(geometry: Geometry, z: Array, contacts: Contacts, k: int, force: float) -> tuple[Places, float, float]:
-    """A joint as a moving place at the minimum of the gap; gap and curvature there, inf and 0 at a corner."""
+    """A joint as a moving place at the minimum of the gap; gap and curvature there.
+
+    Inf and 0 without a minimum between the neighbouring joints, and at a corner, which is a place.
+    """
     trial = taken(contacts.places, np.array([k]))
     trial.moves[:], trial.force[:] = True, force
     gap, curvature = np.empty(1), np.empty(1)
     settle(z, geometry.arrays, trial, gap, curvature, contacts.counters, FINDING)
-    if trial.at_point[0] and geometry.arrays.corner[trial.foot[0]]:
-        # the corner is a place
+    apart = abs(arc_of(geometry, trial)[0] - arc_of(geometry, contacts.places)[k])
+    at_corner = trial.at_point[0] and geometry.arrays.corner[trial.foot[0]] == CORNER
+    if at_corner or apart > NEIGHBOURS * geometry.arrays.span[trial.piece[0]]:
         return trial, np.inf, 0.0
     return trial, float(gap[0]), float(curvature[0])
 
