@@ -8,7 +8,8 @@ h        length of a beam's link
 =======  ====================================================================================
 
 The solid behind an open edge ends where the edge ends.  From there the boundary goes back at right angles, until both
-sides meet, or a side comes to the edge from behind.
+sides meet.  A side that would come to the edge from behind goes on straight beyond the edge's end instead: the solid
+lies behind both end pieces.
 
 At a convex corner the boundary turns away from the beam.  The corner is a place of contact: a point of the boundary
 before the beam's curve.  The boundary cannot pass the beam between two joints there.  A row of corners with less than h
@@ -56,16 +57,25 @@ def sides_behind(points: Array, side: int, reach: float) -> tuple[Array, Array]:
         side: side of the beam, +1 left.
         reach: length of a side that meets nothing.
     """
-    begins, ends = points[0] - points[1], points[-1] - points[-2]
-    back = [side * np.array([chord[1], -chord[0]]) / np.hypot(*chord) for chord in (-begins, ends)]
-    length = [min(_meetings(start, way, points), default=reach) for start, way in zip(points[[0, -1]], back, strict=True)]
-    matrix = np.column_stack([back[0], -back[1]])
-    if abs(np.linalg.det(matrix)) > BEHIND:
-        meet = np.linalg.solve(matrix, points[-1] - points[0])
-        if np.all(meet > BEHIND) and meet[0] < length[0] and meet[1] < length[1]:
-            corner = points[:1] + meet[0] * back[0]
-            return corner, corner
-    return points[:1] + length[0] * back[0], points[-1:] + length[1] * back[1]
+    first, last = (chord / np.hypot(*chord) for chord in (points[0] - points[1], points[-1] - points[-2]))
+    ends, ways = (points[0], points[-1]), [side * np.array([-first[1], first[0]]), side * np.array([last[1], -last[0]])]
+    lengths = [min(_meetings(end, way, points), default=np.inf) for end, way in zip(ends, ways, strict=True)]
+    meet = _distances(ends, ways)
+    if not np.all((meet > BEHIND) & (meet < lengths)):
+        ways = [way if length > reach else on for way, length, on in zip(ways, lengths, (first, last), strict=True)]
+        meet = _distances(ends, ways)
+    if np.all((meet > BEHIND) & (meet < reach)):
+        corner = (ends[0] + meet[0] * ways[0])[None]
+        return corner, corner
+    return (ends[0] + reach * ways[0])[None], (ends[1] + reach * ways[1])[None]
+
+
+def _distances(ends: tuple[Array, Array], ways: list[Array]) -> Array:
+    """Distances (2,) from two ends along unit vectors to where both ways meet; inf for parallel ways."""
+    matrix = np.column_stack([ways[0], -ways[1]])
+    if abs(np.linalg.det(matrix)) < BEHIND:
+        return np.full(2, np.inf)
+    return np.asarray(np.linalg.solve(matrix, ends[1] - ends[0]))
 
 
 def _meetings(start: Array, way: Array, points: Array) -> list[float]:
