@@ -117,13 +117,15 @@ def errors_of(links, formulation="auto", **changes):
 
 
 @pytest.mark.parametrize("changes", [{}, {"edge": "line", "end": "end"}])
-def test_an_arc_pressed_flat_from_its_own_pin_on_converges_with_order_two(changes):
+def test_an_arc_pressed_flat_from_its_own_pin_on_converges_with_order_four(changes):
     # reference: tests.references.flattened, c/L = 0.6
-    errors = {n: errors_of(n, **changes) for n in (20, 40, 80, 160)}
-    for coarse, fine in ((20, 40), (40, 80), (80, 160)):
-        assert np.all(errors[coarse][:2] / errors[fine][:2] > 3.3)
-    for n, found in errors.items():  # where borders are within a fiftieth of an element leaves these uneven
-        assert np.all(found < 2.0 / n**2)
+    errors = {n: errors_of(n, **changes) for n in (20, 40, 80)}
+    for n, found in errors.items():
+        assert found[0] < 0.02 / n**4
+        # the places of joints beside the end of the zone leave these uneven; the reference has nine digits
+        assert np.all(found[1:4] < np.maximum(0.05 / n**4, 1e-8))
+        # pin and contact share the force beside the pin
+        assert np.all(found[4:] < 2.0 / n**2)
 
 
 @pytest.mark.parametrize("thick", [False, True])
@@ -152,7 +154,7 @@ def test_an_edge_that_is_drawn_beyond_its_beam_by_rounding_holds_it_along_itself
     for beyond in (0.0, 1.6e-6):
         scene = arch()
         edge = scene.contacts["edge"].model_copy(update={"normal": (-beyond, 1.0), "point": (0.0, 0.0)})
-        told.append(solved(scene.model_copy(update={"contacts": {"edge": edge}}), 80))
+        told.append(solved(scene.model_copy(update={"contacts": {"edge": edge}}), 40))
     for probe, values in told[0].items():
         assert told[1][probe] == pytest.approx(values, rel=1e-4, abs=1e-5 * np.max(np.abs(values)))
 
@@ -307,7 +309,7 @@ def test_a_line_in_pieces_that_go_on_straight_is_one_line():
 
 
 @pytest.mark.parametrize("changes", [{}, {"edge": "line", "end": "end", "thick": True}])
-def test_the_papers_form_is_of_first_order_beside_an_own_pin_where_auto_is_of_second(changes):
+def test_the_papers_form_is_of_first_order_beside_an_own_pin(changes):
     # reference: tests.references.flattened. Of the first element only 3/4 of the arc is taken out: the chord from the
     # pin to the first spring is half as long as the next. Its energy (3/4)², and its moment from the pin's joint
     lacks, force = {}, {}
@@ -319,10 +321,8 @@ def test_the_papers_form_is_of_first_order_beside_an_own_pin_where_auto_is_of_se
         assert lacks[n] == pytest.approx((1.0 - 0.75**2) * flat, rel=1.0 / n)
         assert force[n] == pytest.approx(0.75 * RIGIDITY / RADIUS / (0.5 * LENGTH / n), rel=2.0 / n**1.5)
         assert values["edge.moment"][0] == pytest.approx(CURVED.about_start, rel=0.1 / n)
-    auto = {n: errors_of(n, **changes)[1] for n in (20, 40, 80)}
     for n in (20, 40):
         assert 1.9 < lacks[n] / lacks[2 * n] < 2.1
-        assert auto[n] / auto[2 * n] > 3.3
 
 
 def test_the_papers_form_is_of_second_order_away_from_own_pins():
