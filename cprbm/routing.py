@@ -1,8 +1,9 @@
 """Which edition answers a scene.
 
-The second edition answers every scene without contacts, and contacts in the theories ``stretch`` and ``shear``.  Its
-places of contact lie on beams alone: a rigid edge with a corner, an end or a feature smaller than a link may press
-between two places.  Such contacts, all contacts in ``bending`` and in the formulation ``paper`` keep the first edition.
+The second edition answers the formulation ``paper``, every scene without contacts, and contacts in the theories
+``stretch`` and ``shear``.  In ``auto`` the places of contact lie on beams alone: a rigid edge with a corner, an end or
+a feature smaller than a link may press between two places.  Such contacts and all contacts of ``auto`` in ``bending``
+keep the first edition.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """From a scene to an answer.
 
 The second edition (:mod:`cprbm.results.stations`) answers in every theory.  The first edition (:mod:`cprbm.march`)
-answers contacts in the formulation ``paper``, and edges with corners, ends or features smaller than a link
-(:mod:`cprbm.routing`), in bending.
+answers contacts of ``auto`` in bending, and edges with corners, ends or features smaller than a link
+(:mod:`cprbm.routing`).
 """
 
 from __future__ import annotations
