@@ -60,7 +60,9 @@ def drawn_names(system: System, state: State) -> frozenset[str]:
     geometry, contacts = system.geometry, state.contacts
     if geometry is None or contacts is None:
         return frozenset()
-    return frozenset(geometry.pairs[pair].name for pair in touching_as_drawn(geometry, state.z, contacts))
+    at_ends = touching_as_drawn(geometry, state.z, contacts)
+    gaps = {pair: least_gap(geometry, state.z, contacts, pair) for pair in range(len(geometry.pairs))}
+    return frozenset(geometry.pairs[pair].name for pair, gap in gaps.items() if pair in at_ends or gap < TOUCHING)
 
 
 def touches(solved: Solved) -> bool:

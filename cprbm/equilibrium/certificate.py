@@ -9,7 +9,8 @@ r        unbalanced generalised force over the largest moment
 
 The moments of joints are products of stiffness and angles, uncertain by ε k |θ|; the sums of a
 chain add ε √m of the largest moment.  A contact holds positions, which a gap with its weights knows to some ε of the
-longest beam; over a link that is an angle of some ε/h, in two neighbouring joints.  Four times the sum is the floor.
+longest beam; over a link that is an angle of some ε/h, in two neighbouring joints, and the force on a node is a moment
+over h.  Four times the sum is the floor.
 """
 
 from __future__ import annotations
@@ -85,7 +86,9 @@ def certify(
     turned = float(np.abs(state.z[system.angles]).max())
     stiffest = float(system.joints.stiffness.max())
     contacts = state.contacts
-    turns = turned + (PLACES / float(system.metric.min()) if contacts is not None and contacts.closed.any() else 0.0)
+    shortest = float(system.metric.min())
+    pressed = contacts is not None and contacts.closed.any()
+    turns = turned + ((PLACES + 1.0 / shortest) / shortest if pressed else 0.0)
     floor = 4.0 * EPSILON * (stiffest * turns + sqrt(len(system.metric)) * scale) / scale
     force_rows, equations = _parts(system)
     residual = float(np.abs(solved.gradient[force_rows]).max()) / scale

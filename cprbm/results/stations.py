@@ -97,6 +97,8 @@ class Run:
                 self.values, self.closing = {}, {}
                 self.notes = [PLAIN]
                 ending, sentence = self._solve()
+        touched = {name for station in self.stations for name in station.touching}
+        never = [f"contact '{name}' never closed at a station" for name in self.scene.contacts if name not in touched]
         if self.settings.formulation == "paper" and self.driver is not None:
             self.notes += self.remarks.told(self.driver.solved)
         return Answer(
@@ -110,7 +112,7 @@ class Run:
             critical=tuple(self.critical),
             gone_over=tuple(self.gone_over),
             seconds=self.seconds + time.perf_counter() - began,
-            notes=tuple(self.notes),
+            notes=(*never, *self.notes),
         )
 
     def _solve(self) -> tuple[Ending, str]:

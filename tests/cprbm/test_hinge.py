@@ -43,23 +43,12 @@ def errors_of(links, truth, formulation="auto"):
     )
 
 
-def test_auto_converges_with_order_two_whatever_the_parity_of_n(truth):
-    # reference: tests.references.hinge; 39, 41: the contact falls on a spring; 40: between two
-    errors = {n: errors_of(n, truth) for n in (20, 39, 40, 41, 80, 160)}
-    for coarse, fine in ((20, 40), (40, 80), (80, 160)):
-        assert np.all(np.abs(np.log2(errors[coarse] / errors[fine]) - 2.0) < 0.1)
-    smooth = errors[40] * (40 / 39) ** 2, errors[40] * (40 / 41) ** 2
-    assert errors[39] == pytest.approx(smooth[0], rel=0.05)
-    assert errors[41] == pytest.approx(smooth[1], rel=0.05)
-    assert np.all(errors[40] < 4e-3)
-
-
-def test_auto_extrapolates_to_the_exact_solution(truth):
-    coarse, fine = solved(40).stations[-1].values, solved(80).stations[-1].values
-    rotation = (4.0 * fine["BD.rotation"][0] - coarse["BD.rotation"][0]) / 3.0
-    force = (4.0 * fine["contact.force"][0] - coarse["contact.force"][0]) / 3.0
-    assert rotation == pytest.approx(truth.rotation, rel=2e-6)
-    assert force == pytest.approx(truth.contact_force, rel=5e-5)
+def test_auto_converges_with_order_four_whatever_the_parity_of_n(truth):
+    # reference: tests.references.hinge; 39, 41: the contact falls on a joint; 40: between two
+    errors = {n: errors_of(n, truth) for n in (20, 39, 40, 41, 80)}
+    assert np.all(np.log2(errors[20] / errors[80]) > 2.0 * 3.5)
+    for n in (39, 40, 41):
+        assert np.all(errors[n] < 3e-5)
 
 
 @pytest.mark.parametrize("beam", [1, 2])
@@ -70,9 +59,10 @@ def test_auto_stress_everywhere_up_to_the_clamps_and_through_the_kink_at_the_con
         exact_stress = truth.bending_stress(beam, np.linspace(0.0, exact.PAPER.length, len(values)))
         return np.max(np.abs(values - exact_stress)) / np.max(np.abs(exact_stress))
 
-    errors = np.array([n**2 * error(n) for n in (20, 40, 41, 80, 160)])
-    assert errors[-1] < 3.0
-    assert errors == pytest.approx(errors[-1], rel=0.16)
+    # the moment has a kink at the contact; elsewhere the chain is of fourth order
+    assert error(20) < 2e-4
+    assert error(40) < 2e-5
+    assert error(41) < 2e-5
 
 
 def test_auto_meets_the_contact_at_its_place(truth):
@@ -250,14 +240,3 @@ def test_a_fitted_boundary_leaves_a_moment_and_the_answer_says_so():
 def test_a_contact_that_never_closes_is_named():
     answer = cprbm.answer(hinge(stages=[{"name": "load", "steps": "M", "stations": [0.1]}]))
     assert answer.notes == ("contact 'contact' never closed at a station",)
-
-
-def test_a_gap_between_places_that_cannot_move_is_no_unknown():
-    from cprbm.complementarity import pressing
-
-    G = np.array([[2.0, 0.0], [0.0, 0.0]])
-    lam, active = pressing(G, np.array([1.0, -0.3]), np.zeros(2, dtype=bool))
-    assert lam == pytest.approx([0.5, 0.0])
-    assert active.tolist() == [True, False]
-    with pytest.raises(np.linalg.LinAlgError, match="nothing yields"):
-        pressing(G, np.array([1.0, 0.3]), np.zeros(2, dtype=bool))
