@@ -80,16 +80,12 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[old.moves]]))
 
 
-def passed_through(
-    geometry: Geometry, before: Array, old: Places, after: Array, new: Places, counters: Ints
-) -> bool:
+def passed_through(geometry: Geometry, before: Array, old: Places, after: Array, new: Places, counters: Ints) -> bool:
     """True if a beam went through itself or over a circle: the vector from a foot or a centre to a place turned round.
 
     The gaps of a beam to itself and to a circle have no sign: only the way between two states shows a passage.
     """
-    if geometry.arrays.is_point.any() and sweeps_any_circle(
-        before, after, geometry.arrays, geometry.columns, counters
-    ):
+    if geometry.arrays.is_point.any() and sweeps_any_circle(before, after, geometry.arrays, geometry.columns, counters):
         return True
     first, second = separations(before, geometry.arrays, old), separations(after, geometry.arrays, new)
     number = {_identity(new, k): k for k in range(len(new.pair)) if not new.moves[k]}

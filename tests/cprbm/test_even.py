@@ -10,6 +10,7 @@ from cprbm.model import NO_KINKS, Kinks, build
 from cprbm.smooth import smooth_line
 from tests.cprbm.scenes import cantilever, force
 
+
 def bent_by_two_moments(places, place, p, q, kappa):
     """Angles of links and true tangents at ``places`` of a beam whose curvature is a broken line with its corner."""
 

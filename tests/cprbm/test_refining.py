@@ -6,7 +6,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-import cprbm
 from cprbm import Settings
 from cprbm.first_contact import NO_ROWS
 from cprbm.first_equilibrium import equilibrium
