@@ -34,12 +34,9 @@ BESIDE = 1e-12
 
 
 def beam_states(mechanism: Mechanism, point: Point) -> dict[str, BeamState]:
-    """Internal forces at the start, the springs and the end of every beam; empty in the formulation ``paper``.
-
-    The formulation ``paper`` presses on joints, so that no place of the line carries a contact force.
-    """
+    """Internal forces at the start, the springs and the end of every beam; SI."""
     model, states = mechanism.problem.model, {}
-    for chain in () if mechanism.boundaries else model.chains:
+    for chain in model.chains:
         s = chain.s + chain.s[-1] * BESIDE * (chain.s < chain.s[-1])
         line = smooth.smooth_line(chain, model.unit_length, point.state, point.at).at(chain.s)
         force = force_beyond(mechanism, point, chain, s) @ (1.0, 1j) * np.exp(-1j * line.psi) * model.unit_force
@@ -59,9 +56,7 @@ def beam_states(mechanism: Mechanism, point: Point) -> dict[str, BeamState]:
 
 
 def point_forces(scene: Scene, mechanism: Mechanism, point: Point) -> PointForces:
-    """All forces but the loads; none in the formulation ``paper``."""
-    if mechanism.boundaries:
-        return PointForces()
+    """All forces but the loads."""
     return PointForces.collected(
         [*_at_ends(scene, mechanism, point), *_on_bodies(scene, mechanism, point), *_at_contacts(mechanism, point)],
         mechanism.problem.model.unit_length,
@@ -72,7 +67,7 @@ def point_forces(scene: Scene, mechanism: Mechanism, point: Point) -> PointForce
 def contacts(
     scene: Scene, mechanism: Mechanism, forces: PointForces, touching: Mapping[str, Array]
 ) -> Mapping[str, ContactState]:
-    """States of all contacts; in the formulation ``paper`` a contact is active where a joint touches its boundary."""
+    """States of all contacts."""
     return contact_states(
         scene.contacts, forces, touching, (mechanism.problem.model.unit_length, mechanism.problem.model.unit_force)
     )

@@ -1,8 +1,7 @@
 """Bringing beams' ends to the points they are pinned to, before anything is loaded or driven.
 
 Three parts, each with an equilibrium at its end: the auxiliary moments grow while the ends are free; the ends go
-straight to their points; the moments go away, and from here on stops act.  Until then the beams touch where they are
-closest, whatever the formulation: the paper's boundary is that of the assembled mechanism, and the last part's.
+straight to their points; the moments go away, and from here on stops act.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ class Part:
 
 def freed(scene: Scene, mechanism: Mechanism, point: Point) -> Part:
     """The first part: ends that are drawn apart are free, and moments grow on them."""
-    moments, mechanism = _moments(scene), replace(mechanism, boundaries={})
+    moments = _moments(scene)
     names = frozenset(_apart(scene, mechanism, point))
     problem = mechanism.without(*mechanism.stops)
     free = replace(problem, closure=closure_of(problem.model, problem.closure.hinges, problem.closure.holds, names))
@@ -58,7 +57,7 @@ def freed(scene: Scene, mechanism: Mechanism, point: Point) -> Part:
 
 def brought(scene: Scene, mechanism: Mechanism, point: Point) -> Part:
     """The second part: from where they are the ends go straight to their points."""
-    moments, mechanism = _moments(scene), replace(mechanism, boundaries={})
+    moments = _moments(scene)
     problem = mechanism.without(*mechanism.stops)
     gaps: dict[str, float] = {}
     for beam, gap in _apart(scene, mechanism, point).items():
@@ -82,7 +81,6 @@ def released(scene: Scene, mechanism: Mechanism, point: Point) -> Part:
     moments, mistakes = _moments(scene), list(_forbidden(scene, mechanism, point))
     if mistakes:
         raise SceneError(mistakes)
-    mechanism = replace(mechanism, boundaries={})
     problem = mechanism.without()
     return Part(
         mechanism=replace(mechanism, problem=problem),

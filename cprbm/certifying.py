@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm.boundary import FittedBoundary
 from cprbm.energy import turns
 from cprbm.first_equilibrium import Equilibrium
 from cprbm.forces import balances
 from cprbm.mechanism import Mechanism
-from cprbm.model import Model
 from cprbm.overlap import overlap as largest_overlap
 from cprbm.point import Point
 from cprbm.settings import Settings
 from cprbm.stability import smallest_curvature
 from cprbm_scene import Certificate, Ending
-from cprbm_scene.answer import Array
 
 LARGEST_BEND = 1.0  # rad: change of angle of one spring beyond which a chord no longer stands for its element
 BALANCE = 1e-8
@@ -24,8 +21,6 @@ COMPLEMENTARITY = 1e-8  # gap times force, over the largest generalised force
 # the line dips by a part of h², which is an error of the discretisation and not a failure.
 OVERLAP_AUTO = 0.05
 OVERLAP_OPEN = 1e-3  # the same where nothing presses: there is no zone then, and each minimum of a gap has a row
-BEYOND = 0.5  # elements behind the fitted boundary's ends: it is continued there
-OVERLAP_PAPER = 0.5  # joints of 'paper' may dip between each other; beyond this the beams have crossed
 
 
 def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tuple[Certificate, Ending]:
@@ -46,26 +41,18 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
     if not bend <= LARGEST_BEND:
         said = f"one element turns by {bend:.2f} rad, more than {LARGEST_BEND:.1f}: use more links"
         failures.append((Ending.TURNED_TOO_FAR, said))
-    near = mechanism.near(point.state, point.at)
     overlaps = overlaps_of(mechanism, found)
     penetration = max(overlaps.values(), default=0.0)
-    limit = OVERLAP_PAPER if mechanism.boundaries else OVERLAP_AUTO
-    if not penetration <= limit:
-        said = f"the beams of a contact overlap by {penetration:.1e} of the mean thickness, allowed {limit:.0e}"
+    if not penetration <= OVERLAP_AUTO:
+        said = f"the beams of a contact overlap by {penetration:.1e} of the mean thickness, allowed {OVERLAP_AUTO:.0e}"
         failures.append((Ending.BEAMS_CROSSED, said))
-    for name, overlap in () if mechanism.boundaries else overlaps.items():
+    for name, overlap in overlaps.items():
         if overlap > OVERLAP_OPEN and _open(mechanism, name, point):
             said = f"in contact '{name}' nothing presses, and overlaps by {overlap:.1e} of the mean thickness"
             failures.append((Ending.BEAMS_CROSSED, said))
     for name, pair in mechanism.alone.items():
         if pair.crosses(point.state, point.at):
             failures.append((Ending.BEAMS_CROSSED, f"in contact '{name}' the beam passes through itself"))
-    for name in near if mechanism.boundaries else []:
-        boundary = mechanism.boundaries[name]
-        if isinstance(boundary, FittedBoundary):  # what is rigid ends where it does
-            beyond = _pressed_beyond(boundary, point)
-            if not beyond.max() <= BEYOND * max(chain.h for chain in problem.model.chains):
-                failures.append((Ending.LEFT_BOUNDARY, _left(problem.model, boundary, point, beyond)))
     force_balance, moment_balance = balances(problem, point)
     balance_asked = max(BALANCE, 100.0 * measure.floor)
     if not force_balance <= balance_asked:
@@ -89,33 +76,6 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
         failures=tuple(sentence for _, sentence in failures),
     )
     return certificate, failures[0][0] if failures else Ending.COMPLETED
-
-
-def _pressed_beyond(boundary: FittedBoundary, point: Point) -> Array:
-    """How far each joint of a boundary that presses is beyond the range of the fit, (m,); −inf where it does not."""
-    pressing = np.zeros(len(boundary.joints), dtype=bool)
-    for group, lam in point.rows.shares(point.lam):
-        if group.contact == boundary.name:
-            pressing = lam > 0.0
-    if not pressing.any():
-        return np.full(len(pressing), -np.inf)
-    return np.where(pressing, boundary.range_left(point.state, point.at), -np.inf)
-
-
-def _left(model: Model, boundary: FittedBoundary, point: Point, beyond: Array) -> str:
-    """Which joint presses beyond the range, by how much, and how far the beam is that it was fitted to."""
-    worst = int(np.argmax(beyond))
-    joint = int(boundary.joints[worst])
-    own, other = (
-        next(chain for chain in model.chains if chain.joints.start <= each < chain.joints.stop)
-        for each in (joint, int(boundary.points[0]))
-    )
-    apart = np.hypot(point.at.x[other.joints] - point.at.x[joint], point.at.y[other.joints] - point.at.y[joint]).min()
-    return (
-        f"in contact '{boundary.name}' joint {joint - own.first_joint} of {own.name} presses "
-        f"{beyond[worst] * model.unit_length:.2g} m beyond the end of the range that the polynomial was fitted on, "
-        f"about {(apart - boundary.offset) * model.unit_length:.2g} m from {other.name}"
-    )
 
 
 def _open(mechanism: Mechanism, name: str, point: Point) -> bool:

@@ -33,17 +33,13 @@ class Local:
     """Rows over local numbers.
 
     Attributes:
-        joints, angles: what enters each row, (r, p) and (r, a), or all of them, (1, p) and (1, a).
+        joints, angles: what enters each row, (r, p) and (r, a).
         slopes: derivatives over x of the joints, y of the joints, angles (r, 2p + a).
-        alike: whether the same enters all rows, and nothing twice; the angles are then those of neighbouring links.
-        behind: where the rows are alike and the joints few, what :func:`cprbm.kinematics.behind` says of these.
     """
 
     joints: Ints
     angles: Ints
     slopes: Array
-    alike: bool = False
-    behind: Array | None = None
 
 
 def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Local]) -> Array:
@@ -57,10 +53,7 @@ def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Loc
     for part in parts:
         (r, _), (_, p), (_, a) = part.slopes.shape, part.joints.shape, part.angles.shape
         mine = rows[first : first + r]
-        if part.alike and a:
-            link = int(part.angles[0, 0])
-            mine[:, link : link + a] += part.slopes[:, 2 * p :]
-        elif a:
+        if a:
             places = (np.arange(r)[:, None] * model.n_unknowns + part.angles).ravel()
             np.add.at(mine.reshape(-1), places, part.slopes[:, 2 * p :].ravel())
         first += r
@@ -70,16 +63,10 @@ def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Loc
 def _sums(model: Model, part: Local) -> Array:
     """Slopes over x and over y of joints, summed as :func:`cprbm.kinematics.summed` says (r, 2, n_links + k)."""
     (r, _), (_, p) = part.slopes.shape, part.joints.shape
-    if part.behind is not None:
-        # twice as many rows, x and y in turns
-        return (part.slopes[:, : 2 * p].reshape(2 * r, p) @ part.behind).reshape(r, 2, -1)
     if model.hanging is not None:
         return part.slopes[:, : 2 * p].reshape(r, 2, p) @ model.hanging[part.joints]
     forces = np.zeros((2, r, model.n_joints))
-    if part.alike:
-        forces[0][:, part.joints[0]] = part.slopes[:, :p]
-        forces[1][:, part.joints[0]] = part.slopes[:, p : 2 * p]
-    elif p:
+    if p:
         along, across = forces.reshape(2, -1)
         places = (np.arange(r)[:, None] * model.n_joints + part.joints).ravel()
         np.add.at(along, places, part.slopes[:, :p].ravel())
@@ -89,29 +76,15 @@ def _sums(model: Model, part: Local) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Factored:
-    """A second derivative Σ σ v vᵀ + Σ t dτ², τ half the sum of two angles that follow each other.
+    """A second derivative Σ σ v vᵀ.
 
     Attributes:
         columns: v, as rows over local numbers (r).
         sigma: σ, none of them nought (r,).
-        turning: t (a − 1,) where the columns are alike, for each two of their angles, links of one beam; else None.
     """
 
     columns: Local
     sigma: Array
-    turning: Array | None = None
-
-    def blocks(self) -> Blocks:
-        """The same as matrices: one, or of each column where these have local numbers of their own."""
-        joints, angles, v = self.columns.joints, self.columns.angles, self.columns.slopes
-        if self.columns.alike:
-            matrix = (v.T * self.sigma) @ v
-            if self.turning is not None:
-                i = 2 * joints.shape[1] + np.arange(len(self.turning))
-                for one, other in ((i, i), (i, i + 1), (i + 1, i), (i + 1, i + 1)):
-                    matrix[one, other] += 0.25 * self.turning
-            return Blocks(joints, angles, matrix[None])
-        return Blocks(joints, angles, self.sigma[:, None, None] * v[:, :, None] * v[:, None, :])
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,10 +139,6 @@ class Group:
         arc: arc length on the contact's first beam where each row acts (m,).
         reach: length of the first beam, before and behind ``arc``, whose joints have these rows and no others.
         itself: whether a beam touches itself, at two places of which the first has the first joint.
-        shared: whether the joints and angles of all rows are the same, no joint among them twice, and the angles
-            those of neighbouring links.
-        behind: of shared joints, as :class:`Local` has it.
-        factors: λ (m,) ↦ the same second derivative by its factors, where these are known.
     """
 
     contact: str
@@ -182,19 +151,15 @@ class Group:
     arc: Array
     reach: float = 0.0
     itself: bool = False
-    shared: bool = False
-    behind: Array | None = None
-    factors: Callable[[Array], Factored] | None = None
 
     @property
     def local(self) -> Local:
         """∂c."""
-        joints, angles = (self.joints[:1], self.angles[:1]) if self.shared else (self.joints, self.angles)
-        return Local(joints, angles, self.slopes, self.shared, self.behind)
+        return Local(self.joints, self.angles, self.slopes)
 
     def factored(self, multipliers: Array) -> Factored:
         """∂²(λ·c)."""
-        return self.curvature(multipliers).factored() if self.factors is None else self.factors(multipliers)
+        return self.curvature(multipliers).factored()
 
     @property
     def holds_angles(self) -> bool:
@@ -302,12 +267,6 @@ class Rows:
             if not pressing.size:
                 continue
             p = group.joints.shape[1]
-            if group.shared:
-                total, first = lam @ group.slopes, int(group.angles[0, 0])
-                fx[group.joints[0]] += total[:p]
-                fy[group.joints[0]] += total[p : 2 * p]
-                moments[first : first + len(total) - 2 * p] += total[2 * p :]
-                continue
             local, joints = lam[pressing, None] * group.slopes[pressing], group.joints[pressing].ravel()
             np.add.at(fx, joints, local[:, :p].ravel())
             np.add.at(fy, joints, local[:, p : 2 * p].ravel())
@@ -322,10 +281,7 @@ class Rows:
         found = np.zeros((2, model.hanging.shape[1]))
         for group, lam in self.shares(multipliers):
             pressing, p = lam.nonzero()[0], group.joints.shape[1]
-            if group.shared:
-                behind = model.hanging[group.joints[0]] if group.behind is None else group.behind
-                found += (lam @ group.slopes)[: 2 * p].reshape(2, p) @ behind
-            elif pressing.size and p:
+            if pressing.size and p:
                 local = lam[pressing, None] * group.slopes[pressing, : 2 * p]
                 forces = local.reshape(-1, 2, p).swapaxes(0, 1).reshape(2, -1)
                 found += forces @ model.hanging[group.joints[pressing].ravel()]

@@ -123,19 +123,6 @@ def holding(problem: Problem, point: Point) -> tuple[Held, ...]:
     return tuple(found)
 
 
-def contact_imbalance(problem: Problem, point: Point, contact_name: str) -> float:
-    """Moment of all forces of a contact of beams together: zero where action is reaction.
-
-    Over the supports' largest, or the contact's own force at the length of the longest beam where that is larger.
-    """
-    contact = contact_forces(problem, point, contact_name)
-    own = point.at.x @ contact.fy - point.at.y @ contact.fx + np.sum(contact.moments)
-    joints = [chain.joints for chain in problem.model.chains]
-    forces = [float(np.hypot(contact.fx[j].sum(), contact.fy[j].sum())) for j in joints]
-    largest = max(*forces, *(abs(support.moment) for support in supports(problem, point)))
-    return abs(float(own)) / largest if largest > 0.0 else 0.0
-
-
 def _across_gaps(problem: Problem, point: Point) -> list[float]:
     """Moments by which ends that are on their way to points of bodies are held apart from these."""
     model, closure = problem.model, problem.closure

@@ -323,7 +323,6 @@ class March:
             self.stood = [*self.stood[1 - KEPT :], (value, mechanism, point.bare)]
         # what is open on the march's mesh may be closed on this one
         self._note_closings(stage.name, stage.steps, point, value)
-        self.remarks.look(mechanism, point, f"{stage.name} {value:.6g}")
         places, forces = touching(mechanism, point), answer_sheet.point_forces(self.scene, mechanism, point)
         return StationAnswer(
             stage=stage.name,
@@ -540,7 +539,7 @@ class March:
             for name in self.scene.contacts
             if not any(name in station.touching for station in self.reached)
         ]
-        return said + self.remarks.told(self.on.mechanism, self.on.point)
+        return said + self.remarks.told()
 
     def _note_closings(self, stage: str, load: str, after: Point, value: float) -> None:
         """Note which contacts have closed on the way to ``after``, and where, if the scene asks."""

@@ -9,12 +9,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from cprbm.boundary import FittedBoundary, fitted_boundary
 from cprbm.circle import Circle, circle_of
 from cprbm.clearance import Clearances, clearances_of
 from cprbm.closest import clear
 from cprbm.closure import closure_of
-from cprbm.corner import stands_out
 from cprbm.edge import Edge, edge_of
 from cprbm.energy import dead_loads, end_moments
 from cprbm.feet import distance_along
@@ -28,9 +26,6 @@ from cprbm.model import EVEN, Fit, Model, build
 from cprbm.nearest import Pair, pair_of
 from cprbm.overlap import may_be_beyond, never_beyond
 from cprbm.point import Point, Problem
-from cprbm.related import related_joints
-from cprbm.rigid import RigidCircle, rigid_circle
-from cprbm.rigid_edge import RigidEdge, rigid_edge
 from cprbm.settings import Settings
 from cprbm.sighting import UNSEEN, sight
 from cprbm.stops import AngleStop, stop_of
@@ -39,11 +34,7 @@ from cprbm.sweeping import swath, swept
 from cprbm_scene import (
     BeamContact,
     CircleContact,
-    LineContact,
-    Mistake,
-    RigidContact,
     Scene,
-    SceneError,
     SelfContact,
 )
 from cprbm_scene.answer import Array
@@ -56,9 +47,6 @@ STEEP = 3.0  # a cubic whose ends are no steeper than so many times its chord go
 WAY = 0.02  # of the longest beam, by which a way of one radian may differ from the unknowns' even one
 EDGE_WAY = 0.2  # the same of an edge, behind which what is rigid never ends: pinned ends leave their points meanwhile
 DIP = 1e-3  # of the longest beam, by which a line may dip into an edge on the way, that goes round it or along it
-SAG = 0.25  # of an element times what links turn by at its spring: twice the sag of an even bend
-
-Boundary = FittedBoundary | RigidCircle | RigidEdge
 
 Groups = Callable[[State, Positions], tuple[Group, ...]]
 AnyPair = Pair | Circle | Edge | Itself
@@ -72,8 +60,7 @@ class Mechanism:
 
     Attributes:
         problem: with every contact.
-        pairs: smooth beams of each contact, which measure overlap whatever the formulation.
-        boundaries: of the formulation ``paper``; empty for ``auto``.
+        pairs: smooth beams of each contact.
         stops: limits of pins' angles.
         fit: what the mesh was made for.
         clearances: which contacts are so far open that they need not be looked at.
@@ -82,7 +69,6 @@ class Mechanism:
 
     problem: Problem
     pairs: Mapping[str, AnyPair]
-    boundaries: Mapping[str, Boundary]
     stops: dict[str, AngleStop]
     fit: Fit
     clearances: Clearances
@@ -91,9 +77,7 @@ class Mechanism:
     def without(self, *names: str) -> Problem:
         """The problem in which some contacts and stops hold nothing."""
         stops = {name: stop for name, stop in self.stops.items() if name not in names}
-        formulation, steady = _formulations(
-            self.pairs, self.boundaries, stops, self.clearances, self.alone, frozenset(names)
-        )
+        formulation, steady = _formulations(self.pairs, stops, self.clearances, self.alone, frozenset(names))
         return replace(self.problem, formulation=formulation, steady=steady)
 
     def near(self, state: State, at: Positions) -> list[str]:
@@ -109,7 +93,7 @@ class Mechanism:
 
     def overlap(self, contact: str, point: Point) -> float:
         """Largest constraint value of ``contact``, units of length: positive where it is violated."""
-        groups = _groups(contact, self.seen(contact, point.rows), self.boundaries)(point.state, point.at)
+        groups = self.seen(contact, point.rows).groups(point.state, point.at)
         return max((float(group.values.max()) for group in groups), default=float("-inf"))
 
     def passed(self, before: Point, after: Point, rates: Rates | None = None) -> str:
@@ -183,16 +167,7 @@ class Mechanism:
     def _allowed(self, pair: Pair | Edge, before: Point, after: Point, uneven: float) -> float:
         """By how much a beam may seem to lie across on a way that is known by ``uneven`` times the turn's square."""
         slack = max(pair.offset, DIP) if isinstance(pair, Edge) else pair.offset or clear(pair)
-        return slack + self._sag(pair, after.state) + uneven * most_changed(before.state, after.state) ** 2
-
-    def _sag(self, pair: Pair | Edge, state: State) -> float:
-        """By how much beams may sag between their joints, which are all that ``paper`` holds; units of length."""
-        if not self.boundaries:
-            return 0.0
-        bends = np.abs(state.theta[1:] - state.theta[:-1])
-        return max(
-            SAG * chain.h * float(bends[chain.links.start : chain.links.stop - 1].max()) for chain in pair.chains
-        )
+        return slack + uneven * most_changed(before.state, after.state) ** 2
 
 
 def _swept(
@@ -264,13 +239,8 @@ def _gone_through(pair: Pair, way: Iterable[tuple[State, Positions]], allowed: f
     return False
 
 
-def _groups(contact: str, pair: AnyPair, boundaries: Mapping[str, Boundary]) -> Groups:
-    return boundaries[contact].groups if boundaries else pair.groups
-
-
 def _formulations(
     pairs: Mapping[str, AnyPair],
-    boundaries: Mapping[str, Boundary],
     stops: Mapping[str, AngleStop],
     clearances: Clearances,
     watched: Mapping[str, Itself],
@@ -283,14 +253,13 @@ def _formulations(
     steady = Made(pairs, lambda name: replace(pairs[name], own_places=False))
     looked = Made(watched, lambda name: replace(watched[name], own_places=False))
     return (
-        _formulation(pairs, boundaries, stops, clearances, watched, idle),
-        _formulation(steady, boundaries, stops, clearances, looked, idle),
+        _formulation(pairs, stops, clearances, watched, idle),
+        _formulation(steady, stops, clearances, looked, idle),
     )
 
 
 def _formulation(
     pairs: Mapping[str, AnyPair],
-    boundaries: Mapping[str, Boundary],
     stops: Mapping[str, AngleStop],
     clearances: Clearances,
     watched: Mapping[str, Itself],
@@ -301,11 +270,11 @@ def _formulation(
         groups, sides = list[Group](), before.sides
         for name in near:
             pair = pairs[name]
-            if not boundaries and isinstance(pair, Pair) and not all(pair.seen):
+            if isinstance(pair, Pair) and not all(pair.seen):
                 sides = {**sides, name: sight(pair, state, at, sides.get(name, UNSEEN))}
                 pair = pair.sighted(sides[name])
             if name not in idle:
-                groups += _groups(name, pair, boundaries)(state, at)
+                groups += pair.groups(state, at)
         groups += [group for stop in stops.values() for group in stop.groups(state, at)]
         faces = {}
         for name, pair in watched.items():
@@ -329,41 +298,9 @@ def _pair(scene: Scene, model: Model, name: str, fit: Fit) -> AnyPair:
     return edge_of(scene, model, name, fit)
 
 
-def _boundary(scene: Scene, model: Model, pair: AnyPair, settings: Settings) -> Boundary:
-    """A contact in the paper's form.
-
-    Raises:
-        SceneError: the form lacks what it must be told, or is not offered for the contact's kind.
-    """
-    match pair:
-        case Pair():
-            return fitted_boundary(scene, model, pair.name, settings.degree)
-        case Circle():
-            return rigid_circle(scene, model, pair.name)
-        case Edge() if all(corner.ends for corner in pair.corners):
-            return rigid_edge(scene, model, pair)
-        case Edge():
-            found = "a line with a corner that stands out, which presses a beam between its joints"
-            allowed = "a line without one, or the formulation 'auto'"
-            raise SceneError([Mistake(f"contacts.{pair.name}.points", found, allowed, scene.file)])
-    allowed = "a kind that the formulation 'paper' offers, or the formulation 'auto'"
-    kind = scene.contacts[pair.name].kind
-    raise SceneError([Mistake(f"contacts.{pair.name}.kind", repr(kind), allowed, scene.file)])
-
-
-def _refused(scene: Scene, model: Model, boundaries: Mapping[str, Boundary], name: str) -> None:
-    """Raise what making a contact's boundary would, and make it now where nothing less tells."""
-    contact = scene.contacts[name]
-    cornered = isinstance(contact, LineContact) and stands_out(contact)
-    if isinstance(contact, RigidContact) and not cornered:
-        related_joints(scene, name, model.chain(contact.beam), fewest=1)
-    else:
-        boundaries[name]
-
-
 def _cut_alike(before: Mechanism, settings: Settings, fit: Fit) -> bool:
     """Whether a mesh ``before`` of the scene has the same elements as that of a ``fit``, which may have other kinks."""
-    if settings.formulation == "paper" or before.boundaries or before.fit.borders.keys() != fit.borders.keys():
+    if before.fit.borders.keys() != fit.borders.keys():
         return False
     return all(settings.links_of(chain.name) == chain.n for chain in before.problem.model.chains) and all(
         np.array_equal(borders, fit.borders[beam]) for beam, borders in before.fit.borders.items()
@@ -374,7 +311,7 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN, before: Mech
     """Make a scene ready on even elements or those of a ``fit``, with what is known from a mesh ``before`` of it.
 
     Raises:
-        SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
+        SceneError: the settings do not fit the scene.
     """
     known = None if before is None else before.problem.model
     if before is not None and known is not None and _cut_alike(before, settings, fit):
@@ -383,14 +320,10 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN, before: Mech
         model = build(scene, settings, fit, None if known is None else known.outset)
         clearances = clearances_of(scene, model)
     pairs = Made(scene.contacts, lambda name: _pair(scene, model, name, fit))
-    told = list(scene.contacts) if settings.formulation == "paper" else []
-    boundaries = Made(told, lambda name: _boundary(scene, model, pairs[name], settings))
-    for name in told:
-        _refused(scene, model, boundaries, name)
     stops = {name: stop_of(scene, model, name) for name in scene.stops}
     selves = [name for name, contact in scene.contacts.items() if isinstance(contact, SelfContact)]
     alone = Made(selves, lambda name: itself_of(scene, model, name, fit))
     closure = closure_of(model, hinges_of(scene, model), holds_of(scene, model))
     loads = dead_loads(scene, model) | end_moments(scene, model)
-    problem = Problem(model, closure, loads, *_formulations(pairs, boundaries, stops, clearances, alone))
-    return Mechanism(problem, pairs, boundaries, stops, fit, clearances, alone)
+    problem = Problem(model, closure, loads, *_formulations(pairs, stops, clearances, alone))
+    return Mechanism(problem, pairs, stops, fit, clearances, alone)

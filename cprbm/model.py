@@ -32,7 +32,6 @@ from cprbm.polynomial import ComplexArray, Places
 from cprbm.posture import Linear, points_of
 from cprbm.section import Section
 from cprbm.settings import Settings
-from cprbm.spacing import spaced
 from cprbm.standing import Attachment
 from cprbm_scene import Scene
 from cprbm_scene.answer import Array, Ints
@@ -405,12 +404,9 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN, known: Outset | Non
     chains: list[Chain] = []
     first_link = first_joint = 0
     for name, line in own.lines.items():
-        n, axis = settings.links_of(name), scene.beams[name].paper
-        if settings.formulation == "paper" and axis is not None:
-            edges, springs = spaced(line, n, axis.uniform)
-        else:
-            edges = line.length * (fit.borders[name] if name in fit.borders else _borders(own.bent.get(name, ()), n))
-            springs = 0.5 * (edges[1:] + edges[:-1])
+        n = settings.links_of(name)
+        edges = line.length * (fit.borders[name] if name in fit.borders else _borders(own.bent.get(name, ()), n))
+        springs = 0.5 * (edges[1:] + edges[:-1])
         s = np.empty(n + 2)
         s[0], s[1:-1], s[-1] = 0.0, springs, line.length
         chords, directions = line.chords(s)

@@ -132,12 +132,6 @@ def system(problem: Problem, point: Point, stiffness: float, shift: float) -> Sy
     low_rank = over_unknowns(model, point.state, point.at, [each.columns for each in curved])
     sigma = np.concatenate([NO_NUMBERS, *(each.sigma for each in curved)])
     added = np.zeros(len(sigma))
-    for each in curved:
-        if each.turning is not None:
-            links, quarter = each.columns.angles[0], 0.25 * each.turning
-            diagonal[links[:-1]] += quarter
-            diagonal[links[1:]] += quarter
-            off[links[:-1]] += quarter
     active = point.lam > 0.0
     if stiffness:
         low_rank = np.concatenate((low_rank, A_I[active]))

@@ -18,7 +18,6 @@ import numpy as np
 from cprbm import smooth
 from cprbm.beam_loads import spread_from
 from cprbm.closure import closure_forces
-from cprbm.forces import contact_forces
 from cprbm.mechanism import Mechanism
 from cprbm.model import Chain
 from cprbm.point import Point
@@ -50,20 +49,16 @@ def force_beyond(mechanism: Mechanism, point: Point, chain: Chain, s: Array) -> 
 def _forces(mechanism: Mechanism, point: Point, chain: Chain) -> list[tuple[Array, Array]]:
     """Places (k,) and forces (k, 2) on a beam, of contacts and of loads at places."""
     model, found = mechanism.problem.model, []
-    if mechanism.boundaries:  # forces of a fitted boundary act on joints
-        on = contact_forces(mechanism.problem, point)
-        found.append((chain.s, np.stack((on.fx[chain.joints], on.fy[chain.joints]), axis=1)))
-    else:
-        for group, lam in point.rows.shares(point.lam):
-            pressing = np.flatnonzero(lam)
-            if group.holds_angles or not pressing.size:
-                continue
-            pair, (fx, fy) = mechanism.pairs[group.contact], group.on_first(mechanism.pairs[group.contact].a)
-            pressed = pair.pressed(point.state, point.at, group.arc[pressing])
-            on_one = -lam[:, None] * np.stack((fx, fy), axis=1)
-            for of, (sign, places, _) in zip(pair.chains, pressed, strict=True):
-                if of is chain:
-                    found.append((np.asarray(places), sign * on_one[pressing]))
+    for group, lam in point.rows.shares(point.lam):
+        pressing = np.flatnonzero(lam)
+        if group.holds_angles or not pressing.size:
+            continue
+        pair, (fx, fy) = mechanism.pairs[group.contact], group.on_first(mechanism.pairs[group.contact].a)
+        pressed = pair.pressed(point.state, point.at, group.arc[pressing])
+        on_one = -lam[:, None] * np.stack((fx, fy), axis=1)
+        for of, (sign, places, _) in zip(pair.chains, pressed, strict=True):
+            if of is chain:
+                found.append((np.asarray(places), sign * on_one[pressing]))
     for load, value in point.work.on_beams:
         if not load.distributed and model.chains[load.chain] is chain:
             found.append((load.s, value * load.forces))

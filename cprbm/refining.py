@@ -56,8 +56,6 @@ MOVED = 0.02  # elements: ends that have moved less since the mesh was made are 
 def coarser(settings: Settings) -> tuple[Settings, ...]:
     """The meshes to go through, from the coarsest to the one that is asked."""
     family = [settings]
-    if settings.formulation == "paper":  # its boundary has the joints that the asked mesh has
-        return (settings,)
     while max(_counts(family[0])) > COARSEST:
         links = family[0].links
         fewer = _fewer(links) if isinstance(links, int) else {beam: _fewer(number) for beam, number in links.items()}
@@ -75,8 +73,6 @@ def _fewer(links: int) -> int:
 
 def all_zones(mechanism: Mechanism, point: Point) -> dict[str, tuple[Zone, ...]]:
     """The zones of every contact that is closed, places of their own among them."""
-    if mechanism.boundaries:
-        return {}
     closed = point.rows.pressing(point.lam)
     found = {name: zones_of(mechanism.pairs[name], point) for name in mechanism.pairs if name in closed}
     return {name: zones for name, zones in found.items() if zones}
@@ -113,8 +109,7 @@ def fitted(
         names = [name for name in ends if mechanism.pairs[name].a is chain]
         found = [(float(place), name) for name in names for place in ends[name]]
         found += _places_on(mechanism, pressed, chain)
-        if settings.formulation == "auto":
-            found += _forces_on(mechanism, chain)
+        found += _forces_on(mechanism, chain)
         if not found:
             continue
         n = settings.links_of(chain.name)

@@ -33,7 +33,6 @@ import numpy as np
 
 from cprbm.beam_loads import kinks
 from cprbm.energy import spring_moments
-from cprbm.forces import contact_forces
 from cprbm.mechanism import Mechanism
 from cprbm.model import Chain
 from cprbm.point import Point
@@ -56,8 +55,7 @@ def bending_moment(mechanism: Mechanism, point: Point, chain: Chain, s: Array) -
     at, jumps = _kinks(mechanism, point, chain)
     forces, distributed = _loads(mechanism, point, chain)
     springs, known = _kinked(at, jumps, chain.s[1:-1]), _kinked(at, jumps, s)
-    if not mechanism.boundaries:  # forces of a fitted boundary act on joints
-        springs += _evened(chain, at, jumps)
+    springs += _evened(chain, at, jumps)
     springs += _kinked(*forces, chain.s[1:-1]) + _evened(chain, *forces)
     known += _kinked(*forces, s)
     for c, J in zip(*distributed, strict=True):
@@ -151,13 +149,6 @@ def _kinks(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[Array, Arr
     """s_c and V of all contact forces on a beam but those of zones at whose ends M is parted, (k,) each."""
     places: list[float] = []
     jumps: list[float] = []
-    if mechanism.boundaries:
-        forces = contact_forces(mechanism.problem, point)
-        theta = point.state.theta[chain.links]
-        tangent = np.concatenate((theta[:1], 0.5 * (theta[1:] + theta[:-1]), theta[-1:]))
-        normal = forces.fy[chain.joints] * np.cos(tangent) - forces.fx[chain.joints] * np.sin(tangent)
-        pressed = np.flatnonzero(normal)
-        return chain.s[pressed], normal[pressed]
     for group, lam in point.rows.shares(point.lam):
         if group.holds_angles:
             continue  # a moment at an end is the moment there

@@ -20,7 +20,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, shape_of, with_half_waves
 from cprbm_scene.curves import SAMPLES, Array
 from cprbm_scene.mistakes import Mistake, broken, first_broken, written_place
-from cprbm_scene.units import NUMBER, STRESS, Length, Name, Number, Of, PositiveLength, Record
+from cprbm_scene.units import NUMBER, STRESS, Length, Measured, Name, Number, Of, PositiveLength, Record
 
 THINNEST, THICKEST = 1e-5, 0.2
 MOST_CURVED = 0.5
@@ -32,8 +32,8 @@ LARGEST_RATIO = 1e5
 class Material(Record):
     """Linear elastic, isotropic material: ``youngs_modulus`` in Pa, ``poisson_ratio`` a number."""
 
-    youngs_modulus: Annotated[float, Field(gt=0.0), STRESS]
-    poisson_ratio: Annotated[float, Field(gt=-1.0, le=0.5), NUMBER]
+    youngs_modulus: Annotated[float, Field(gt=0.0), Measured(STRESS)]
+    poisson_ratio: Annotated[float, Field(gt=-1.0, le=0.5), Measured(NUMBER)]
 
 
 PointName = Annotated[Name, Of("point")]

@@ -17,7 +17,9 @@ from cprbm_scene.units import (
     LENGTH,
     LINE_LOAD,
     MOMENT,
+    Angle,
     Direction,
+    Measured,
     Name,
     Named,
     Of,
@@ -132,8 +134,8 @@ class Stop(Record):
     beam: BeamName
     end: Literal["start", "end"]
     towards: PointName
-    least: Annotated[float, ANGLE] | None = None
-    most: Annotated[float, ANGLE] | None = None
+    least: Angle | None = None
+    most: Angle | None = None
 
     def rules(self) -> Iterator[Mistake]:
         """No limit, or limits in the wrong order."""
@@ -153,7 +155,7 @@ class Assembly(Record):
     an assembled state among several.  Contacts act throughout, stops as soon as the ends are at their points.
     """
 
-    moments: Annotated[Named[Annotated[float, MOMENT]], Of("beam")] = Field(default_factory=frozendict)
+    moments: Annotated[Named[Annotated[float, Measured(MOMENT)]], Of("beam")] = Field(default_factory=frozendict)
 
 
 class Moment(Record):

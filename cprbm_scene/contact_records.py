@@ -15,7 +15,7 @@ from cprbm_scene.curves import unit_vector
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.units import (
-    ANGLE,
+    Angle,
     Coefficients,
     Direction,
     Length,
@@ -272,7 +272,7 @@ class EllipseContact(RigidContact):
     kind: Literal["beam-ellipse"]
     center: Point
     semi_axes: tuple[PositiveLength, PositiveLength]
-    angle: Annotated[float, ANGLE] = 0.0
+    angle: Angle = 0.0
     side: Literal["outside", "inside"] = "outside"
 
     @property

@@ -183,8 +183,8 @@ def _or_expression(value: object, handler: ValidatorFunctionWrapHandler, info: V
     return value if expression else handler(value)
 
 
-Own = Annotated[float, _Own()]
-PositiveOwn = Annotated[float, Field(gt=0.0), _Own()]
+Own = Annotated[float, _Own(NUMBER)]
+PositiveOwn = Annotated[float, Field(gt=0.0), _Own(NUMBER)]
 
 
 class Tolerance(Record):

@@ -17,7 +17,7 @@ from cprbm_scene.units import (
     LENGTH,
     MOMENT,
     STRESS,
-    Following,
+    Measured,
     Name,
     Of,
     Positive,
@@ -94,7 +94,7 @@ def _of_value(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
     return reading.probes.get(str(probe))
 
 
-Station = Annotated[float, Following(_of_stage)]
+Station = Annotated[float, Measured(_of_stage)]
 _SEVERAL = {"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 2}]}
 
 
@@ -118,7 +118,7 @@ class Stage(Record):
     together: Annotated[tuple[Name, ...], Of("load", key="steps")] = ()
     stations: Annotated[tuple[Station, ...], Field(min_length=1, max_length=10_001)]
     shown: tuple[Station, ...] = ()
-    critical_limit: Annotated[float, Field(gt=0.0), Following(_of_stage)] | None = None
+    critical_limit: Annotated[float, Field(gt=0.0), Measured(_of_stage)] | None = None
     beyond: Literal["stop", "jump"] | None = None
 
     @model_validator(mode="before")
@@ -192,8 +192,8 @@ class Claim(Record):
 
     probe: str
     stage: Annotated[Name | None, Of("stage")] = None
-    station: Annotated[float, Following(_of_stations)] | None = None
-    value: Annotated[float, Following(_of_value)] | None = None
+    station: Annotated[float, Measured(_of_stations)] | None = None
+    value: Annotated[float, Measured(_of_value)] | None = None
     bound: Positive
     text: Text = ""
 

@@ -12,7 +12,7 @@ u              size of the file's unit over the SI unit: 1/1000 of mm, π/180 of
 A number x of a file is x·u_lengthᵃ·u_forceᵇ·u_angleᶜ·u_stressᵈ in SI, computed from the decimal digits of x and rounded
 once: 9.7 mm is 0.0097 m.  Only a file has units; a :class:`~cprbm_scene.statement.Scene` and every answer are in SI.
 
-A field states the unit as metadata, ``Annotated[float, Unit(length=1)]``.  The unit validates the file's number and
+A field states the unit as metadata, ``Annotated[float, Measured(Unit(length=1))]``.  The metadata validates the file's number and
 then converts the number by the :class:`Reading` in pydantic's context.  Without a context numbers are in SI.
 """
 
@@ -24,7 +24,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, NamedTuple, Self, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -34,15 +34,18 @@ from pydantic import (
     Field,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
+    ModelWrapValidatorHandler,
     StringConstraints,
+    ValidationError,
     ValidationInfo,
     ValidatorFunctionWrapHandler,
+    model_validator,
 )
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, SceneError
+from cprbm_scene.mistakes import Mistake, SceneError, in_words
 
 T = TypeVar("T")
 
@@ -74,6 +77,14 @@ class Record(BaseModel):
     """Immutable record with strict types, without unknown keys, with finite numbers only."""
 
     model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _in_words(cls, data: object, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        try:
+            return handler(data)
+        except ValidationError as error:
+            raise SceneError(list(in_words(error, data, cls.model_fields))) from None
 
     def rules(self) -> Iterator[Mistake]:
         """Mistakes between the record's own fields, with keys below the record's own; none by default."""
@@ -144,12 +155,45 @@ def mistake(found: str, allowed: str, key: str = "") -> SceneError:
     return SceneError([Mistake(key, found, allowed)])
 
 
-class Measured:
-    """Metadata of a field whose numbers have the unit ``of`` the place where a file is read."""
+class Unit(NamedTuple):
+    """Powers of length, force, angle and stress in a number's unit; without any a pure number."""
 
-    def of(self, reading: Reading, record: Mapping[str, Any]) -> Unit | None:
-        """The unit, by the fields of the ``record`` that are read already; None if unknown."""
-        raise NotImplementedError
+    length: int = 0
+    force: int = 0
+    angle: int = 0
+    stress: int = 0
+
+    @property
+    def dimension(self) -> tuple[int, int]:
+        """Powers of length and force: stress is force over the square of length, and an angle is a pure number."""
+        return self.length - 2 * self.stress, self.force + self.stress
+
+    def in_si(self, value: float, units: Units) -> float:
+        """A number of a file in SI.
+
+        Raises:
+            OverflowError: the number is above the largest floating-point number.
+        """
+        size = math.prod(SIZES[name] ** power for (_, name), power in zip(units, self, strict=True) if power)
+        return float(Fraction(repr(value)) * size) if size != 1 and math.isfinite(value) else value
+
+    def times(self, other: Unit, power: int = 1) -> Unit:
+        """Product with a power of another unit."""
+        return Unit(*(one + power * two for one, two in zip(self, other, strict=True)))
+
+    def __str__(self) -> str:
+        named = zip(("m", "N", "rad", "Pa"), self, strict=True)
+        return "*".join(f"{name}**{power}" if power != 1 else name for name, power in named if power)
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """Metadata of a field whose numbers have a ``unit``, or the unit by a rule from fields that are read already.
+
+    A rule returns None for an unknown unit.
+    """
+
+    unit: Unit | Callable[[Reading, Mapping[str, Any]], Unit | None]
 
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.with_info_wrap_validator_function(self.number, handler(source))
@@ -161,7 +205,7 @@ class Measured:
         """The number in SI; the field's bounds are on the file's number, or on the value of an expression."""
         if not isinstance(info.context, Reading):
             return handler(value)
-        unit = self.of(info.context, info.data)
+        unit = self.unit if isinstance(self.unit, Unit) else self.unit(info.context, info.data)
         number = info.context.in_si(value, unit)
         checked = handler(number if isinstance(value, str) else value)
         if unit is None or unit == NUMBER:
@@ -171,68 +215,17 @@ class Measured:
         raise PydanticCustomError("range", f"zero or a magnitude between {SMALLEST:g} and {LARGEST:g} in SI units")
 
 
-@dataclass(frozen=True, slots=True)
-class Unit(Measured):
-    """Powers of length, force, angle and stress in a number's unit; without any a pure number."""
-
-    length: int = 0
-    force: int = 0
-    angle: int = 0
-    stress: int = 0
-
-    @property
-    def powers(self) -> tuple[int, int, int, int]:
-        """Powers of length, force, angle and stress."""
-        return self.length, self.force, self.angle, self.stress
-
-    @property
-    def dimension(self) -> tuple[int, int]:
-        """Powers of length and force: stress is force over the square of length, and an angle is a pure number."""
-        return self.length - 2 * self.stress, self.force + self.stress
-
-    def of(self, reading: Reading, record: Mapping[str, Any]) -> Unit:
-        """The unit itself."""
-        return self
-
-    def in_si(self, value: float, units: Units) -> float:
-        """A number of a file in SI.
-
-        Raises:
-            OverflowError: the number is above the largest floating-point number.
-        """
-        size = math.prod(SIZES[name] ** power for (_, name), power in zip(units, self.powers, strict=True) if power)
-        return float(Fraction(repr(value)) * size) if size != 1 and math.isfinite(value) else value
-
-    def times(self, other: Unit, power: int = 1) -> Unit:
-        """Product with a power of another unit."""
-        return Unit(*(one + power * two for one, two in zip(self.powers, other.powers, strict=True)))
-
-    def __str__(self) -> str:
-        named = zip(("m", "N", "rad", "Pa"), self.powers, strict=True)
-        return "*".join(f"{name}**{power}" if power != 1 else name for name, power in named if power)
-
-
-@dataclass(frozen=True, slots=True)
-class Following(Measured):
-    """Unit of numbers by a ``rule`` from the units of other parts of the file."""
-
-    rule: Callable[[Reading, Mapping[str, Any]], Unit | None]
-
-    def of(self, reading: Reading, record: Mapping[str, Any]) -> Unit | None:
-        """The unit by the rule."""
-        return self.rule(reading, record)
-
-
 NUMBER = Unit()
 LENGTH, FORCE, ANGLE, STRESS = Unit(length=1), Unit(force=1), Unit(angle=1), Unit(stress=1)
 MOMENT, LINE_LOAD = Unit(length=1, force=1), Unit(length=-1, force=1)
 
-Number = Annotated[float, NUMBER]
-Length = Annotated[float, LENGTH]
-PositiveLength = Annotated[float, Field(gt=0.0), LENGTH]
-Positive = Annotated[float, Field(gt=0.0), NUMBER]
-Share = Annotated[float, Field(ge=0.0, le=1.0), NUMBER]
-PositiveShare = Annotated[float, Field(gt=0.0, le=1.0), NUMBER]
+Number = Annotated[float, Measured(NUMBER)]
+Length = Annotated[float, Measured(LENGTH)]
+Angle = Annotated[float, Measured(ANGLE)]
+PositiveLength = Annotated[float, Field(gt=0.0), Measured(LENGTH)]
+Positive = Annotated[float, Field(gt=0.0), Measured(NUMBER)]
+Share = Annotated[float, Field(ge=0.0, le=1.0), Measured(NUMBER)]
+PositiveShare = Annotated[float, Field(gt=0.0, le=1.0), Measured(NUMBER)]
 Point = tuple[Length, Length]
 
 

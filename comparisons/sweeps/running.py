@@ -167,7 +167,8 @@ def run(
     if journal is not None and journal.is_symlink():  # outcomes belong into the folder
         journal.unlink()
     wanted = {task.key: task for task in sweep.tasks}
-    outcomes = {key: found for key, found in sweep.outcomes.items() if key in wanted and not _again(found, limit)}
+    known = {key: sweep.outcomes[key] for key in wanted if key in sweep.outcomes}
+    outcomes = {key: found for key, found in known.items() if not _again(found, limit)}
     moved(len(outcomes))
     unknown = [task for key, task in wanted.items() if key not in outcomes]
     for task, outcome in _solved(unknown, workers, choices, solvers, limit):

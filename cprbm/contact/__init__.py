@@ -5,6 +5,7 @@
 * :mod:`cprbm.contact.closest`: points, closest points, boxes; :mod:`cprbm.contact.gap`: gap and derivatives;
 * :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
 * :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.own_pin`, :mod:`cprbm.contact.candidates`: contacts of a scene.
+* :mod:`cprbm.contact.law`: gaps that another law measures;
 * :mod:`cprbm.contact.contacts`: places and closed set of a state.
 """
 
@@ -14,6 +15,7 @@ from cprbm.contact.candidates import (
     fixed_places,
     joined,
     may_move,
+    places_at,
     sides_at_rest,
     taken,
 )
@@ -33,6 +35,7 @@ from cprbm.contact.gap import (
     gap_row,
     local_indices,
 )
+from cprbm.contact.law import Columns, Law
 from cprbm.contact.pairs import Pair
 from cprbm.contact.settling import (
     BOX_TESTS,
@@ -61,11 +64,13 @@ __all__ = [
     "TANGENT",
     "TOUCHING",
     "TURN",
+    "Columns",
     "Contacts",
     "Curve",
     "CurveArrays",
     "Frames",
     "Geometry",
+    "Law",
     "Pair",
     "Places",
     "Row",
@@ -86,6 +91,7 @@ __all__ = [
     "near_pairs",
     "new_counters",
     "open_contacts",
+    "places_at",
     "separations",
     "settle",
     "settle_near",

@@ -97,6 +97,8 @@ def _of_all_pairs(geometry: Geometry, z: Array, contacts: Contacts) -> Places:
 
 def _revised(geometry: Geometry, solved: Touched) -> Contacts | None:
     """Contacts with other places, or None if the places are right."""
+    if geometry.joints_alone:
+        return None
     contacts, places = solved.contacts, solved.contacts.places
     arcs, span = arc_of(geometry, places), geometry.arrays.span[places.piece]
     allowed = may_move(geometry, places)

@@ -8,6 +8,7 @@ path's tangent.  A moving place is an unknown; a closed moving place stands for 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -25,7 +26,7 @@ from cprbm.contact import (
     taken,
 )
 from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_of, new_work, pulls, solved_border
-from cprbm.equilibrium.iteration import begin_iteration, change_set, end_iteration
+from cprbm.equilibrium.iteration import begin_by_law, begin_iteration, change_set, end_iteration
 from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Ints
@@ -127,15 +128,18 @@ def solve_set(
     gaps, curvatures, room = np.empty(len(closed)), np.empty(len(closed)), np.zeros(len(closed))
     linear = z, m, driven, start.target, *pulls(system, springs), work
     settling = curves, places, closed, gaps, curvatures, room, contacts.counters
+    begin = begin_iteration if geometry.law is None else partial(begin_by_law, geometry.law)
     settle_near(z, *settling, FINDING)
     seen: dict[bytes, int] = {}
-    last = np.inf
+    last, free_changes = np.inf, FREE_CHANGES
     for iteration in range(1, iterations + 1):
-        most = 0 if iteration == 1 else len(closed) if iteration <= FREE_CHANGES else 1
-        changed, bordered, change, reduced = begin_iteration(*linear, *settling, geometry.columns, most)
+        most = 0 if iteration == 1 else len(closed) if iteration <= free_changes else 1
+        changed, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
         if changed:
             seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
-            if seen[closed.tobytes()] > RETURNS:
+            if seen[closed.tobytes()] > RETURNS and geometry.joints_alone and iteration <= free_changes:
+                free_changes, seen = iteration, {}
+            elif seen[closed.tobytes()] > RETURNS:
                 raise NotConvergedError("the set of closed places returns")
         try:
             factors = factors_of(system, driven, work, bordered)
@@ -151,6 +155,8 @@ def solve_set(
         if arrived and not changed:
             room[:] = 0.0
             settle_near(z, *settling, FINDING)
+            if geometry.law is not None:
+                geometry.law.write_gaps(z, places, gaps)
             if not change_set(curves, places, closed, gaps, geometry.columns, len(closed)):
                 settled = replace(contacts, places=places, closed=closed)
                 return Touched(replace(start, z=z), settled, factors, gaps, curvatures, iteration)

@@ -30,9 +30,9 @@ def bows():
     return hinge(beams=beams)
 
 
-def bent_hinge(formulation, scene):
+def bent_hinge(scene):
     """A mechanism close to contact, and a state."""
-    mechanism = mechanism_of(scene(), Settings(links={"beam1": 23, "beam2": 29}, formulation=formulation))
+    mechanism = mechanism_of(scene(), Settings(links={"beam1": 23, "beam2": 29}))
     problem = mechanism.problem
     start = point_at(problem, {}, rest_state(problem.model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
     return mechanism, equilibrium(problem, {"M": 0.43}, start, 1e-11, 30).point.state
@@ -45,10 +45,8 @@ def taper(*values):
 
 @pytest.fixture(
     params=[
-        partial(bent_hinge, "auto", hinge),
-        partial(bent_hinge, "paper", hinge),
-        partial(bent_hinge, "auto", bows),
-        partial(bent_hinge, "paper", bows),
+        partial(bent_hinge, hinge),
+        partial(bent_hinge, bows),
         partial(strip, neck, 0.01),
         partial(strip, neck, 0.01, held="T"),
         partial(strip, coil, 0.005),
@@ -97,13 +95,12 @@ def test_rows_are_derivatives_of_closures_and_gaps(bent):
         )
 
 
-@pytest.mark.parametrize("formulation", ["auto", "paper"])
-def test_rows_of_a_large_model_are_those_of_a_small_one(formulation, monkeypatch):
+def test_rows_of_a_large_model_are_those_of_a_small_one(monkeypatch):
     """Forces on joints are summed along the beams where a table of what hangs on what would be large."""
-    mechanism, state = bent_hinge(formulation, hinge)
+    mechanism, state = bent_hinge(hinge)
     small = mechanism.problem
     monkeypatch.setattr("cprbm.model.LARGE", 20)
-    large = mechanism_of(hinge(), Settings(links={"beam1": 23, "beam2": 29}, formulation=formulation)).problem
+    large = mechanism_of(hinge(), Settings(links={"beam1": 23, "beam2": 29})).problem
     none = np.zeros(small.closure.rows)
     one, other = (point_at(problem, {}, state, none, np.zeros(0), NO_ROWS) for problem in (small, large))
     assert small.model.hanging is not None

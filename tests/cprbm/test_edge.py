@@ -229,19 +229,15 @@ BENT = {
 }
 
 
-# the paper's form refuses corners that stand out
-@pytest.mark.parametrize(
-    ("kind", "formulation"),
-    [*((kind, "auto") for kind in BENT), *((k, "paper") for k in BENT if k not in {"line", "corner", "bump"})],
-)
+@pytest.mark.parametrize("kind", BENT)
 @pytest.mark.parametrize("moves", [False, True])
-def test_rows_and_blocks_are_derivatives(kind, moves, formulation):
+def test_rows_and_blocks_are_derivatives(kind, moves):
     # reference: central differences, at random states and with a pair whose places are where they happen to be
     scene = arch(turn=0.7 if moves else 0.0)
     contact = {**BENT[kind], "beam": "beam", "body": "wheel" if moves else "wall", "thick": True}
     edge = TypeAdapter(Contact).validate_python(contact, strict=False)
     scene = scene.model_copy(update={"contacts": {"edge": edge}})
-    problem = mechanism_of(scene, cprbm.Settings(links=13, formulation=formulation)).problem
+    problem = mechanism_of(scene, cprbm.Settings(links=13)).problem
     model = problem.model
     n = model.n_links
     random = np.random.default_rng(5)
@@ -261,7 +257,7 @@ def test_rows_and_blocks_are_derivatives(kind, moves, formulation):
     assert point.rows.size >= (1 if kind in {"corner", "bump"} else 4)
     keys = {key for _, key in point.rows.keys}
     # a place of its own: the second corner's
-    assert formulation == "paper" or (4 * (13 + 2) + 1 if kind == "corner" else -1) in keys
+    assert (4 * (13 + 2) + 1 if kind == "corner" else -1) in keys
     second = np.zeros((len(base), len(base)))
     for group, share in point.rows.shares(lam):
         blocks = group.curvature(share)
@@ -364,18 +360,6 @@ def test_related_joints_are_all_that_the_papers_form_holds():
     answer = cprbm.answer(few, cprbm.Settings(links=20, formulation="paper"))
     assert answer.ending is Ending.BEAMS_CROSSED
     assert "in contact 'edge'" in answer.sentence
-
-
-@pytest.mark.parametrize(
-    ("joint", "end", "held"),
-    [("pin", "start", (1, 20)), ("pin", "end", (1, 20)), ("weld", "start", (2, 20)), ("weld", "end", (1, 19))],
-)
-@pytest.mark.parametrize("turn", [0.0, 0.7])
-def test_the_papers_form_holds_every_joint_that_can_move_against_the_edge(joint, end, held, turn):
-    # neither the beam's ends nor the joint on a link that is welded to the edge's own body, which stays where it is
-    scene = arch(joint=joint, end=end, turn=turn)
-    boundary = mechanism_of(scene, cprbm.Settings(links=20, formulation="paper")).boundaries["edge"]
-    assert (boundary.joints[0], boundary.joints[-1]) == held
 
 
 def beside(contact):

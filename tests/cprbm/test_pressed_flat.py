@@ -7,7 +7,6 @@ import cprbm
 from cprbm.kinematics import positions, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.model import Fit
-from cprbm.rigid_edge import rigid_edge
 from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, drives_of
 
@@ -95,14 +94,3 @@ def test_a_pull_along_it_moves_nothing(gap):
     assert values["R.reaction"] == pytest.approx(turned(-FORCE, 0.0), rel=1e-12)
     assert values["R.reaction_moment"][0] == pytest.approx(0.0, abs=1e-9 * FORCE * LENGTH)
     assert values["edge.force"][0] == pytest.approx(0.0, abs=1e-9 * FORCE)
-
-
-@pytest.mark.parametrize("block", [False, True])
-@pytest.mark.parametrize(("clamped", "fixed"), [("start", 1), ("end", 9)])
-def test_in_the_papers_form_the_joint_beside_the_clamp_is_none_of_the_contacts(clamped, fixed, block):
-    # reference: the spring next to a clamp stands still, on a rigid link, against what is of the clamp's body
-    scene = pressed(clamped, 0.37, block=block)
-    mechanism = mechanism_of(scene, cprbm.Settings(links=9, formulation="paper"))
-    joints = set(rigid_edge(scene, mechanism.problem.model, mechanism.pairs["edge"]).joints.tolist())
-    assert fixed not in joints
-    assert 10 - fixed in joints

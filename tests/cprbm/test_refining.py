@@ -36,10 +36,9 @@ def test_many_links_are_reached_through_quarters_and_few_at_once():
     assert all(fine <= 4 * coarse for coarse, fine in pairwise(family))
 
 
-def test_beams_with_few_links_keep_some_and_the_papers_meshes_are_not_coarsened():
+def test_beams_with_few_links_keep_some():
     family = coarser(Settings(links={"beam1": 3000, "beam2": 30}))
     assert [s.links_of("beam2") for s in family] == [8, 8, 8, 30]
-    assert coarser(Settings(links=3000, formulation="paper")) == (Settings(links=3000, formulation="paper"),)
 
 
 def test_borders_stand_where_zones_end_and_elements_are_even_between():

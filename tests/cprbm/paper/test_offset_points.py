@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cprbm import offset_points
-from cprbm.offset_points import joint_places, joints_on
+from cprbm.paper.offset_points import joint_places, joints_on
 from cprbm_scene import Arc, Polynomial, Spacing
 
 PARABOLA = Polynomial(kind="polynomial", axis="x", coefficients=(10.0, 0.0, -0.06), range=(-10.0, 10.0))
