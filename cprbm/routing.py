@@ -1,8 +1,7 @@
 """Which edition answers a scene.
 
-The second edition answers every scene without contacts, and contacts in the theories ``stretch`` and ``shear``.  Its
-places of contact lie on beams alone: a rigid edge with a corner, an end or a feature smaller than a link may press
-between two places.  Such contacts, all contacts in ``bending`` and in the formulation ``paper`` keep the first edition.
+The second edition answers every scene without contacts, contacts between beams, of a beam with itself, and on even edges.
+A rigid edge with a corner, an end or a feature smaller than a link keeps the first edition.
 """
 
 from __future__ import annotations
