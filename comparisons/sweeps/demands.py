@@ -26,9 +26,9 @@ from comparisons.display_units import file_unit
 from comparisons.quantities import COMPONENTS, unit_of
 from comparisons.sweeps.outcome import Outcome
 from cprbm_scene import Mistake, Scene, SceneError
+from cprbm_scene.mistakes import first_of
 from cprbm_scene.reading import toml_data
 from cprbm_scene.statement import Record
-from cprbm_scene.wording import in_words
 
 
 class Goal(Record):
@@ -152,7 +152,7 @@ def read_demands(path: Path) -> Demands:
     try:
         demands = Demands.model_validate(data)
     except ValidationError as error:
-        mistakes = [in_words(details, Demands) for details in error.errors()]
+        mistakes = first_of(each for details in error.errors() for each in details["ctx"]["error"].mistakes)
     else:
         records: dict[str, Goal | Limit] = {f"limits[{place}]": each for place, each in enumerate(demands.limits)}
         records |= {} if demands.goal is None else {"goal": demands.goal}

@@ -3,6 +3,7 @@
 * :mod:`cprbm.contact.curve`: pieces, linear in the positions of nodes;
 * :mod:`cprbm.contact.compliance`: compliance lost by a chain under a point force;
 * :mod:`cprbm.contact.closest`: points, closest points, boxes; :mod:`cprbm.contact.gap`: gap and derivatives;
+* :mod:`cprbm.contact.corners`, :mod:`cprbm.contact.edges`: corners of rigid solids, places at corners;
 * :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
 * :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.own_pin`, :mod:`cprbm.contact.candidates`: contacts of a scene.
 * :mod:`cprbm.contact.law`: gaps that another law measures;
@@ -15,13 +16,15 @@ from cprbm.contact.candidates import (
     fixed_places,
     joined,
     may_move,
+    on_edge,
     places_at,
     sides_at_rest,
     taken,
 )
 from cprbm.contact.closest import curve_point, lost_at
 from cprbm.contact.contacts import TOUCHING, Contacts, open_contacts, touching_as_drawn
-from cprbm.contact.curve import STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
+from cprbm.contact.curve import BEND, CORNER, STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
+from cprbm.contact.edges import corner_sides, left_corner
 from cprbm.contact.gap import (
     COUPLING,
     GRADIENT,
@@ -42,6 +45,7 @@ from cprbm.contact.settling import (
     GAPS,
     SEARCHES,
     choose_sides,
+    find_bends,
     find_feet,
     move_places,
     near_pairs,
@@ -53,7 +57,9 @@ from cprbm.contact.settling import (
 )
 
 __all__ = [
+    "BEND",
     "BOX_TESTS",
+    "CORNER",
     "COUPLING",
     "GAPS",
     "GRADIENT",
@@ -77,19 +83,23 @@ __all__ = [
     "beam_curve",
     "choose_sides",
     "contact_geometry",
+    "corner_sides",
     "curve_arrays",
     "curve_point",
+    "find_bends",
     "find_feet",
     "fixed_places",
     "gap_frame",
     "gap_row",
     "joined",
+    "left_corner",
     "local_indices",
     "lost_at",
     "may_move",
     "move_places",
     "near_pairs",
     "new_counters",
+    "on_edge",
     "open_contacts",
     "places_at",
     "separations",

@@ -33,7 +33,7 @@ from cprbm.continuation.closing import (
     pair_name,
     pressing_names,
 )
-from cprbm.continuation.critical import CriticalPoint, contact_opens, critical_point, opened
+from cprbm.continuation.critical import CriticalPoint, contact_opens, contact_slips, critical_point, opened
 from cprbm.continuation.descent import descend
 from cprbm.continuation.jumps import jumped
 from cprbm.continuation.limits import StopChange, changed, first_event
@@ -255,7 +255,7 @@ class Driver:
         Raises:
             StepError: the solve ends.
         """
-        point = contact_opens(trail, t) or critical_point(trail, t, self._moving(way))
+        point = contact_opens(trail, t) or contact_slips(trail, t) or critical_point(trail, t, self._moving(way))
         if point is None:
             point = self._locked(way, t, trail, refused)
         return self._leave(way, point, beyond)

@@ -17,9 +17,11 @@ from cprbm.contact import (
     Geometry,
     Places,
     choose_sides,
+    find_bends,
     fixed_places,
     joined,
     near_pairs,
+    on_edge,
     separations,
     settle_near,
     sweeps_any_circle,
@@ -42,6 +44,9 @@ ARRIVED = 1e-6
 
 FINDING = 40
 """Iterations of moving places on a frozen state."""
+
+ROUNDS = 5
+"""Rounds from chord to chord for the place of a bend."""
 
 REACH = 0.1
 """Distance of two boxes, over the longest beam, up to which a pair has places."""
@@ -69,16 +74,20 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     near[old.pair[contacts.closed]] = True
     near[list(contacts.kept_open)] = False
     fixed = fixed_places(geometry, z, contacts.sides, near, contacts.counters)
-    known = {_identity(old, k): k for k in range(len(old.pair)) if not old.moves[k]}
-    closed = np.zeros(len(fixed.pair), dtype=bool)
+    moving = old.moves & ~on_edge(geometry.arrays, old)
+    find_bends(z, geometry.arrays, fixed, ROUNDS)
+    known = {_identity(old, k): k for k in np.flatnonzero(~moving).tolist()}
+    closed, corner = np.zeros(len(fixed.pair), dtype=bool), on_edge(geometry.arrays, fixed)
     for k in range(len(closed)):
         before = known.get(_identity(fixed, k))
         if before is not None and contacts.closed[before]:
             closed[k], fixed.force[k] = True, old.force[before]
+            fixed.piece[k], fixed.xi[k] = old.piece[before], old.xi[before]
             fixed.foot[k], fixed.eta[k], fixed.side[k] = old.foot[before], old.eta[before], old.side[before]
     choose_sides(z, geometry.arrays, fixed)
-    both = joined(fixed, taken(old, old.moves))
-    return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[old.moves]]))
+    fixed.side[corner] = contacts.corner_sides[fixed.curve[corner]]
+    both = joined(fixed, taken(old, moving))
+    return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[moving]]))
 
 
 def passed_through(geometry: Geometry, before: Array, old: Places, after: Array, new: Places, counters: Ints) -> bool:
@@ -98,7 +107,9 @@ def passed_through(geometry: Geometry, before: Array, old: Places, after: Array,
 
 
 def _identity(places: Places, k: int) -> tuple[int, int, int, float]:
-    return int(places.pair[k]), int(places.curve[k]), int(places.piece[k]), float(places.xi[k])
+    """Pair, curve, piece and parameter of a place; a bend has a single place."""
+    piece, xi = (-1, 0.0) if places.moves[k] else (int(places.piece[k]), float(places.xi[k]))
+    return int(places.pair[k]), int(places.curve[k]), piece, xi
 
 
 def solve_set(
@@ -164,5 +175,7 @@ def solve_set(
 
 
 def arc_of(geometry: Geometry, places: Places) -> Array:
-    """Arc lengths of places on their own curves."""
-    return np.asarray(geometry.arrays.arc[places.piece] + places.xi * geometry.arrays.span[places.piece])
+    """Arc lengths of places on their beams: of the feet of corners."""
+    corner = on_edge(geometry.arrays, places)
+    piece, at = np.where(corner, places.foot, places.piece), np.where(corner, places.eta, places.xi)
+    return np.asarray(geometry.arrays.arc[piece] + at * geometry.arrays.span[piece])

@@ -182,8 +182,17 @@ def touching_places(view: View) -> dict[str, Array]:
 
 
 def states_of_contacts(view: View, forces: PointForces, touching: Mapping[str, Array]) -> Mapping[str, ContactState]:
-    """States of all contacts; a force that a clamp shares with the contact beside it is indeterminate."""
+    """States of all contacts.
+
+    A force that a clamp, or a moment at an own pin, shares with the contact beside it is indeterminate.
+    """
     units = view.mechanism.units
     states = contact_states(view.scene.contacts, forces, touching, (units.length, units.force))
-    shared = {name: any(each.share for each in pressed(view, name)) for name in view.scene.contacts}
+    shared = {name: _is_shared(view, name) for name in view.scene.contacts}
     return {name: replace(state, indeterminate=shared[name]) for name, state in states.items()}
+
+
+def _is_shared(view: View, contact: str) -> bool:
+    """True if a joint beside a weld or an own pin takes a part of the force."""
+    found = pressed(view, contact)
+    return any(each.share for each in found) or (bool(found) and any(True for _ in pin_moments(view, contact)))

@@ -4,16 +4,7 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm import newton
-from cprbm.first_contact import NO_ROWS
-from cprbm.first_equilibrium import equilibrium
-from cprbm.kinematics import State, positions, rest_state
-from cprbm.local import Solved, local_step
-from cprbm.march import March
-from cprbm.mechanism import mechanism_of
-from cprbm.newton import system
-from cprbm.point import contact_gradient, contact_rows, point_at
-from cprbm_scene import Ending, Profile, scene_from
+from cprbm_scene import Profile, scene_from
 from tests.cprbm.scenes import cantilever_data, drives_of, force
 from tests.references.wrapped import Wrapped
 
@@ -85,19 +76,6 @@ def test_a_wrap_over_most_of_the_beam(truth, links):
     check(errors_of(links, truth), links, share=0.015)
 
 
-def test_the_stress_along_a_wrap(truth):
-    # reference: on the circle the beam has its radius and half a thickness; forces at joints bend links in between
-    links, probe = 37, {"of": "beam", "quantity": "bending_stress", "points": 197}
-    got = solved(truth.force, links, probes=[probe]).values["beam.bending_stress"]
-    s = np.linspace(0.0, truth.length, len(got))
-    bent = 0.5 * truth.youngs_modulus * truth.thickness / (RADIUS + 0.5 * truth.thickness)
-    on_circle = s < truth.wrap_length - truth.length / links
-    assert got[on_circle] == pytest.approx(-bent, rel=10.0 / links**2)
-    # the force at lift-off acts at a joint beside the end
-    inside = s < truth.wrap_length - 5.0 * truth.length / links
-    assert got[inside] == pytest.approx(-bent, rel=1.0 / links**2)
-
-
 @pytest.mark.parametrize("load", [43.0, 67.0, 97.0, 137.0])
 @pytest.mark.parametrize("links", [21, 40])
 def test_forces_and_ends_at_other_loads(load, links):
@@ -131,29 +109,6 @@ def test_one_point_of_a_circle_under_the_beams_middle():
     values = solved(load, 60, radius=small, center=center).values
     assert values["circle.force"][0] == pytest.approx(load * (3.0 * length - a) / (2.0 * a), rel=2e-3)
     assert values["circle.centre"][0] == pytest.approx(a, abs=1e-4 * length)
-
-
-@pytest.mark.parametrize("share", [0.43, 0.71])
-def test_joints_beside_a_place_of_its_own_have_no_rows(share):
-    # reference: where the circle's middle is below a beam that is pressed on it in a point, and hardly bent
-    center = [share * BEAM["length"], -0.003 - BEAM["thickness"] / 2.0]
-    march = March(scene_of([0.007], radius=0.003, center=center), (cprbm.Settings(links=19),))
-    assert march.run()[0].name == "COMPLETED"
-    rows, lam = march.on.point.rows, march.on.point.lam
-    (pressing,) = np.flatnonzero(lam > 0.0)
-    away = np.abs(rows.arc - share) * 19
-    assert away[pressing] < 0.1
-    assert np.delete(away, pressing).min() == pytest.approx(3.0, abs=0.5)
-    assert rows.size > 3
-
-
-def test_both_forms_of_newtons_system_give_one_answer(monkeypatch, truth):
-    few = solved(truth.force, 40)
-    monkeypatch.setattr(newton, "MANY", 0)
-    many = solved(truth.force, 40)
-    for name, value in few.values.items():
-        assert many.values[name] == pytest.approx(value, rel=1e-8, abs=1e-8 * np.max(np.abs(value)))
-    assert many.certificate.smallest_curvature == pytest.approx(few.certificate.smallest_curvature, rel=1e-6)
 
 
 def test_nothing_presses_below_the_closing_load_and_the_circle_does_above(truth):
@@ -222,105 +177,6 @@ def tapered(scene, *values):
     thickness = Profile(**size, values=tuple(BEAM["thickness"] * value for value in values))
     beam = scene.beams["beam"].model_copy(update={"thickness": thickness})
     return scene.model_copy(update={"beams": {"beam": beam}})
-
-
-@pytest.fixture(params=["fixed", "moving", "tapered", "pinned"])
-def bent(request):
-    scene = scene_of([60.0])
-    place = request.param
-    if place == "tapered":  # with a corner that stands out, at 0.6 of the length
-        scene = tapered(scene, 1.0, 0.8, 0.8, 0.9, 0.6, 0.5)
-    if place == "pinned":  # where the row moves with the minimum
-        pin = {"radius": 0.0031, "center": [0.43 * BEAM["length"], -0.0037]}
-        scene = tapered(scene_of([60.0], **pin), 1.0, 0.5)
-    if place == "moving":  # with the tip, about which nothing is real but the derivatives
-        moving = scene.contacts["circle"].model_copy(update={"body": "tip"})
-        scene = scene.model_copy(update={"contacts": {"circle": moving}})
-    mechanism = mechanism_of(scene, cprbm.Settings(links=23))
-    problem = mechanism.problem
-    model = problem.model
-    start = point_at(problem, {}, rest_state(model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
-    point = equilibrium(problem, {"P": 60.0}, start, 1e-11, 30).point
-    random = np.random.default_rng(99)
-    state = State(point.state.theta + 0.001 * random.standard_normal(model.n_links), point.state.bodies)
-    mu = random.standard_normal(problem.closure.rows)
-    moved = point_at(problem, {"P": 60.0}, state, mu, np.zeros(0), NO_ROWS)
-    lam = 0.5 + random.random(moved.rows.size)
-    return problem, point_at(problem, {"P": 60.0}, state, mu, lam, moved.rows)
-
-
-def test_derivatives_of_gaps_and_of_the_lagrangian(bent):
-    problem, point = bent
-    n = problem.model.n_links
-    q = np.concatenate((point.state.theta, point.state.bodies.ravel()))
-
-    def at(values):
-        state = State(values[:n], values[n:].reshape(-1, 3))
-        there = point_at(problem, {"P": 60.0}, state, point.mu, point.lam, point.rows)
-        assert there.rows.size == point.rows.size
-        return there.gradient + there.A_E.T @ point.mu + contact_gradient(problem.model, there), there
-
-    random = np.random.default_rng(5)
-    found = system(problem, point, 0.0, 0.0)
-    model = problem.model
-    for _ in range(3):
-        d = random.standard_normal(len(q))
-        d[problem.closure.fixed] = 0.0
-        (plus, ahead), (minus, behind) = at(q + STEP * d), at(q - STEP * d)
-        gaps = (ahead.rows.values - behind.rows.values) / (2 * STEP)
-        assert gaps == pytest.approx(contact_rows(model, point) @ d, rel=1e-6, abs=1e-7)
-        product = (plus - minus) / (2 * STEP)
-        product[problem.closure.fixed] = 0.0
-        r = found.n_base - problem.closure.rows - 3
-        low = slice(3, 3 + r)
-        border, corner = found.factors.border, found.factors.corner
-        s = -np.linalg.solve(corner[low, low], border[:, low].T @ d[:n] + corner[low, :3] @ d[n:])
-        upper = found.factors.tridiagonal.times(d[:n, None])[:, 0] + border[:, :3] @ d[n:] + border[:, low] @ s
-        lower = border[:, :3].T @ d[:n] + corner[:3, :3] @ d[n:] + corner[:3, low] @ s
-        assert np.concatenate((upper, lower)) == pytest.approx(product, rel=1e-5, abs=1e-5 * np.max(np.abs(product)))
-
-
-def test_both_forms_of_newtons_system_make_one_step_with_two_circles_that_move():
-    # reference: the form without the joints' and the centres' positions among its unknowns
-    contacts = {
-        name: {
-            "kind": "beam-circle",
-            "beam": "beam",
-            "body": "tip",
-            "center": [at * BEAM["length"], below],
-            "radius": r,
-        }
-        for name, at, below, r in (("one", 0.43, -0.0097, 0.0072), ("other", 0.71, -0.0113, 0.0081))
-    }
-    scene = scene_of([1.0], contacts=contacts, probes=[{"of": "one", "quantity": "force"}])
-    problem = mechanism_of(scene, cprbm.Settings(links=17)).problem
-    model, random = problem.model, np.random.default_rng(12)
-    rest = rest_state(model)
-    state = State(rest.theta + 0.02 * random.standard_normal(model.n_links), rest.bodies)
-    mu = random.standard_normal(problem.closure.rows)
-    rows = problem.formulation(state, positions(model, state), NO_ROWS)
-    assert {name for name, _ in rows.keys} == {"one", "other"}
-    point = point_at(problem, {"P": 0.7}, state, mu, 0.5 + random.random(rows.size), rows)
-    one, other = newton.newton_step(problem, point), local_step(newton.local_system_at(problem, point), point.lam > 0.0)
-    for mine, theirs in zip(one, other, strict=True):
-        assert mine == pytest.approx(theirs, rel=1e-7, abs=1e-7 * np.max(np.abs(mine), initial=0.0))
-
-
-def test_a_set_that_differs_by_some_rows_is_solved_by_a_border_to_the_factors_of_another():
-    # reference: factors of its own; rows come and go, and what is held does not move
-    march = March(scene_of([191.0]), (cprbm.Settings(links=80),))
-    assert march.run()[0] is Ending.COMPLETED
-    problem, point = march.on.mechanism.problem, march.on.point
-    whole = newton.local_system_at(problem, point)
-    m = point.rows.size
-    before = np.arange(m) % 3 == 0
-    found = Solved(whole, before)
-    for active in (before, before | (np.arange(m) % 6 == 1), np.arange(m) % 6 == 0, np.arange(m) % 6 == 1):
-        mine, theirs = found.changed_to(active), Solved(whole, active).changed_to(active)
-        change, pressing = whole.change(theirs[0]), theirs[1]
-        assert whole.change(mine[0]) == pytest.approx(change, rel=1e-7, abs=1e-7 * np.max(np.abs(change)))
-        assert mine[1] == pytest.approx(pressing, rel=1e-6, abs=1e-6 * np.max(np.abs(pressing)))
-        assert not mine[1][~active].any()
 
 
 def hanging(reference, hold):

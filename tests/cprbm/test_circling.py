@@ -4,9 +4,6 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm.first_contact import NO_ROWS
-from cprbm.kinematics import positions, rest_state
-from cprbm.mechanism import mechanism_of
 from cprbm_scene import scene_from
 
 BEAM = {
@@ -88,16 +85,3 @@ def test_a_zone_shorter_than_an_element_is_a_point_in_it(turning, links):
     assert 4.0 * 0.095 / 320 < end - begin < 0.095 / links
     assert found[0] == found[1]
     assert begin < found[0] < end
-
-
-def test_steady_rows_stand_at_joints_and_ends_alone(turning):
-    mechanism = mechanism_of(turning, cprbm.Settings(links=40))
-    problem = mechanism.problem
-    state = rest_state(problem.model)
-    at = positions(problem.model, state)
-    moving, steady = (rows(state, at, NO_ROWS) for rows in (problem.formulation, problem.steady))
-    assert ("circle", -1) in moving.keys
-    assert steady.size
-    assert ("circle", -1) not in steady.keys
-    arcs = mechanism.pairs["circle"].a.s
-    assert all(np.min(np.abs(arcs - arc)) < 1e-12 for arc in steady.arc)

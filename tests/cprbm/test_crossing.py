@@ -5,12 +5,6 @@ import pytest
 
 import cprbm
 import elastica_reference
-from cprbm.crossing import cross
-from cprbm.first_contact import NO_ROWS
-from cprbm.first_equilibrium import equilibrium
-from cprbm.kinematics import rest_state
-from cprbm.mechanism import mechanism_of
-from cprbm.point import point_at
 from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
 
@@ -19,31 +13,6 @@ UNIT = RIGIDITY / LENGTH**2
 
 def line(*points):
     return np.array(points, dtype=float)
-
-
-@pytest.mark.parametrize("piece", [0, 63, 64, 150, 198])
-def test_a_crossing_is_found_in_whichever_piece_of_long_lines_it_is(piece):
-    """By construction: a straight line of 199 pieces, and a cut across the middle of one of them."""
-    x = np.linspace(0.0, 1.0, 200)
-    line = np.stack((x, np.zeros(200)), axis=1)
-    across = np.stack((np.full(200, 0.5 * (x[piece] + x[piece + 1])), np.linspace(-0.31, 0.47, 200)), axis=1)
-    assert cross(line, across)
-    assert cross(across, line)
-    short = across[across[:, 1] > 0.0]
-    assert not cross(line, short)
-    assert not cross(short, line)
-
-
-def test_lines_cross_where_a_piece_of_each_has_the_others_ends_on_both_sides():
-    # references: by sight
-    bent = line((0.0, 0.0), (1.0, 0.1), (2.0, -0.3), (3.0, 0.0))
-    assert cross(bent, line((1.4, -1.0), (1.6, 1.0)))
-    assert cross(line((9.0, 9.0), (1.4, -1.0), (1.6, 1.0)), bent)
-    # above one end and below the other, but round it
-    assert not cross(bent, line((2.5, 1.0), (3.2, 0.5), (3.2, -0.5), (2.5, -1.0)))
-    # each continued would meet the other
-    assert not cross(line((0.0, 0.0), (1.0, 0.0)), line((0.5, 0.1), (0.5, 2.0)))
-    assert not cross(line((0.0, 0.0), (1.0, 0.0)), line((2.0, -1.0), (2.0, 1.0)))
 
 
 def beside_another(other, pressed, stations, *, thick, thicker=1.0):
@@ -113,19 +82,3 @@ def test_a_beam_is_drawn_over_the_root_of_another_that_stands_between_its_arms(e
         ((0.5 if end[0] > 0.4 else 0.45, -0.05), end), pressed, [3.0 * UNIT, 15.0 * UNIT], thick=thick
     )
     check(scene, links)
-
-
-@pytest.mark.parametrize(
-    ("begin", "end", "through"), [((1.5, -0.1), (0.5, -0.1), True), ((1.5, -0.1), (1.2, -0.1), False)]
-)
-def test_a_step_that_leads_through_a_beam_is_told_from_one_round_its_end(begin, end, through):
-    """A tip goes down by 0.7 of its beam's length, through another or past its end."""
-    pressed = {"kind": "force", "point": "T", "direction": [0.0, -1.0]}
-    mechanism = mechanism_of(beside_another((begin, end), pressed, [UNIT], thick=True), cprbm.Settings(links=20))
-    apart, pair = mechanism.without("contact"), mechanism.pairs["contact"]
-    rest = point_at(apart, {}, rest_state(apart.model), np.zeros(apart.closure.rows), np.zeros(0), NO_ROWS)
-    bent = equilibrium(apart, {"P": 4.7 * UNIT}, rest, 1e-11, 50)
-    assert bent.converged
-    for point in (rest, bent.point):
-        assert pair.least_gap(point.state, point.at) > 0.0
-    assert mechanism.passed(rest, bent.point) == ("contact" if through else "")

@@ -240,14 +240,3 @@ def test_a_fitted_boundary_leaves_a_moment_and_the_answer_says_so():
 def test_a_contact_that_never_closes_is_named():
     answer = cprbm.answer(hinge(stages=[{"name": "load", "steps": "M", "stations": [0.1]}]))
     assert answer.notes == ("contact 'contact' never closed at a station",)
-
-
-def test_a_gap_between_places_that_cannot_move_is_no_unknown():
-    from cprbm.complementarity import pressing
-
-    G = np.array([[2.0, 0.0], [0.0, 0.0]])
-    lam, active = pressing(G, np.array([1.0, -0.3]), np.zeros(2, dtype=bool))
-    assert lam == pytest.approx([0.5, 0.0])
-    assert active.tolist() == [True, False]
-    with pytest.raises(np.linalg.LinAlgError, match="nothing yields"):
-        pressing(G, np.array([1.0, 0.3]), np.zeros(2, dtype=bool))

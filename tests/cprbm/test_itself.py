@@ -1,202 +1,18 @@
 """Contact of a beam with itself: which parts face each other, from where, with what force; necks and rolls."""
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
 import cprbm
-from cprbm.closest import REACH
-from cprbm.crossing import own_crossings
-from cprbm.first_contact import NO_ROWS, Rows
-from cprbm.kinematics import State, positions
-from cprbm.local import local_step
-from cprbm.newton import local_system_at, newton_step
-from cprbm.point import contact_gradient, point_at
 from cprbm_scene import Ending, SceneError, scene_from
 from tests.cprbm import necks
-from tests.cprbm.rolled import MODULUS, NARROWS, THICKNESS, WIDTH, coil, hooked, nearly_closed, neck, roll, strip
+from tests.cprbm.rolled import MODULUS, NARROWS, THICKNESS, WIDTH, roll
 from tests.references import rolled as rolled_strip
 from tests.references.pressed_column import closed, closing, curvatures
 
 FORCE = 100.0  # P, E·I/L²
-
-
-def faced(angle, thickness, **settings):
-    mechanism, state = strip(angle, thickness, **settings)
-    at = positions(mechanism.problem.model, state)
-    pair = mechanism.pairs["lap"]
-    return pair, state, at, pair.facing(state, at)
-
-
-@pytest.mark.parametrize("turns", [0.2, 0.49, 0.9, 0.99])
-@pytest.mark.parametrize("links", [12, 40])
-def test_an_arc_does_not_touch_itself_however_thick(turns, links):
-    # reference: of the places of a circle the diametral one is the farthest, and those beside are parts of the same;
-    # only its ends may come near each other, head-on, and are a chord apart
-    pair, state, at, found = faced(lambda s: 2.0 * np.pi * turns * s, 0.09, links=links)
-    assert found.strands == ()
-    assert found.tip is None
-    chord = np.sin(np.pi * turns) / (np.pi * turns)
-    expected = chord - 0.09 if turns > 0.25 else np.inf
-    assert pair.least_gap(state, at) == pytest.approx(expected, abs=3.0 / links**2)
-    rows = [group.values for group in pair.groups(state, at)]
-    assert len(rows) == (chord < 0.09 + REACH and turns > 0.5)
-    assert rows == [] or rows[0] == pytest.approx([-expected], abs=3.0 / links**2)
-    elsewhere = replace(at, x=at.x + 0.217, y=at.y - 0.374)
-    assert pair.least_gap(state, elsewhere) == pytest.approx(expected, abs=3.0 / links**2)
-
-
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_what_has_turned_there_and_back_lies_beyond_something_else(sign):
-    # an S of three strands: the outer two run the same way, and neither faces the other; reference: by sight
-    def angle(s):
-        return sign * np.interp(s, (0.0, 0.3, 0.35, 0.65, 0.7, 1.0), (0.0, 0.0, np.pi, np.pi, 0.0, 0.0))
-
-    _, _, _, found = faced(angle, 0.002, links=240)
-    assert {strand.turns for strand in found.strands} == {1, -1}
-    for strand in found.strands:
-        # on the inside of either bend, which is on its left where it turns to the left
-        assert strand.side == strand.turns
-        assert np.min(strand.D) == pytest.approx(0.05 * 2.0 / np.pi, rel=0.01)
-
-
-@pytest.mark.parametrize("mirrored", [1.0, -1.0])
-@pytest.mark.parametrize("backwards", [False, True])
-def test_from_which_side_strands_face_each_other(mirrored, backwards):
-    # references: by sight; a coil's last part lies inside, on the left of its beginning if it turns to the left; drawn
-    # from the other end the coil turns on to the left, and its first part lies inside
-    def turned(angle):
-        return lambda s: mirrored * (angle(1.0) - angle(1.0 - s) if backwards else angle(s))
-
-    bent = faced(turned(neck), 0.01)[3]
-    (strand,) = bent.strands
-    assert (strand.side, strand.turns) == (-mirrored, -1 * mirrored)
-    wound = faced(turned(coil), 0.005)[3]
-    side = mirrored if backwards else -mirrored
-    assert {(strand.side, strand.turns) for strand in wound.strands} == {(side, 2.0 * mirrored)}
-
-
-def test_a_coils_side_is_what_it_was_before():
-    # as lines: the end of a coil is bent out through the first part; reference: its distance from dense points there
-    mechanism, state = strip(coil, 0.005, thick=False, links=60)
-    model, pair = mechanism.problem.model, mechanism.pairs["lap"]
-    before = pair.facing(state, positions(model, state))
-    borders = model.chains[0].borders
-    beyond = State(model.rest + coil(borders) - 1.2 * np.maximum(borders - 0.75, 0.0), state.bodies)
-    at = positions(model, beyond)
-    assert pair.crosses(beyond, at)
-    now = pair.seen(before.faces)
-    found = now.facing(beyond, at)
-    dense, end = found.lines[0].at(np.linspace(0.0, 0.5, 20001)), found.lines[0].at(np.ones(1))
-    away = np.min(np.hypot(dense.x - end.x, dense.y - end.y))
-    assert away > 0.01
-    assert found.tip is not None
-    assert pytest.approx(-away, rel=1e-4) == found.tip.D
-    assert now.least_gap(beyond, at) <= found.tip.D
-    rows = Rows(now.groups(beyond, at))
-    assert rows.values[np.argmin(np.abs(rows.arc - found.tip.s))] == pytest.approx(away, rel=1e-4)
-
-
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_a_tip_that_hangs_down_to_its_beam_stays_on_its_side(sign):
-    # three quarters of a turn, a little less and a little more: reference: by sight, the tip hangs above the start
-    def hanging(turn):
-        mechanism, state = strip(lambda s: sign * turn * np.clip((s - 0.4) / 0.55, 0.0, 1.0), 0.005)
-        return mechanism.pairs["lap"], state, positions(mechanism.problem.model, state)
-
-    pair, state, at = hanging(1.5 * np.pi - 0.02)
-    before = pair.facing(state, at)
-    assert before.tip is not None
-    assert before.tip.side == sign
-    _, state, at = hanging(1.5 * np.pi + 0.02)
-    now = pair.seen(before.faces).facing(state, at)
-    assert now.tip is not None
-    assert (now.tip.side, now.fresh) == (sign, np.inf)
-    radius = 0.55 / (1.5 * np.pi)
-    assert pytest.approx(radius - 0.05, abs=0.04 * radius) == before.tip.D
-    assert not pair.seen(before.faces).passed((state, at), [(state, at)], (state, at), 0.0)
-
-
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_what_is_seen_over_a_part_in_between_is_not_beyond_it(sign):
-    # a tip that hangs into a dip of the beam, below its start, which it would see over the edge of the dip; reference:
-    # a line that does not cross itself lies nowhere beyond itself
-    def angle(s):
-        return sign * np.interp(s, (0.0, 0.05, 0.35, 0.9), (0.0, -0.3, -0.3, 4.5))
-
-    pair, state, at, found = faced(angle, 0.002)
-    assert not pair.crosses(state, at)
-    assert all(np.min(strand.D) > 0.0 for strand in found.strands)
-    assert found.tip is not None
-    dense = found.lines[0].at(np.linspace(0.0, 0.5, 20001))
-    end = found.lines[0].at(np.ones(1))
-    away = np.min(np.hypot(dense.x - end.x, dense.y - end.y))
-    assert pair.least_gap(state, at) == pytest.approx(away - pair.offset, rel=1e-4)
-
-
-def test_going_through_itself_is_seen_on_the_way():
-    mechanism, state = strip(coil, 0.005)
-    model, pair = mechanism.problem.model, mechanism.pairs["lap"]
-    outside = State(model.rest + 6.9 * model.chains[0].borders, state.bodies)
-
-    def way(end):
-        for part in np.arange(1, 8) / 8.0:
-            between = State(state.theta + part * (end.theta - state.theta), state.bodies)
-            yield between, positions(model, between)
-
-    begin = (state, positions(model, state))
-    seen = pair.seen(pair.facing(*begin).faces)
-    assert not seen.passed(begin, way(state), (state, positions(model, state)), 1e-3)
-    through = State(model.rest + coil(model.chains[0].borders) - 2.0 * model.chains[0].borders ** 4, state.bodies)
-    assert seen.passed(begin, way(through), (through, positions(model, through)), 1e-3)
-    # what has not faced anything before and is near at once has come from nobody knows where
-    assert pair.passed(begin, way(state), (state, positions(model, state)), 0.02)
-    assert not pair.passed(begin, way(outside), (outside, positions(model, outside)), 0.0)
-
-
-def test_how_deeply_a_line_crosses_itself():
-    # references: by sight; 3-4-5 triangles
-    loop = np.array([(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (1.0, -1.0)])
-    here, there, depth = own_crossings(loop)
-    assert (here.tolist(), there.tolist()) == ([0], [2])
-    # the end is 1.25 beyond the crossing at (1.75, 0), at a sine of 0.8
-    assert depth == pytest.approx([1.0])
-    assert own_crossings(loop[:3])[0].size == 0
-    # an end that just comes through lies no deeper
-    assert own_crossings(np.array([*loop[:3], (1.74925, -0.001)]))[2] == pytest.approx([0.001])
-
-
-@pytest.mark.parametrize("held", ["C", "T"])
-def test_what_is_before_both_places_carries_nothing(held):
-    mechanism, state = strip(neck, 0.012, held=held)
-    problem = mechanism.problem
-    point = point_at(problem, {}, state, np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
-    assert np.max(point.rows.values) > 0.0
-    point = replace(point, lam=np.where(point.rows.values > 0.0, 3.7, 0.0))
-    gradient, chain = contact_gradient(problem.model, point), problem.model.chains[0]
-    first = np.min(point.rows.arc[point.lam > 0.0])
-    before = np.flatnonzero(chain.s[1:] < first - 1.5 * chain.h)
-    assert before.size >= 2
-    assert np.all(gradient[before] == 0.0)
-    assert np.all(gradient[problem.model.n_links :] == 0.0)
-    assert np.max(np.abs(gradient)) > 0.01
-
-
-@pytest.mark.parametrize(("angle", "thickness"), [(neck, 0.012), (coil, 0.0055), (hooked, 0.2), (nearly_closed, 0.09)])
-def test_both_systems_make_the_same_step(angle, thickness):
-    # reference: the system without the joints' positions among its unknowns
-    mechanism, state = strip(angle, thickness)
-    problem = mechanism.problem
-    point = point_at(problem, {}, state, np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
-    point = replace(point, lam=np.where(point.rows.values > 0.0, 0.3, 0.0))
-    assert np.any(point.lam > 0.0)
-    one, other = newton_step(problem, point), local_step(local_system_at(problem, point), point.lam > 0.0)
-    # multipliers that vanish do so but for round-off of what balances: the springs' moments, stiffness N times turns
-    floor = np.finfo(float).eps * problem.model.n_links * np.max(np.abs(one[0]))
-    for mine, theirs in zip(one, other, strict=True):
-        assert mine == pytest.approx(theirs, rel=1e-7, abs=floor + 1e-7 * np.max(np.abs(mine), initial=0.0))
 
 
 @cache
@@ -397,25 +213,6 @@ def test_an_even_strip_that_closes_to_a_circle_presses_its_ends_until_they_slip(
             shape = station.shapes["strip"]
             apart = np.hypot(shape.x[-1] - shape.x[0], shape.y[-1] - shape.y[0])
             assert apart == pytest.approx(THICKNESS, rel=1e-9)
-
-
-def test_how_strands_part():
-    # reference: second differences of the distance from the same coil's later parts, integrated in steps of 1/20000
-    mechanism, state = strip(coil, 0.001, links=120)
-    at = positions(mechanism.problem.model, state)
-    pair = mechanism.pairs["lap"]
-    middles = (np.arange(20000) + 0.5) / 20000.0
-    x, y = (np.append(0.0, np.cumsum(part)) / 20000.0 for part in (np.cos(coil(middles)), np.sin(coil(middles))))
-    s, step = np.array([0.13, 0.15]), 0.015  # where strands run nearly side by side
-
-    def distance(at_s):
-        i = round(20000 * at_s)
-        away = np.hypot(x[i + 10000 :] - x[i], y[i + 10000 :] - y[i])
-        k = int(np.argmin(away))
-        return away[k] if 0 < k < len(away) - 1 else np.nan
-
-    expected = [(distance(one + step) - 2.0 * distance(one) + distance(one - step)) / step**2 for one in s]
-    assert pair.parting(state, at, s) == pytest.approx(np.array(expected), rel=0.03)
 
 
 def test_the_papers_formulation_has_no_form_for_it():
