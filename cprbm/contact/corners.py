@@ -8,8 +8,8 @@ h        length of a beam's link
 =======  ====================================================================================
 
 The solid behind an open edge ends where the edge ends.  From there the boundary goes back at right angles, until both
-sides meet.  A side that would come to the edge from behind goes on straight beyond the edge's end instead: the solid
-lies behind both end pieces.
+sides meet.  Where a side comes to the edge from behind instead, the side ends, and the other side ends beyond the
+straight continuation of the first side's end piece: the solid lies behind both end pieces.
 
 At a convex corner the boundary turns away from the beam.  The corner is a place of contact: a point of the boundary
 before the beam's curve.  The boundary cannot pass the beam between two joints there.  A row of corners with less than h
@@ -61,13 +61,14 @@ def sides_behind(points: Array, side: int, reach: float) -> tuple[Array, Array]:
     ends, ways = (points[0], points[-1]), [side * np.array([-first[1], first[0]]), side * np.array([last[1], -last[0]])]
     lengths = [min(_meetings(end, way, points), default=np.inf) for end, way in zip(ends, ways, strict=True)]
     meet = _distances(ends, ways)
-    if not np.all((meet > BEHIND) & (meet < lengths)):
-        ways = [way if length > reach else on for way, length, on in zip(ways, lengths, (first, last), strict=True)]
-        meet = _distances(ends, ways)
-    if np.all((meet > BEHIND) & (meet < reach)):
-        corner = (ends[0] + meet[0] * ways[0])[None]
-        return corner, corner
-    return (ends[0] + reach * ways[0])[None], (ends[1] + reach * ways[1])[None]
+    if np.all((meet > BEHIND) & (meet < np.minimum(lengths, reach))):
+        lengths = list(meet)
+    elif lengths[0] < reach or lengths[1] < reach:
+        for k, on in ((0, last), (1, first)):
+            behind_both = _distances((ends[k], ends[1 - k]), [ways[k], on])
+            lengths[k] = min(lengths[k], behind_both[0] if np.all(behind_both > BEHIND) else np.inf)
+    begin, end = (end + min(length, reach) * way for end, length, way in zip(ends, lengths, ways, strict=True))
+    return begin[None], end[None]
 
 
 def _distances(ends: tuple[Array, Array], ways: list[Array]) -> Array:
