@@ -8,8 +8,8 @@ h        length of a beam's link
 =======  ====================================================================================
 
 The solid behind an open edge ends where the edge ends.  From there the boundary goes back at right angles, until both
-sides meet.  Where a side comes to the edge from behind instead, the side ends, and the other side ends beyond the
-straight continuation of the first side's end piece: the solid lies behind both end pieces.
+sides meet.  Where a side comes to the edge from behind instead, the side ends, and the other end has no side: the
+solid lies between the edge and the side.
 
 At a convex corner the boundary turns away from the beam.  The corner is a place of contact: a point of the boundary
 before the beam's curve.  The boundary cannot pass the beam between two joints there.  A row of corners with less than h
@@ -63,12 +63,10 @@ def sides_behind(points: Array, side: int, reach: float) -> tuple[Array, Array]:
     meet = _distances(ends, ways)
     if np.all((meet > BEHIND) & (meet < np.minimum(lengths, reach))):
         lengths = list(meet)
-    elif lengths[0] < reach or lengths[1] < reach:
-        for k, on in ((0, last), (1, first)):
-            behind_both = _distances((ends[k], ends[1 - k]), [ways[k], on])
-            lengths[k] = min(lengths[k], behind_both[0] if np.all(behind_both > BEHIND) else np.inf)
+    elif min(lengths) < reach:
+        lengths = [length if length < reach else 0.0 for length in lengths]
     begin, end = (end + min(length, reach) * way for end, length, way in zip(ends, lengths, ways, strict=True))
-    return begin[None], end[None]
+    return begin[None][: int(lengths[0] > 0.0)], end[None][: int(lengths[1] > 0.0)]
 
 
 def _distances(ends: tuple[Array, Array], ways: list[Array]) -> Array:
