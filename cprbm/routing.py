@@ -9,9 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from cprbm_scene import BeamContact, CircleContact, HalfPlaneContact, LineContact, Scene, SelfContact
-from cprbm_scene.geometry import arc_length, largest_curvature
-from cprbm_scene.statement import Contact, EllipseContact, PinnedEnd
+from cprbm_scene import Scene
 
 
 def by_second_edition(scene: Scene, formulation: str, links_of: Callable[[str], int]) -> bool:

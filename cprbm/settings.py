@@ -7,10 +7,11 @@ from typing import Annotated, Literal, cast
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+from cprbm.loose import contacts_may_hold
 from cprbm.routing import by_second_edition
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.requirements import refuse
+from cprbm_scene.requirements import Requirement, refuse
 
 FEWEST_LINKS = 2
 
@@ -75,7 +76,9 @@ class Settings(BaseModel):
                 [Mistake(f"settings.links.{beam}", found, allowed, scene.file) for beam, found, allowed in wrong]
             )
         second = by_second_edition(scene, self.formulation, self.links_of)
-        refuse(scene, "the CPRBM", "overlap at rest", *(("theory", "edge") if second else ()))
+        met: tuple[Requirement, ...] = ("theory", "edge") if second else ()
+        met += ("support",) if second and scene.contacts and contacts_may_hold(scene) else ()
+        refuse(scene, "the CPRBM", "overlap at rest", *met)
 
 
 def _doubled(links: int | Mapping[str, int]) -> int | Mapping[str, int]:

@@ -21,6 +21,7 @@ is a curve of its own, on which a point of contact moves.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -80,7 +81,7 @@ def _distances(ends: tuple[Array, Array], ways: list[Array]) -> Array:
 def _meetings(start: Array, way: Array, points: Array) -> list[float]:
     """Distances along a ``way`` at which the way meets the pieces between points."""
     found = []
-    for begin, end in zip(points[:-1], points[1:], strict=True):
+    for begin, end in pairwise(points):
         matrix = np.column_stack([way, begin - end])
         if abs(np.linalg.det(matrix)) > BEHIND * np.hypot(*(end - begin)):
             along, share = np.linalg.solve(matrix, begin - start)

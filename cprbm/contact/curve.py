@@ -263,7 +263,9 @@ class Frames:
         pieces = len(points) - 1
         step = length / pieces
         spline = CubicSpline(np.arange(pieces + 1.0), places, bc_type=((1, step * slopes[0]), (1, step * slopes[-1])))
-        begin, end = (np.concatenate(ends) @ np.array([1.0, 1.0j]) for ends in ((sides[0], points[:1]), (points[-1:], sides[1])))
+        begin, end = (
+            np.concatenate(ends) @ np.array([1.0, 1.0j]) for ends in ((sides[0], points[:1]), (points[-1:], sides[1]))
+        )
         straight = [np.column_stack([at[:-1], np.diff(at), 0.0 * at[1:], 0.0 * at[1:]]) for at in (begin, end)]
         spans = np.concatenate([np.abs(np.diff(begin)), np.full(pieces, step), np.abs(np.diff(end))])
         return self.rigid_curve(

@@ -50,7 +50,8 @@ BESIDE = 1.5
 
 def corner_of(geometry: Geometry, places: Places, k: int) -> Corner:
     """The corner of a place on a rigid curve."""
-    return next(each for each in geometry.pairs[places.pair[k]].corners if each.curve == places.curve[k])
+    corners: tuple[Corner, ...] = geometry.pairs[int(places.pair[k])].corners
+    return next(each for each in corners if each.curve == places.curve[k])
 
 
 def corner_sides(geometry: Geometry, z: Array, known: Array, counters: Ints) -> Array:

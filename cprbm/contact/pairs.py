@@ -17,7 +17,6 @@ from cprbm.contact.corners import Corner, corner_curve, part_of, sharp_bends, sh
 from cprbm.contact.curve import NO_SIDES, Curve, Frames, beam_curve
 from cprbm.contact.own_pin import pin_rows
 from cprbm_scene import BeamContact, CircleContact, FunctionContact, HalfPlaneContact, LineContact, SelfContact
-from cprbm_scene.answer import Array
 from cprbm_scene.geometry import arc_length, points_on, tangents_on
 from cprbm_scene.statement import EllipseContact, RigidContact, SplineContact
 
@@ -30,7 +29,7 @@ REACH = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Two curves of the contact ``name`` by number, the ``side`` of the first over the second, corners of the second."""
+    """Two curves of the contact ``name`` by number, ``side`` of the first over the second, corners of the second."""
 
     name: str
     first: int

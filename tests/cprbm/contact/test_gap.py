@@ -86,7 +86,9 @@ def cases():
             inner = single(places, k, moves=False)
             if places.xi[k] == 0.0 and not bend[k]:
                 inner.xi[:] = rng.uniform(0.05, 0.95)
-            found.append(("corner" if corner[k] else "bend" if bend[k] else geometry.pairs[places.pair[k]].name, z, inner))
+            found.append(
+                ("corner" if corner[k] else "bend" if bend[k] else geometry.pairs[places.pair[k]].name, z, inner)
+            )
     return geometry, found
 
 

@@ -127,7 +127,9 @@ def test_gaps_to_round_shapes_are_distances():
     ellipse = 0.014 * np.cos(turn) + 0.007j * np.sin(turn)
     around = complex(*m.units.place((0.02, 0.028))) + ellipse * np.exp(0.2j) / m.units.length
     centre, radius = complex(*m.units.place((0.05, 0.01))), 0.08 / m.units.length
-    for k in np.flatnonzero(np.isin(names, ["ellipse", "ring"]) & (places.xi == 0.0) & ~on_edge(geometry.arrays, places)):
+    for k in np.flatnonzero(
+        np.isin(names, ["ellipse", "ring"]) & (places.xi == 0.0) & ~on_edge(geometry.arrays, places)
+    ):
         curve = geometry.curves[places.curve[k]]
         node = places.piece[k] - geometry.arrays.first[places.curve[k]]
         x = at(curve, rest, curve.arcs[[node]])[0]
