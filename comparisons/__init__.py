@@ -106,6 +106,8 @@ def sweep(
 ) -> Sweep:
     """A scene at all combinations of values of its parameters.
 
+    Points are solved in processes: a script calls this function below ``if __name__ == "__main__":``.
+
     Args:
         scene: the question, read from a file with parameters.
         vary: two values or more by the name of a parameter, SI.
