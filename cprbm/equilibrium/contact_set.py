@@ -32,7 +32,7 @@ from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_o
 from cprbm.equilibrium.iteration import begin_by_law, begin_iteration, change_set, end_iteration
 from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
-from cprbm_scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Flags, Ints
 
 FREE_CHANGES = 12
 """Iterations with any change of the set; later iterations change one place at a time."""
