@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from comparisons.crew import Crew
     from comparisons.offset_verdict import OffsetComparison
     from comparisons.pairing import Runs, Solvers
-    from comparisons.tolerances.search import Tolerance
+    from comparisons.tolerances.result import Tolerance
     from cprbm_scene import Question
 
 
@@ -131,7 +131,7 @@ def _compared(
     from comparisons.cli import output
     from comparisons.offset_verdict import compared_offset
     from comparisons.pairing import begin
-    from comparisons.tolerances.tolerated import paired_within
+    from comparisons.tolerances.search import runs_within
     from cprbm_scene import OffsetQuestion, Scene
 
     def begun(place: int) -> Callable[[], Runs] | None:
@@ -148,7 +148,7 @@ def _compared(
         else:
             assert tol is not None
             with output.current(shown=shown) as say:
-                runs, found = paired_within(scene, choices, tol, solvers, crew, say)
+                runs, found = runs_within(scene, choices, tol, solvers, crew, say)
             yield replace(compare(scene, runs), tolerances=found)
 
 
