@@ -277,7 +277,7 @@ def put_case(folder: Path, compared: Comparison | OffsetComparison, figures: Ite
         OSError: the folder cannot be written to.
     """
     own = own_folder(folder, question_of(compared).name)
-    write(own / "comparison.json", text_of({"cases": [document_of(compared)]}))
+    write(own / "comparison.json", text_of({"cases": [document_of(compared)]}, None))
     if isinstance(compared, Comparison):
         runs = compared.runs
         answers = {"cprbm paper": runs.paper, "cprbm perturbed": runs.perturbed, "exact": runs.exact}
@@ -297,7 +297,7 @@ def put_section(folder: Path, section: Section) -> None:
         OSError: the folder cannot be written to.
     """
     if section.name:
-        write(folder / f"{section.name}.json", text_of(section.data))
+        write(folder / f"{section.name}.json", text_of(section.data, None))
     for figure in section.figures:
         write(folder / f"{figure.name}.svg", figure.svg)
         write(folder / f"{figure.name}.png", figure.png)

@@ -78,13 +78,14 @@ def kept_open(state: State, pairs: frozenset[int]) -> State:
         return state
     kept = ~np.isin(contacts.places.pair, list(pairs))
     places, closed = taken(contacts.places, kept), contacts.closed[kept]
-    return replace(state, contacts=replace(contacts, places=places, closed=closed, kept_open=pairs))
+    apart = taken(contacts.places, ~kept & ~contacts.closed) if pairs else None
+    return replace(state, contacts=replace(contacts, places=places, closed=closed, kept_open=pairs, apart=apart))
 
 
 def may_close(state: State) -> State:
     """The state with pairs that are free to close again."""
     contacts = state.contacts
-    return state if contacts is None else replace(state, contacts=replace(contacts, kept_open=frozenset()))
+    return state if contacts is None else replace(state, contacts=replace(contacts, kept_open=frozenset(), apart=None))
 
 
 def pair_name(system: System, pair: int) -> str:

@@ -71,7 +71,9 @@ def touched_equilibrium(
         NotConvergedError: no equilibrium was found, the places do not settle, or a beam passed through itself.
     """
     corners = corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters)
-    contacts = replace(contacts, given_up=frozenset(), corner_sides=corners)
+    kept = contacts.closed | contacts.places.moves
+    places, closed = taken(contacts.places, kept), contacts.closed[kept]
+    contacts = replace(contacts, places=places, closed=closed, given_up=frozenset(), corner_sides=corners)
     contacts = with_fixed_places(geometry, start.z, contacts)
     joints_tried, before, old = False, start.z, _of_all_pairs(geometry, start.z, contacts)
     for _ in range(ROUNDS):
