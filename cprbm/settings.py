@@ -8,7 +8,6 @@ from typing import Annotated, Literal, cast
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from cprbm.loose import contacts_may_hold
-from cprbm.routing import by_second_edition
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.requirements import Requirement, refuse
@@ -75,10 +74,10 @@ class Settings(BaseModel):
             raise SceneError(
                 [Mistake(f"settings.links.{beam}", found, allowed, scene.file) for beam, found, allowed in wrong]
             )
-        second = by_second_edition(scene, self.formulation, self.links_of)
-        met: tuple[Requirement, ...] = ("theory", "edge") if second else ()
-        met += ("support",) if second and scene.contacts and contacts_may_hold(scene) else ()
-        refuse(scene, "the CPRBM", "overlap at rest", *met)
+        met: tuple[Requirement, ...] = ("overlap at rest", "theory", "edge")
+        if scene.contacts and self.formulation == "auto" and contacts_may_hold(scene):
+            met += ("support",)
+        refuse(scene, "the CPRBM", *met)
 
 
 def _doubled(links: int | Mapping[str, int]) -> int | Mapping[str, int]:

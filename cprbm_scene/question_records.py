@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from bisect import bisect, insort
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from math import isclose
 from typing import Annotated, Any, Literal
 
@@ -11,17 +11,20 @@ from pydantic import Field, WithJsonSchema, model_validator
 
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
-from cprbm_scene.record import Name, Of, Record, Text
 from cprbm_scene.units import (
     ANGLE,
     FORCE,
     LENGTH,
     MOMENT,
     STRESS,
-    Following,
+    Measured,
+    Name,
+    Of,
     Positive,
     PositiveShare,
     Reading,
+    Record,
+    Text,
     Unit,
     Units,
     mistake,
@@ -91,7 +94,7 @@ def _of_value(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
     return reading.probes.get(str(probe))
 
 
-Station = Annotated[float, Following(_of_stage)]
+Station = Annotated[float, Measured(_of_stage)]
 _SEVERAL = {"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 2}]}
 
 
@@ -115,7 +118,7 @@ class Stage(Record):
     together: Annotated[tuple[Name, ...], Of("load", key="steps")] = ()
     stations: Annotated[tuple[Station, ...], Field(min_length=1, max_length=10_001)]
     shown: tuple[Station, ...] = ()
-    critical_limit: Annotated[float, Field(gt=0.0), Following(_of_stage)] | None = None
+    critical_limit: Annotated[float, Field(gt=0.0), Measured(_of_stage)] | None = None
     beyond: Literal["stop", "jump"] | None = None
 
     @model_validator(mode="before")
@@ -128,20 +131,17 @@ class Stage(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """Repeated stations, indistinguishable in an answer, and shown values without a station."""
-        before: list[float] = []  # ascending
+        stations, together = self.stations, self.together
+        ascending = sorted(range(len(stations)), key=stations.__getitem__)
+        again = {max(i, j) for i, j in pairwise(ascending) if isclose(stations[i], stations[j], rel_tol=1e-9)}
         allowed = "each value once in a stage; a further stage may go back to it"
-        for j, value in enumerate(self.stations):
-            insort(before, value)
-            place = bisect(before, value)
-            beside = [*before[max(0, place - 2) : place - 1], *before[place : place + 1]]
-            again = any(isclose(value, other, rel_tol=1e-9) for other in beside)
-            yield from broken((again, f"stations[{j}]", f"{value:g} again", allowed))
-        first, once = self.together[:1] in ((), (self.steps,)), len(set(self.together)) == len(self.together)
-        stations = set(self.stations)
-        yield from broken(
-            (not (first and once), "steps", f"{list(self.together)}", "different loads, each once"),
+        different = together[:1] in ((), (self.steps,)) and len(set(together)) == len(together)
+        known = set(stations)
+        return broken(
+            *(Mistake(f"stations[{j}]", f"{stations[j]:g} again", allowed) for j in sorted(again)),
+            not different and Mistake("steps", f"{list(together)}", "different loads, each once"),
             *(
-                (value not in stations, f"shown[{j}]", f"{value:g}", "one of the stage's stations")
+                value not in known and Mistake(f"shown[{j}]", f"{value:g}", "one of the stage's stations")
                 for j, value in enumerate(self.shown)
             ),
         )
@@ -174,7 +174,7 @@ class Probe(Record):
         """Places of quantities other than stress."""
         wrong = "points" in self.model_fields_set and self.quantity not in STRESSES
         allowed = "points for 'bending_stress' and 'combined_stress' only"
-        return broken((wrong, "points", f"places along {self.name!r}", allowed))
+        return broken(wrong and Mistake("points", f"places along {self.name!r}", allowed))
 
 
 class Claim(Record):
@@ -189,8 +189,8 @@ class Claim(Record):
 
     probe: str
     stage: Annotated[Name | None, Of("stage")] = None
-    station: Annotated[float, Following(_of_stations)] | None = None
-    value: Annotated[float, Following(_of_value)] | None = None
+    station: Annotated[float, Measured(_of_stations)] | None = None
+    value: Annotated[float, Measured(_of_value)] | None = None
     bound: Positive
     text: Text = ""
 

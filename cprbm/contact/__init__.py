@@ -6,6 +6,7 @@
 * :mod:`cprbm.contact.corners`, :mod:`cprbm.contact.edges`: corners of rigid solids, places at corners;
 * :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
 * :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.own_pin`, :mod:`cprbm.contact.candidates`: contacts of a scene.
+* :mod:`cprbm.contact.law`: gaps that another law measures;
 * :mod:`cprbm.contact.contacts`: places and closed set of a state.
 """
 
@@ -16,6 +17,7 @@ from cprbm.contact.candidates import (
     joined,
     may_move,
     on_edge,
+    places_at,
     sides_at_rest,
     taken,
 )
@@ -36,6 +38,7 @@ from cprbm.contact.gap import (
     gap_row,
     local_indices,
 )
+from cprbm.contact.law import Columns, Law
 from cprbm.contact.pairs import Pair
 from cprbm.contact.settling import (
     BOX_TESTS,
@@ -50,6 +53,7 @@ from cprbm.contact.settling import (
     separations,
     settle,
     settle_near,
+    sweeps_any_circle,
 )
 
 __all__ = [
@@ -66,11 +70,13 @@ __all__ = [
     "TANGENT",
     "TOUCHING",
     "TURN",
+    "Columns",
     "Contacts",
     "Curve",
     "CurveArrays",
     "Frames",
     "Geometry",
+    "Law",
     "Pair",
     "Places",
     "Row",
@@ -96,10 +102,12 @@ __all__ = [
     "new_counters",
     "on_edge",
     "open_contacts",
+    "places_at",
     "separations",
     "settle",
     "settle_near",
     "sides_at_rest",
+    "sweeps_any_circle",
     "taken",
     "touching_as_drawn",
 ]

@@ -22,6 +22,7 @@ import numpy as np
 from cprbm.chain import Mechanism
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
 from cprbm.contact.gap import Places, gap_frame
+from cprbm.contact.law import Law
 from cprbm.contact.pairs import Pair, contact_pairs
 from cprbm.contact.settling import find_feet, settle
 from cprbm_scene import FreeEnd, WeldedEnd
@@ -51,6 +52,8 @@ class Geometry:
         ends: bodies of the curves.
         possible: all fixed places, feet not found; node: number of a place's node on its curve.
         columns: numbers of the two curves of every pair (pairs, 2).
+        law: measures the gaps of some pairs; None without such pairs.
+        joints_alone: whether the places are joints alone: no place moves or shares a force.
     """
 
     curves: list[Curve]
@@ -60,6 +63,8 @@ class Geometry:
     possible: Places
     node: Ints
     columns: Ints
+    law: Law | None = None
+    joints_alone: bool = False
 
 
 def contact_geometry(m: Mechanism) -> Geometry | None:
@@ -117,8 +122,9 @@ def fixed_places(
     first, last = places.foot == arrays.first[places.other], places.foot == arrays.last[places.other]
     held = np.where(corner, (start & first) | (end & last), held)
     kept = ~held & np.isfinite(distance) & ~(itself & (places.foot < places.piece) & (behind > 0))
-    places.shares[(before == 1) & start & welded[:, 0]] = 1
-    places.shares[(behind == 1) & end & welded[:, 1]] = -1
+    if not geometry.joints_alone:
+        places.shares[(before == 1) & start & welded[:, 0]] = 1
+        places.shares[(behind == 1) & end & welded[:, 1]] = -1
     return taken(places, kept)
 
 
@@ -193,7 +199,15 @@ def _possible(arrays: CurveArrays, ends: Ends, pairs: list[Pair]) -> tuple[Place
         if not pair.itself and not ends.rigid[pair.second]:
             links = int(arrays.last[pair.second] - arrays.first[pair.second]) + 1
             rows += [(number, pair.second, pair.first, node, links) for node in (0, links)]
-    pair, curve, other, node, links = np.array(rows, dtype=np.int64).T
+    return places_at(arrays, np.array(rows, dtype=np.int64).reshape(-1, 5))
+
+
+def places_at(arrays: CurveArrays, rows: Ints) -> tuple[Places, Ints]:
+    """Places at nodes, with the first piece of the other curve for a foot, and the nodes.
+
+    ``rows`` (k, 5) are the numbers of the pair, of both curves and of the node, and the links of the place's curve.
+    """
+    pair, curve, other, node, links = rows.T
     at_end = node == links
     zeros, none = np.zeros(len(node)), np.zeros(len(node), dtype=bool)
     corner = arrays.angle[arrays.first[curve]] < 0

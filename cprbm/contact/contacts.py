@@ -39,6 +39,8 @@ class Contacts:
         count = len(self.closed)
         places, gaps = taken(self.places, np.arange(count)), np.empty(count)
         settle(z, geometry.arrays, places, gaps, np.empty(count), self.counters, 0)
+        if geometry.law is not None:
+            geometry.law.write_gaps(z, places, gaps)
         return gaps
 
 

@@ -215,6 +215,39 @@ def separations(z: Array, curves: CurveArrays, places: Places) -> Array:  # prag
 
 
 @compiled
+def sweeps_any_circle(
+    before: Array, after: Array, curves: CurveArrays, pairs: Ints, counters: Ints
+) -> bool:  # pragma: no cover
+    """True if a beam sweeps over the centre of a circle of the ``pairs`` (pairs, 2) in a step."""
+    old, new = curve_boxes(before, curves), curve_boxes(after, curves)
+    low, high = np.minimum(old[:, :2], new[:, :2]), np.maximum(old[:, 2:], new[:, 2:])
+    for k in range(len(pairs)):
+        a, b = pairs[k]
+        if curves.is_point[b]:
+            counters[BOX_TESTS] += 1
+            met = max(np.max(low[a] - high[b]), np.max(low[b] - high[a])) < 0.0
+            if met and _sweeps_over(before, after, curves, a, b):
+                return True
+    return False
+
+
+@compiled
+def _sweeps_over(before: Array, after: Array, curves: CurveArrays, beam: int, circle: int) -> bool:  # pragma: no cover
+    """True if the part of a beam next to a circle lies on the other side of the centre after a step."""
+    weights, centre = np.empty((2, STENCIL)), curves.first[circle]
+    for z in (before, after):
+        cx, cy = curve_point(z, curves, centre, 0.0, 0, weights)
+        piece, xi, _ = closest_chord(z, curves, beam, cx, cy, 0.0, 0.0, weights)
+        ax, ay = curve_point(before, curves, piece, xi, 0, weights)
+        bx, by = curve_point(before, curves, centre, 0.0, 0, weights)
+        cx, cy = curve_point(after, curves, piece, xi, 0, weights)
+        dx, dy = curve_point(after, curves, centre, 0.0, 0, weights)
+        if (ax - bx) * (cx - dx) + (ay - by) * (cy - dy) < 0.0:
+            return True
+    return False
+
+
+@compiled
 def choose_sides(z: Array, curves: CurveArrays, places: Places) -> None:  # pragma: no cover
     """Write the present sides of places of a beam on itself; the feet must be found."""
     weights = np.empty((2, STENCIL))

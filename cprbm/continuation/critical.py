@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.contact import taken
-from cprbm.continuation.closing import pair_force, pressing, without
+from cprbm.continuation.closing import Pressed, may_lift, pressing, without
 from cprbm.continuation.path import Reached, tangent
 from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.stability import Mode, softest
@@ -86,13 +86,13 @@ def contact_opens(trail: list[Reached], beyond: float) -> CriticalPoint | None:
     geometry, earlier = last.solved.system.geometry, _earlier(trail, width)
     if geometry is None or earlier is None:
         return None
-    for pair in sorted(pressing(last.solved)):
-        now, before = pair_force(last.solved, pair), pair_force(earlier.solved, pair)
+    for lifted in may_lift(last.solved):
+        now, before = lifted.force(last.solved), lifted.force(earlier.solved)
         zero = last.t + now * (last.t - earlier.t) / (before - now) if now < before else np.inf
         if zero - last.t <= NEAR * width:
-            after = without(last.solved, pair)
+            after = without(last.solved, lifted)
             if after.lost:
-                return opened(last.solved, after, zero, Loss.CONTACT, geometry.pairs[pair].name, width)
+                return opened(last.solved, after, zero, Loss.CONTACT, geometry.pairs[lifted.pair].name, width)
     return None
 
 
@@ -112,7 +112,7 @@ def contact_slips(trail: list[Reached], beyond: float) -> CriticalPoint | None:
         zero = last.t + now * (last.t - earlier.t) / (before - now) if now < before < np.inf else np.inf
         if zero - last.t <= NEAR * width:
             name = geometry.pairs[pair].name
-            return opened(last.solved, without(last.solved, pair), zero, Loss.SLIP, name, width)
+            return opened(last.solved, without(last.solved, Pressed(pair)), zero, Loss.SLIP, name, width)
     return None
 
 

@@ -33,7 +33,9 @@ def joints_of(geometry: Geometry, places: Places, pair: int) -> tuple[Ints, Flag
 
 
 def minima(geometry: Geometry, contacts: Contacts, gaps: Array, pair: int) -> Ints:
-    """Open joints of a pair with the locally least gap, without a closed neighbour."""
+    """Open joints of a pair with the locally least gap, without a closed neighbour; empty where no place moves."""
+    if geometry.joints_alone:
+        return np.zeros(0, dtype=np.int64)
     joints, beside = joints_of(geometry, contacts.places, pair)
     gap, closed = gaps[joints], contacts.closed[joints]
     other = np.where(beside, gap[1:], np.inf), np.where(beside, gap[:-1], np.inf)

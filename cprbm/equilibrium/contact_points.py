@@ -74,7 +74,7 @@ def touched_equilibrium(
     corners = corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters)
     contacts = replace(contacts, given_up=frozenset(), corner_sides=corners)
     contacts = with_fixed_places(geometry, start.z, contacts)
-    joints_tried, before, old = False, start.z, contacts.places
+    joints_tried, before, old = False, start.z, _of_all_pairs(geometry, start.z, contacts)
     for _ in range(ROUNDS):
         try:
             solved = solve_set(system, geometry, start, contacts, iterations, springs)
@@ -92,8 +92,9 @@ def touched_equilibrium(
         revised = _revised(geometry, solved)
         if revised is None:
             new = with_fixed_places(geometry, solved.state.z, solved.contacts)
-            if passed_through(geometry, before, old, solved.state.z, new.places):
-                raise NotConvergedError("a beam passed through itself")
+            every = _of_all_pairs(geometry, solved.state.z, new)
+            if passed_through(geometry, before, old, solved.state.z, every, contacts.counters):
+                raise NotConvergedError("a beam passed through itself or over a circle")
             if not _come_near(geometry, solved, new):
                 return solved
             revised = new
@@ -101,8 +102,17 @@ def touched_equilibrium(
     raise NotConvergedError("the places of contact do not settle")
 
 
+def _of_all_pairs(geometry: Geometry, z: Array, contacts: Contacts) -> Places:
+    """Places of all pairs, those that are kept open included: an open pair must not pass through itself either."""
+    if not contacts.kept_open:
+        return contacts.places
+    return with_fixed_places(geometry, z, replace(contacts, kept_open=frozenset())).places
+
+
 def _revised(geometry: Geometry, solved: Touched) -> Contacts | None:
     """Contacts with other places, or None if the places are right."""
+    if geometry.joints_alone:
+        return None
     contacts, places = solved.contacts, solved.contacts.places
     arcs, span = arc_of(geometry, places), geometry.arrays.span[places.piece]
     allowed = may_move(geometry, places)
@@ -211,6 +221,7 @@ def _points(geometry: Geometry, solved: Touched) -> tuple[Places, Flags]:
         if len(run) > LONGEST_RUN or given_up:
             continue
         best = run[int(np.argmax(places.force[run]))]
+        run = np.flatnonzero(np.isin(np.arange(len(arcs)) + places.shares, run))
         trial, gap, curvature = as_point(geometry, z, contacts, best, places.force[run].sum())
         overlaps = contacts.closed[best] or gap < -OVERLAP - depth[best]
         if not overlaps or curvature <= 0.0 or not may_move(geometry, trial)[0]:

@@ -8,6 +8,7 @@ path's tangent.  A moving place is an unknown; a closed moving place stands for 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -23,13 +24,14 @@ from cprbm.contact import (
     on_edge,
     separations,
     settle_near,
+    sweeps_any_circle,
     taken,
 )
 from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_of, new_work, pulls, solved_border
-from cprbm.equilibrium.iteration import begin_iteration, change_set, end_iteration
+from cprbm.equilibrium.iteration import begin_by_law, begin_iteration, change_set, end_iteration
 from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
-from cprbm_scene.answer import Array
+from cprbm_scene.answer import Array, Ints
 
 FREE_CHANGES = 12
 """Iterations with any change of the set; later iterations change one place at a time."""
@@ -81,18 +83,20 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
         if before is not None and contacts.closed[before]:
             closed[k], fixed.force[k] = True, old.force[before]
             fixed.piece[k], fixed.xi[k] = old.piece[before], old.xi[before]
-            fixed.foot[k], fixed.eta[k] = old.foot[before], old.eta[before]
+            fixed.foot[k], fixed.eta[k], fixed.side[k] = old.foot[before], old.eta[before], old.side[before]
     choose_sides(z, geometry.arrays, fixed)
     fixed.side[corner] = contacts.corner_sides[fixed.curve[corner]]
     both = joined(fixed, taken(old, moving))
     return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[moving]]))
 
 
-def passed_through(geometry: Geometry, before: Array, old: Places, after: Array, new: Places) -> bool:
-    """True if a beam in self-contact went through itself: the vector from a foot to a place turned round.
+def passed_through(geometry: Geometry, before: Array, old: Places, after: Array, new: Places, counters: Ints) -> bool:
+    """True if a beam went through itself or over a circle: the vector from a foot or a centre to a place turned round.
 
-    The side of a beam over itself follows from the state, so that only the way between two states shows a passage.
+    The gaps of a beam to itself and to a circle have no sign: only the way between two states shows a passage.
     """
+    if geometry.arrays.is_point.any() and sweeps_any_circle(before, after, geometry.arrays, geometry.columns, counters):
+        return True
     first, second = separations(before, geometry.arrays, old), separations(after, geometry.arrays, new)
     number = {_identity(new, k): k for k in range(len(new.pair)) if not new.moves[k]}
     for k in np.flatnonzero((old.curve == old.other) & ~old.moves & (np.hypot(*first.T) < REACH)).tolist():
@@ -135,15 +139,18 @@ def solve_set(
     gaps, curvatures, room = np.empty(len(closed)), np.empty(len(closed)), np.zeros(len(closed))
     linear = z, m, driven, start.target, *pulls(system, springs), work
     settling = curves, places, closed, gaps, curvatures, room, contacts.counters
+    begin = begin_iteration if geometry.law is None else partial(begin_by_law, geometry.law)
     settle_near(z, *settling, FINDING)
     seen: dict[bytes, int] = {}
-    last = np.inf
+    last, free_changes = np.inf, FREE_CHANGES
     for iteration in range(1, iterations + 1):
-        most = 0 if iteration == 1 else len(closed) if iteration <= FREE_CHANGES else 1
-        changed, bordered, change, reduced = begin_iteration(*linear, *settling, geometry.columns, most)
+        most = 0 if iteration == 1 else len(closed) if iteration <= free_changes else 1
+        changed, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
         if changed:
             seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
-            if seen[closed.tobytes()] > RETURNS:
+            if seen[closed.tobytes()] > RETURNS and geometry.joints_alone and iteration <= free_changes:
+                free_changes, seen = iteration, {}
+            elif seen[closed.tobytes()] > RETURNS:
                 raise NotConvergedError("the set of closed places returns")
         try:
             factors = factors_of(system, driven, work, bordered)
@@ -159,6 +166,8 @@ def solve_set(
         if arrived and not changed:
             room[:] = 0.0
             settle_near(z, *settling, FINDING)
+            if geometry.law is not None:
+                geometry.law.write_gaps(z, places, gaps)
             if not change_set(curves, places, closed, gaps, geometry.columns, len(closed)):
                 settled = replace(contacts, places=places, closed=closed)
                 return Touched(replace(start, z=z), settled, factors, gaps, curvatures, iteration)

@@ -7,7 +7,7 @@ from math import isfinite
 import numpy as np
 
 from cprbm.chain.compiled import compiled
-from cprbm.contact import BEND, CORNER, CurveArrays, Places, move_places, settle_near
+from cprbm.contact import BEND, CORNER, CurveArrays, Law, Places, move_places, settle_near
 from cprbm.equilibrium.columns import contact_columns
 from cprbm.equilibrium.elimination import Beams, Border, Reached
 from cprbm.equilibrium.linear import Bordered, Numbers, Work, correction, linearise, reduced_load, restored
@@ -147,6 +147,36 @@ def begin_iteration(
     changed = most > 0 and change_set(curves, places, closed, gaps, pairs, most)
     gradient = np.zeros(z.size)
     columns = contact_columns(z, curves, places, closed, gradient)
+    bordered = linearise(z, m, driven, target, stiffness, anchor, work, columns, gradient)
+    load = -gradient
+    return changed, bordered, load, reduced_load(m, work, driven, bordered, columns.values, load)
+
+
+def begin_by_law(
+    law: Law,
+    z: Array,
+    m: Numbers,
+    driven: Flags,
+    target: Array,
+    stiffness: Array,
+    anchor: Array,
+    work: Work,
+    curves: CurveArrays,
+    places: Places,
+    closed: Flags,
+    gaps: Array,
+    curvatures: Array,
+    room: Array,
+    counters: Ints,
+    pairs: Ints,
+    most: int,
+) -> tuple[bool, Bordered, Array, Array]:
+    """The same as :func:`begin_iteration` where a ``law`` measures gaps."""
+    settle_near(z, curves, places, closed, gaps, curvatures, room, counters, 0)
+    law.write_gaps(z, places, gaps)
+    changed = most > 0 and change_set(curves, places, closed, gaps, pairs, most)
+    gradient = np.zeros(z.size)
+    columns = law.columns(z, places, closed, gradient)
     bordered = linearise(z, m, driven, target, stiffness, anchor, work, columns, gradient)
     load = -gradient
     return changed, bordered, load, reduced_load(m, work, driven, bordered, columns.values, load)
