@@ -1,11 +1,10 @@
-"""The account of a case's differences: its budgets, and what its claims would need.  Two rounds of runs."""
+"""The account of a case's differences: its runs and budgets."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from comparisons.budgets.parts import Budget, budgets_of
-from comparisons.budgets.poisson import ClaimedRatio, claimed_ratios, rerun, with_ratio
 from comparisons.budgets.runs import BudgetRuns, budgeted
 from comparisons.choices import Choices
 from comparisons.sentences import problem_sentences
@@ -22,7 +21,6 @@ class Account:
         choices: how finely, and by which variants.
         runs: all answers that it rests on.
         budgets: at every station; none where an answer is not whole.
-        claims: those of the last station.
         missing: why there are no budgets, in sentences; empty where there are.
         silent: why the solid, which was asked, says nothing; empty where it does.
     """
@@ -31,9 +29,15 @@ class Account:
     choices: Choices
     runs: BudgetRuns
     budgets: tuple[Budget, ...]
-    claims: tuple[ClaimedRatio, ...]
     missing: tuple[str, ...]
     silent: str = ""
+
+    @property
+    def last(self) -> tuple[Budget, ...]:
+        """The budgets of the last station of the last stage."""
+        stage = self.scene.stages[-1]
+        where = stage.name, stage.stations[-1]
+        return tuple(each for each in self.budgets if (each.row.stage, each.row.station) == where)
 
 
 def accounted(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
@@ -52,18 +56,7 @@ def accounted(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
         f"{name}: {what}" for name, answer in runs.everything() for what in problem_sentences(scene, answer)
     )
     if missing:
-        return Account(scene, choices, runs, (), (), missing)
-    budgets = budgets_of(scene, runs)
-    claims = claimed_ratios(scene, runs, budgets)
-    ratios = [ratio for claim in claims for ratio in claim.ratios]
+        return Account(scene, choices, runs, (), missing)
     ended = [each for each in runs.solid or () if not each.completed]
-    answers = iter(memory.answers([(memory.solvers.fea, with_ratio(scene, ratio), choices) for ratio in ratios]))
-    return Account(
-        scene,
-        choices,
-        runs,
-        budgets,
-        tuple(rerun(claim, [next(answers) for _ in claim.ratios]) for claim in claims),
-        (),
-        f"{ended[0].ending.value}. {ended[0].sentence}" if ended else "",
-    )
+    silent = f"{ended[0].ending.value}. {ended[0].sentence}" if ended else ""
+    return Account(scene, choices, runs, budgets_of(scene, runs), (), silent)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from comparisons.budgets.accounts import Account
 from comparisons.budgets.parts import PARTS, Budget
-from comparisons.budgets.poisson import last_budgets
 from comparisons.formats import percent
 from comparisons.present.canvas import GREY, canvas, finished
 from comparisons.present.columns import Figure
@@ -20,8 +19,6 @@ LOOKS = {
     "contact": ("#7b4ea3", "contact: paper to auto"),
     "links": ("#1f5fa8", "CPRBM: links"),
     "rest": ("#222222", "rest between the limits"),
-    "stretch": ("#f0a35e", "theory: stretch"),
-    "shear": ("#c8321e", "theory: shear"),
     "elements": ("#3f8f5b", "FEA: elements"),
     "penalty": ("#8fd0b5", "FEA: penalty"),
 }
@@ -35,7 +32,7 @@ _TOLD_OF_SOLID = (
 
 def of_account(account: Account) -> tuple[Figure, ...]:
     """The figure at the last station; none where there is no budget."""
-    budgets = [each for each in last_budgets(account.scene, account.budgets) if each.all_parts > 0.0]
+    budgets = [each for each in account.last if each.all_parts > 0.0]
     if not budgets:
         return ()
     with canvas(10.4, 1.9 + 0.34 * len(budgets)) as figure:
@@ -54,7 +51,7 @@ def of_account(account: Account) -> tuple[Figure, ...]:
             finished(
                 figure,
                 "budget",
-                f"What the difference of the CPRBM from the finite elements in {account.runs.kinematics} is made of at "
+                f"What the difference of the CPRBM from the finite elements in {account.runs.theory} is made of at "
                 f"{stage.name} {stage.stations[-1]:g}: parts that make it larger to the right, those that make it "
                 "smaller to the left, as shares of all of them; the diamond is their sum, which the panel beside shows "
                 "in per cent." + (_TOLD_OF_SOLID if any(each.missed is not None for each in budgets) else ""),

@@ -4,16 +4,16 @@
 symbol      meaning
 ==========  ================================================================================================
 N, n, p     links, elements and penetration of the choices
-v_c, v_f    the CPRBM's value, the finite elements' in the chosen theory: those that are compared
+v_c, v_f    the CPRBM's value, the finite elements' in the same theory: those that are compared
 v_a         the CPRBM's in the formulation ``auto`` at N; v_c unless ``paper`` was chosen
 L_c         limit of v_a for N → ∞
 v_0         limit of v_f for p → 0 at n elements
-L_t         limit for p → 0 and n → ∞ in the theory t: b (``bending``), s (``stretch``) or f (the chosen one)
+L_f         limit of v_f for p → 0 and n → ∞
 δ           v(p/16) − v_0, what the penalty does where it is stiffest
 ==========  ================================================================================================
 
-    v_c − v_f = (v_c − v_a) + (v_a − L_c) + (L_c − L_b) + (L_b − L_s) + (L_s − L_f) + (L_f − v_0) + (v_0 − v_f)
-                 contact       links         rest          stretch       shear         elements      penalty
+    v_c − v_f = (v_c − v_a) + (v_a − L_c) + (L_c − L_f) + (L_f − v_0) + (v_0 − v_f)
+                 contact       links         rest          elements      penalty
 
 Each part is its component along v_c − v_f, with its sign: the parts sum to the difference's norm, and a part below
 zero makes the difference smaller.  Of a stress they are taken where the difference is largest.  Where there is no
@@ -22,7 +22,7 @@ difference at all, parts with cancellation count along v_f.
 The limits in N and n are those of :mod:`comparisons.verdict.uncertainty`.
 What the penalty does is proportional to p once p is small: v_0 is extrapolated from p/4 and p/16, and v(p) beside
 that line says whether p is small as well.  Where it lies farther off than half of what the line says of p, no law is
-seen: v_0 is then the value at p/16, and what the line says of that a matter of uncertainty.  In every theory L_t is
+seen: v_0 is then the value at p/16, and what the line says of that a matter of uncertainty.  L_f is
 extrapolated in n from values less what the penalty does to them, δ at n elements and p/16 and δ/16 at 2n and p/256.
 On a circle the elements' length decides how deep a beam presses, whatever p: there the penalty is a part of
 ``elements``.
@@ -66,8 +66,6 @@ class Parts:
     contact: float
     links: float
     rest: float
-    stretch: float
-    shear: float
     elements: float
     penalty: float
 
@@ -86,7 +84,7 @@ class Budget:
     Attributes:
         row: the values, their difference and what fractions are taken of.
         parts: the sum.
-        rest_uncertainty: how far L_c − L_b may be off, by the limits' own uncertainties.
+        rest_uncertainty: how far L_c − L_f may be off, by the limits' own uncertainties.
         elements_uncertainty: the same of L_f.
         off_line: distance of v_f from the line through the values at p/4 and p/16.
         paper: component of ``paper`` less ``auto`` at N along the difference; None where one of them is missing.
@@ -163,22 +161,18 @@ def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: f
     if off_line > LINEAR * norm(probe.quantity, TIGHTNESS[-1] * delta):
         v_0, delta, in_doubt = tighter[-1], in_doubt, np.abs(delta)
     left = np.outer(DEEPER, delta)
-    L = [limit(ELEMENTS, np.array([v(each) for each in answers]) - left) for answers in runs.fea.values()]
+    L_f = limit(ELEMENTS, np.array([v(each) for each in runs.fea]) - left)
     d = v_c - v_f
     along = direction(probe.quantity, d if d.any() else v_f)
-    ladder = [v_c, v_a, L_c.value, *(each.value for each in L), v_0, v_f]
-    contact, links, rest, *theory, elements, penalty = (
-        float(np.dot(one - other, along)) for one, other in pairwise(ladder)
-    )
-    stretch, shear = theory + [0.0] * (2 - len(theory))
+    parts = Parts(*(float(np.dot(a - b, along)) for a, b in pairwise([v_c, v_a, L_c.value, L_f.value, v_0, v_f])))
     paper = _in_paper(runs, row)
     K = _inner_edge(scene, row)
-    elements_uncertainty = float(np.dot(L[-1].uncertainty + in_doubt, np.abs(along)))
-    missed = _missed(scene, runs, row, counts, L[-1].value, along)
+    elements_uncertainty = float(np.dot(L_f.uncertainty + in_doubt, np.abs(along)))
+    missed = _missed(scene, runs, row, counts, L_f.value, along)
     return Budget(
         row=replace(row, difference=norm(probe.quantity, d)),
-        parts=Parts(contact, links, rest, stretch, shear, elements, penalty),
-        rest_uncertainty=float(np.dot(L_c.uncertainty + L[0].uncertainty + in_doubt, np.abs(along))),
+        parts=parts,
+        rest_uncertainty=float(np.dot(L_c.uncertainty + L_f.uncertainty + in_doubt, np.abs(along))),
         elements_uncertainty=elements_uncertainty,
         off_line=off_line,
         paper=None if paper is None else float(np.dot(paper[counts] - v_a, along)),

@@ -7,22 +7,21 @@ N, n        links and elements of the choices
 p           the penetration of the choices
 ==========  ================================================================================================
 
-The CPRBM runs as it was chosen and, in ``auto``, at N, 2N and 4N.  The finite elements run in the chosen theory at n
-elements and p, p/4 and p/16; and in every theory up to the chosen one at n elements and p/16 and at 2n and p/256.
+All runs have one beam theory.  The CPRBM runs as it was chosen and, in ``auto``, at N, 2N and 4N.  The finite elements
+run at n elements and p, p/4 and p/16, and at 2n elements and p/256.
 Where the solid is among the solvers it runs at n and 2n elements along, and m and 2m across.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import islice
 
-from comparisons.choices import KINEMATICS, Choices, Kinematics, check
+from comparisons.choices import Choices, Kinematics, check
 from comparisons.pairing import in_paper
 from comparisons.store import AnswerMemory
 from cprbm_scene import Answer, Scene
-from cprbm_scene.frozendict import frozendict
 
 LEVELS = (1, 2, 4)
 """Links over N."""
@@ -42,27 +41,27 @@ class BudgetRuns:
     """All answers to one scene that its error budget rests on.
 
     Attributes:
-        kinematics: the beam theory that was chosen for the reference.
+        theory: the beam theory.
         cprbm: at N links, in the formulation that was chosen.
         auto: in the formulation ``auto``, at each of :data:`LEVELS`.
         paper: in ``paper`` at N; None where that cannot be asked. No sum contains it unless it was chosen.
-        penalty: the finite elements in the chosen theory at n elements and each of :data:`TIGHTNESS`.
-        fea: by theory, from ``bending`` up to the chosen one: at n elements and the last of those penetrations, and
-            finer, at each of :data:`ELEMENTS` and with :data:`DEEPER` times its penetration.
+        penalty: the finite elements at n elements and each of :data:`TIGHTNESS`.
+        fea: the finite elements at n elements and the last of those penetrations, and finer, at each of
+            :data:`ELEMENTS` and with :data:`DEEPER` times its penetration.
         solid: the mechanism as a solid, at each of :data:`ELEMENTS`; None where it was not asked. No sum contains it.
     """
 
-    kinematics: Kinematics
+    theory: Kinematics
     cprbm: Answer
     auto: tuple[Answer, ...]
     paper: Answer | None
     penalty: tuple[Answer, ...]
-    fea: Mapping[Kinematics, tuple[Answer, ...]]
+    fea: tuple[Answer, ...]
     solid: tuple[Answer, Answer] | None = None
 
     @property
     def reference(self) -> Answer:
-        """The finite elements' answer in the chosen theory at n elements and p."""
+        """The finite elements' answer at n elements and p."""
         return self.penalty[0]
 
     def everything(self) -> Iterator[tuple[str, Answer]]:
@@ -71,10 +70,9 @@ class BudgetRuns:
         for level, answer in zip(LEVELS, self.auto, strict=True):
             yield f"cprbm auto at {level} N", answer
         for tightness, answer in zip(TIGHTNESS, self.penalty, strict=True):
-            yield f"fea {self.kinematics} at p/{tightness}", answer
-        for kinematics, answers in self.fea.items():
-            for times, answer in zip(ELEMENTS, answers, strict=True):
-                yield f"fea {kinematics} at {times} n", answer
+            yield f"fea at p/{tightness}", answer
+        for times, answer in zip(ELEMENTS, self.fea, strict=True):
+            yield f"fea at {times} n", answer
 
 
 def budgeted(scene: Scene, choices: Choices, memory: AnswerMemory) -> BudgetRuns:
@@ -89,9 +87,10 @@ def budgeted(scene: Scene, choices: Choices, memory: AnswerMemory) -> BudgetRuns
         SceneError: a solver refuses the question.
     """
     check(choices, scene)
+    theory = choices.kinematics_of(scene)
+    choices = choices.within(theory)
     even = replace(choices, formulation="auto")
     tight = [replace(choices, penetration=choices.penetration / tightness) for tightness in TIGHTNESS]
-    theories = KINEMATICS[: KINEMATICS.index(choices.kinematics) + 1]
     finest = even.finer().finer()
     cprbm, fea, solid = memory.solvers.cprbm, memory.solvers.fea, memory.solvers.solid
     found = iter(
@@ -99,19 +98,19 @@ def budgeted(scene: Scene, choices: Choices, memory: AnswerMemory) -> BudgetRuns
             [
                 *((cprbm, scene, own) for own in (choices, even, even.finer(), finest)),
                 *((fea, scene, own) for own in tight),
-                *((fea, scene, own) for theory in theories for own in _both(tight[-1].within(theory))),
+                *((fea, scene, own) for own in _both(tight[-1])),
                 *((solid, scene, own) for own in _both(choices) if solid is not None),
             ]
         )
     )
     chosen = next(found)
     return BudgetRuns(
-        choices.kinematics,
+        theory,
         chosen,
         tuple(islice(found, len(LEVELS))),
         chosen if choices.formulation == "paper" else in_paper(scene, choices, memory.solvers),
         tuple(islice(found, len(TIGHTNESS))),
-        frozendict({theory: tuple(islice(found, len(ELEMENTS))) for theory in theories}),
+        tuple(islice(found, len(ELEMENTS))),
         None if solid is None else (next(found), next(found)),
     )
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from comparisons.budgets.accounts import Account
 from comparisons.budgets.parts import Budget
-from comparisons.budgets.poisson import ClaimedRatio, last_budgets
 from comparisons.choices import Count
-from comparisons.claims import claim_difference
+from comparisons.claims import claim_of
 from comparisons.display_units import at_station
 from comparisons.formats import number, percent
 from comparisons.plain import Plain, plain
@@ -17,8 +16,6 @@ _HEADERS = {
     "contact": "contact",
     "links": "links",
     "rest": "rest",
-    "stretch": "stretch",
-    "shear": "shear",
     "elements": "elements",
     "penalty": "penalty",
 }
@@ -28,37 +25,23 @@ _LISTED = 0.02
 
 
 def sheets_of(account: Account) -> tuple[Table, ...]:
-    """The budgets of the last station, and what claims about it would need."""
-    return tuple(sheet for sheet in (_budgets(account), _claims(account)) if sheet.rows)
+    """The budgets of the last station; none without rows."""
+    sheet = _budgets(account)
+    return (sheet,) if sheet.rows else ()
 
 
 def sentences_of(account: Account) -> tuple[str, ...]:
-    """Of each claim what our difference is made of; or why there is no budget."""
+    """Parts of every claimed difference at the last station, or why there is no budget."""
     if account.missing:
         return (f"{account.scene.name} has no error budget: {'; '.join(account.missing)}.",)
-    claimed = tuple(f"{_made_of(account.scene, found.budget)} {_as_theirs(found)}" for found in account.claims)
+    claims = ((each, claim_of(account.scene, each.row)) for each in account.last)
+    claimed = tuple(_made_of(account.scene, each) for each, claim in claims if claim and claim.value is None)
     return claimed if account.runs.solid is None else (*claimed, _missed(account))
 
 
 def data_of(account: Account) -> Plain:
-    """Keys for one case of ``converge``: ``budget`` and ``budget_claims``, fractions as in ``compare``'s rows."""
-    return {
-        "budget": [_data(each) for each in account.budgets],
-        "budget_claims": [
-            {
-                "probe": found.claim.probe,
-                "station": found.budget.row.station,
-                "claim": found.claim.bound,
-                "difference": claim_difference(found.budget.row),
-                "without_shear": found.without_shear,
-                "incompressible": found.incompressible,
-                "poisson_ratios": list(found.ratios),
-                "differences_there": plain(found.reruns),
-            }
-            for found in account.claims
-        ],
-        "budget_missing": list(account.missing),
-    }
+    """Keys for one case of ``converge``: ``budget``, fractions as in ``compare``'s rows, and ``budget_missing``."""
+    return {"budget": [_data(each) for each in account.budgets], "budget_missing": list(account.missing)}
 
 
 def _data(budget: Budget) -> Plain:
@@ -91,7 +74,7 @@ def _solid(budget: Budget) -> Plain:
 
 
 def _budgets(account: Account) -> Table:
-    rows = last_budgets(account.scene, account.budgets)
+    rows = account.last
     chosen = any(budget.parts.contact != 0.0 for budget in rows)
     beside = not chosen and any(budget.paper is not None for budget in rows)
     curved = any(budget.curved for budget in rows)
@@ -116,7 +99,7 @@ def _budgets(account: Account) -> Table:
     note = (
         "Per cent of what the case's table has its differences in. The parts sum to the difference; those below zero "
         "make it smaller. Links, elements, penalty: value beside its limit. Rest: between the solvers' limits in "
-        "bending, and how far these may be off. Stretch, shear: between the finite elements' limits."
+        f"{account.runs.theory}, and how far these may be off."
     )
     if beside:
         note += " Beside the sum: what paper would add to the difference at the same number of links."
@@ -127,7 +110,7 @@ def _budgets(account: Account) -> Table:
         )
     if solid:
         note += (
-            f" Missed: what the beam theories miss together, the limit in {account.runs.kinematics} less the solid's "
+            f" Missed: what the beam theories miss together, the limit in {account.runs.theory} less the solid's "
             "extrapolated value, in the same sense, and how far that may be off; with it the sum would lead from the "
             "CPRBM to the solid."
         )
@@ -142,28 +125,6 @@ def _budgets(account: Account) -> Table:
         ),
         tuple(body),
         note,
-    )
-
-
-def _claims(account: Account) -> Table:
-    body = tuple(
-        (
-            found.claim.text or found.claim.probe,
-            percent(found.claim.bound),
-            percent(claim_difference(found.budget.row)),
-            percent(found.without_shear),
-            percent(found.incompressible),
-            ", ".join(number(ratio) for ratio in found.ratios) or "none",
-            ", ".join(percent(each) for each in found.reruns) or "–",
-        )
-        for found in account.claims
-    )
-    return Table(
-        "Claims and Poisson's ratio",
-        ("claim", "theirs", "ours", "without shear", "ν = 1/2", "as theirs at ν", "run there"),
-        body,
-        "Shear goes with 1 + ν. As theirs: the ratio at which our difference would be the source's figure, if there is "
-        "one in (−1, 1/2]; run there: the difference that the finite elements give at it.",
     )
 
 
@@ -204,8 +165,7 @@ def _missed(account: Account) -> str:
     """What the solid says of displacements and rotations at the last station."""
     if account.silent:
         return f"The solid says nothing: {account.silent}"
-    of_all = last_budgets(account.scene, account.budgets)
-    missed = [each for each in of_all if each.missed is not None and each.row.probe.quantity in _MOVED]
+    missed = [each for each in account.last if each.missed is not None and each.row.probe.quantity in _MOVED]
     if not missed:
         return "The solid has no displacement or rotation to hold the beam theories against."
     listed = ", ".join(
@@ -213,16 +173,3 @@ def _missed(account: Account) -> str:
         for each in missed
     )
     return f"What the beam theories miss together, beside the sum, by the solid: {listed}."
-
-
-def _as_theirs(found: ClaimedRatio) -> str:
-    theirs = percent(found.claim.bound)
-    if not found.ratios:
-        return (
-            f"It would be the source's {theirs} at no Poisson's ratio: it is {percent(found.without_shear)} without "
-            f"shear and {percent(found.incompressible)} at ν = 1/2."
-        )
-    ratios = " or ".join(number(ratio) for ratio in found.ratios)
-    return f"It would be the source's {theirs} at ν = {ratios}; a run there gives " + (
-        f"{' and '.join(percent(each) for each in found.reruns)}."
-    )

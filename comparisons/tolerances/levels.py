@@ -10,9 +10,9 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
-from comparisons.choices import Choices, Kinematics
+from comparisons.choices import Choices
 from comparisons.crew import Solver
-from comparisons.pairing import Runs, may_be_uneven
+from comparisons.pairing import Runs
 from comparisons.sentences import problem_sentences
 from comparisons.store import AnswerMemory
 from comparisons.tolerances.search import FIRST, Estimate, Stated
@@ -31,8 +31,7 @@ class SceneLevels:
     Attributes:
         scene: the question.
         solver: who answers.
-        base: what is chosen; numbers of links and elements, and from ``FIRST`` on the penetration, follow N.
-        theories: in which all is solved and must pass; of the CPRBM its only one.
+        base: choices with a theory; numbers of links and elements, and from ``FIRST`` on the penetration, follow N.
         memory: solves, nothing twice.
         beside: whether a value at N is held against N + N/7 as well.
         reference: the finite elements' answer, if they have one already.
@@ -41,17 +40,16 @@ class SceneLevels:
     scene: Scene
     solver: Solver
     base: Choices
-    theories: tuple[Kinematics, ...]
     memory: AnswerMemory
     beside: bool
     reference: Answer | None = None
 
-    def choices(self, theory: Kinematics, n: int) -> Choices:
+    def choices(self, n: int) -> Choices:
         """What is solved at ``n``: so that twice N is what :meth:`comparisons.choices.Choices.finer` makes of it."""
         share = FIRST / n
         # a product, not a power, so that halving the share divides it by 16 to the last digit
         penetration = self.base.penetration * (share * share * share * share)
-        return replace(self.base.within(theory), links=n, elements=n, penetration=penetration)
+        return replace(self.base, links=n, elements=n, penetration=penetration)
 
     def plain(self, n: int) -> Estimate:
         """Of the values at ``n``, from n and 2n."""
@@ -59,12 +57,12 @@ class SceneLevels:
 
     def checked(self, n: int) -> Estimate:
         """The same, with n + n/7 where the error may be uneven."""
-        return self._plain(n, beside=self._uneven)
+        return self._plain(n, beside=self.beside)
 
     def settled(self, n: int) -> Estimate:
         """Of the values at 2n or what n and 2n extrapolate to, from n/2, n and 2n.
 
-        A probe is extrapolated, in all theories, if its worst row states less so.
+        A probe is extrapolated if its worst row states less so.
         """
         names = [probe.name for probe in self.scene.probes]
         kept, all_ = (self._settled(n, probes) for probes in ((), names))
@@ -75,83 +73,62 @@ class SceneLevels:
         rows = zip(kept.rows, all_.rows, strict=True)
         return Estimate(tuple(b if a.probe in probes else a for a, b in rows), extrapolated=probes)
 
-    def answer(self, theory: Kinematics, n: int) -> Answer:
+    def answer(self, n: int) -> Answer:
         """The answer at ``n``."""
-        return self._answers([self.choices(theory, n)])[0]
+        return self._answers([self.choices(n)])[0]
 
-    def pair(self, theory: Kinematics, n: int, probes: Collection[str]) -> Settled:
+    def pair(self, n: int, probes: Collection[str]) -> Settled:
         """The values settled on n/2, n and 2n, with these probes extrapolated."""
-        answers = dict(zip(self._sizes(n), self._three(theory, n), strict=True))
+        answers = dict(zip(self._sizes(n), self._three(n), strict=True))
         beside = self.beside_it(n)
         if beside is not None and not problem_sentences(self.scene, beside):
             answers[round(n / self.ratio(n))] = beside
         return settled(self.scene, answers, probes)
 
     def beside_it(self, n: int) -> Answer | None:
-        """The answer at n + n/7; None where the error is even."""
-        return self._answers([self.choices("bending", n).beside()])[0] if self._uneven else None
+        """The answer at n + n/7; None where no value is held against it."""
+        return self._answers([self.choices(n).beside()])[0] if self.beside else None
 
     def ratio(self, n: int) -> float:
         """n over the links beside them."""
-        return self.choices("bending", n).ratios_beside()[0]
-
-    @property
-    def _uneven(self) -> bool:
-        return self.beside and may_be_uneven(self.scene)
+        return self.choices(n).ratios_beside()[0]
 
     def solved(self) -> tuple[int, ...]:
         """Every N at which the solver has answered the scene, ascending."""
         return self.memory.sizes(self.solver, self.scene)
 
     def _plain(self, n: int, *, beside: bool) -> Estimate:
-        jobs = []
-        for theory in self.theories:
-            chosen = self.choices(theory, n)
-            even = replace(chosen, formulation="auto")
-            jobs.append([chosen, even, even.finer(), *([even.beside()] if beside else [])])
-        answers = iter(self._answers([choices for each in jobs for choices in each]))
-        found = []
-        for theory, each in zip(self.theories, jobs, strict=True):
-            mine = [next(answers) for _ in each]
-            runs = self._runs(mine[0], mine[2])
-            runs = replace(
-                runs,
-                auto=None if each[0] == each[1] else mine[1],
-                beside=mine[3] if beside else None,
-                ratio=each[1].ratios_beside()[0],
-            )
-            found.append(stated(self.scene, runs, theory))
-        return _joined(found)
+        chosen = self.choices(n)
+        even = replace(chosen, formulation="auto")
+        mine = self._answers([chosen, even, even.finer(), *([even.beside()] if beside else [])])
+        runs = replace(
+            self._runs(mine[0], mine[2]),
+            auto=None if chosen == even else mine[1],
+            beside=mine[3] if beside else None,
+            ratio=even.ratios_beside()[0],
+        )
+        return stated(self.scene, runs)
 
     def _settled(self, n: int, probes: Collection[str]) -> Estimate:
-        self._answers([self.choices(theory, size) for size in self._sizes(n) for theory in self.theories])
-        troubles = [
-            trouble
-            for theory in self.theories
-            for answer in self._three(theory, n)
-            for trouble in problem_sentences(self.scene, answer)
-        ]
+        troubles = [trouble for answer in self._three(n) for trouble in problem_sentences(self.scene, answer)]
         if troubles:
             return Estimate((), troubles[0])
-        found = []
-        for theory in self.theories:
-            pair = self.pair(theory, n, probes)
-            runs = replace(
-                self._runs(pair.answer, pair.coarse),
-                beside=self.beside_it(n),
-                ratio=self.ratio(n),
-                settled=frozendict({"cprbm": pair.uncertainties}),
-            )
-            found.append(stated(self.scene, runs, theory))
-        return _joined(found)
+        pair = self.pair(n, probes)
+        runs = replace(
+            self._runs(pair.answer, pair.coarse),
+            beside=self.beside_it(n),
+            ratio=self.ratio(n),
+            settled=frozendict({"cprbm": pair.uncertainties}),
+        )
+        return stated(self.scene, runs)
 
     def _runs(self, value: Answer, other: Answer) -> Runs:
         """A solver's answer, what it is held against, and by what the differences are measured."""
         reference = value if self.reference is None else self.reference
-        return Runs("bending", (value, other), {"bending": (reference, reference)})
+        return Runs(self.base.kinematics_of(self.scene), (value, other), (reference, reference))
 
-    def _three(self, theory: Kinematics, n: int) -> tuple[Answer, Answer, Answer]:
-        first, coarse, fine = (self.answer(theory, size) for size in self._sizes(n))
+    def _three(self, n: int) -> tuple[Answer, Answer, Answer]:
+        first, coarse, fine = self._answers([self.choices(size) for size in self._sizes(n)])
         return first, coarse, fine
 
     def _sizes(self, n: int) -> tuple[int, int, int]:
@@ -161,7 +138,7 @@ class SceneLevels:
         return self.memory.answers([(self.solver, self.scene, choices) for choices in wanted])
 
 
-def stated(scene: Scene, runs: Runs, variant: str) -> Estimate:
+def stated(scene: Scene, runs: Runs) -> Estimate:
     """What is stated of every row that has a value, of the first solver in ``runs``."""
     for _, answer in runs.everything():
         found = problem_sentences(scene, answer)
@@ -171,7 +148,7 @@ def stated(scene: Scene, runs: Runs, variant: str) -> Estimate:
     for row in rows_of(scene, runs):
         fraction = _fraction(row, runs)
         if fraction is not None:
-            rows.append(Stated(variant, row.probe.name, row.stage, row.station, fraction, STANDARD))
+            rows.append(Stated(row.probe.name, row.stage, row.station, fraction, STANDARD))
     return Estimate(tuple(rows))
 
 
@@ -189,12 +166,6 @@ def _fraction(row: Row, runs: Runs) -> float | None:
         if (station.stage, station.value) == (row.stage, row.station)
     ]
     return None if len({value.shape for value in values}) == 1 else math.inf
-
-
-def _joined(estimates: list[Estimate]) -> Estimate:
-    troubles = [estimate.trouble for estimate in estimates if estimate.trouble]
-    rows = tuple(row for estimate in estimates for row in estimate.rows)
-    return Estimate((), troubles[0]) if troubles else Estimate(rows)
 
 
 def _worst_of_probes(estimate: Estimate) -> dict[str, float]:

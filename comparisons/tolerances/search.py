@@ -55,13 +55,11 @@ class Stated:
     """A row's stated uncertainty.
 
     Attributes:
-        variant: which of several runs at one N is meant (a beam theory).
         probe, stage, station: the row.
         fraction: f; infinite where none can be stated, because the value is there at one N and not at another.
         order: p.
     """
 
-    variant: str
     probe: str
     stage: str
     station: float
@@ -69,9 +67,9 @@ class Stated:
     order: float
 
     @property
-    def row(self) -> tuple[str, str, str, float]:
+    def row(self) -> tuple[str, str, float]:
         """What the row is known by."""
-        return self.variant, self.probe, self.stage, self.station
+        return self.probe, self.stage, self.station
 
 
 @dataclass(frozen=True, slots=True)

@@ -133,12 +133,12 @@ def stated(scene: Scene, answers: Sequence[Answer], rows: Sequence[Row] | None =
         limited = solid_limit(scene, row, answers)
         if limited is None:
             if _comes_and_goes(row, answers):
-                nothing.append(Stated("", row.probe.name, row.stage, row.station, math.inf, STANDARD))
+                nothing.append(Stated(row.probe.name, row.stage, row.station, math.inf, STANDARD))
         elif limited[1].any():
             found.append((row, limited[0].assumed, norm(row.probe.quantity, limited[0].uncertainty[limited[1]])))
     widest = largest(((row.probe.name, row.stage), u) for row, _, u in found)
     known = [
-        Stated("", row.probe.name, row.stage, row.station, fraction, order)
+        Stated(row.probe.name, row.stage, row.station, fraction, order)
         for row, order, _ in found
         if (fraction := row.fraction(widest[row.probe.name, row.stage])) is not None
     ]
@@ -153,7 +153,7 @@ def _comes_and_goes(row: Row, answers: Sequence[Answer]) -> bool:
 
 def _own_rows(scene: Scene, answer: Answer) -> tuple[Row, ...]:
     """The scene's rows, with the answer in the place of all others."""
-    return rows_of(scene, Runs("bending", (answer, answer), {"bending": (answer, answer)}))
+    return rows_of(scene, Runs("bending", (answer, answer), (answer, answer)))
 
 
 def settled(scene: Scene, answers: Sequence[Answer]) -> Answer:

@@ -1,20 +1,19 @@
 """A scene answered within a tolerance: by one solver, or by both for a comparison.
 
-The finite elements are asked first, in every theory whose uncertainty a row states (the chosen one and ``bending``);
-what their values are is what the CPRBM's and the solid's uncertainties are fractions of, as in the rows of the
-comparison.
+The finite elements are asked first: the uncertainties of the CPRBM and of the solid are fractions of their values, as
+in the rows of the comparison.  Both beam solvers answer in one theory.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
 from comparisons.bench.timing import LARGEST, Method
-from comparisons.choices import KINEMATICS, Choices, Kinematics
+from comparisons.choices import Choices
 from comparisons.crew import Crew
-from comparisons.pairing import Runs, Solvers, Uncertainties, known_exactly, paired, with_solid
+from comparisons.pairing import Runs, Solvers, in_other_theory, paired, with_solid
 from comparisons.reactions import perturbed_scene
 from comparisons.store import AnswerMemory
 from comparisons.tolerances.levels import SceneLevels
@@ -37,13 +36,15 @@ class _Reached:
     levels: SceneLevels
     found: Found
 
-    def settled(self, theory: Kinematics) -> Settled:
+    @property
+    def settled(self) -> Settled:
         """The values settled on n/2, n and 2n."""
-        return self.levels.pair(theory, self.found.n, self.found.estimate.extrapolated)
+        return self.levels.pair(self.found.n, self.found.estimate.extrapolated)
 
-    def value(self, theory: Kinematics) -> Answer:
+    @property
+    def value(self) -> Answer:
         """The answer."""
-        return self.settled(theory).answer if self.found.settled else self.levels.answer(theory, self.found.n)
+        return self.settled.answer if self.found.settled else self.levels.answer(self.found.n)
 
 
 def solved(
@@ -73,9 +74,9 @@ def solved(
         found = meshed(scene, solvers.solid, choices, tolerance, AnswerMemory(solvers=solvers, say=say))
         return settled(scene, found.answers), found.reached
     memory = AnswerMemory(solvers=solvers, say=say)
-    theory: Kinematics = choices.kinematics if solver == "fea" else "bending"
-    reached = _reached(scene, solver, choices, (theory,), tolerance, memory, None)
-    return reached.value(theory), _tolerance(reached, solver, tolerance)
+    theory = choices.kinematics_of(scene) if solver == "fea" else choices.theory_of(scene)
+    reached = _reached(scene, solver, choices.within(theory), tolerance, memory, None)
+    return reached.value, _tolerance(reached, solver, tolerance)
 
 
 def paired_within(
@@ -89,6 +90,7 @@ def paired_within(
         SceneError: a solver refuses the question.
     """
     memory = AnswerMemory(pool=crew.pool, solvers=solvers, say=say)
+    choices = choices.within(choices.kinematics_of(scene))
     runs, reached = _both_within(scene, choices, tolerance, replace(solvers, solid=None), memory)
     if solvers.solid is None:
         return runs, reached
@@ -101,30 +103,26 @@ def paired_within(
 def _both_within(
     scene: Scene, choices: Choices, tolerance: float, solvers: Solvers, memory: AnswerMemory
 ) -> tuple[Runs, tuple[Tolerance, Tolerance]]:
-    theories: tuple[Kinematics, ...] = tuple(dict.fromkeys(("bending", choices.kinematics)))
-    fea = _reached(scene, "fea", choices, theories, tolerance, memory, None)
-    cprbm = _reached(scene, "cprbm", choices, ("bending",), tolerance, memory, fea.value(choices.kinematics))
+    fea = _reached(scene, "fea", choices, tolerance, memory, None)
+    cprbm = _reached(scene, "cprbm", choices, tolerance, memory, fea.value)
     tolerances = _tolerance(cprbm, "cprbm", tolerance), _tolerance(fea, "fea", tolerance)
-    if cprbm.found.settled:
-        driven, n, pair = perturbed_scene(scene), cprbm.found.n, cprbm.settled("bending")
-        families, uncertainties = _families(fea, choices.kinematics)
-        exact, exact_absence = known_exactly(scene, choices, solvers, memory)
-        return Runs(
-            choices.kinematics,
-            (pair.answer, pair.coarse),
-            families,
-            beside=cprbm.levels.beside_it(n),
-            ratio=cprbm.levels.ratio(n),
-            perturbed=None if driven is None else _perturbed(cprbm, driven),
-            exact=exact,
-            exact_absence=exact_absence,
-            settled=frozendict({"cprbm": pair.uncertainties, **uncertainties}),
-        ), tolerances
-    elements = fea.levels.choices(choices.kinematics, fea.found.n)
-    runs = paired(scene, replace(elements, links=cprbm.found.n, formulation=choices.formulation), solvers, memory)
+    chosen = replace(fea.levels.choices(fea.found.n), links=cprbm.found.n)
+    runs = paired(scene, chosen, solvers, memory, bare=cprbm.found.settled)
     if fea.found.settled:
-        families, uncertainties = _families(fea, choices.kinematics)
-        runs = replace(runs, fea=families, fea_beside=None, settled=frozendict(uncertainties))
+        pair = fea.settled
+        settled_runs = frozendict({"fea": pair.uncertainties})
+        runs = replace(runs, fea=(pair.answer, pair.coarse), fea_beside=None, settled=settled_runs)
+    if cprbm.found.settled:
+        driven, pair = perturbed_scene(scene), cprbm.settled
+        other, other_absence = in_other_theory(scene, chosen, solvers)
+        runs = replace(
+            runs,
+            cprbm=(pair.answer, pair.coarse),
+            other=other,
+            other_absence=other_absence,
+            perturbed=None if driven is None else _perturbed(cprbm, driven),
+            settled=frozendict({**runs.settled, "cprbm": pair.uncertainties}),
+        )
     return runs, tolerances
 
 
@@ -132,7 +130,6 @@ def _reached(
     scene: Scene,
     solver: Method,
     choices: Choices,
-    theories: tuple[Kinematics, ...],
     tolerance: float,
     memory: AnswerMemory,
     reference: Answer | None,
@@ -140,38 +137,15 @@ def _reached(
     is_cprbm = solver == "cprbm"
     paper = is_cprbm and choices.formulation == "paper"
     answers = memory.solvers.cprbm if is_cprbm else memory.solvers.fea
-    levels = SceneLevels(scene, answers, choices, theories, memory, beside=is_cprbm, reference=reference)
+    levels = SceneLevels(scene, answers, choices, memory, beside=is_cprbm, reference=reference)
     largest = 2 * LARGEST_PAPER if paper else LARGEST[solver]
     found = search(levels, tolerance, largest, extrapolates=not paper)
     return _Reached(levels, found)
 
 
-def _families(
-    fea: _Reached, chosen: Kinematics
-) -> tuple[Mapping[Kinematics, tuple[Answer, ...]], dict[str, Uncertainties]]:
-    """The finite elements' answers by theory, in a theory between alone, and the uncertainties of settled ones."""
-    families: dict[Kinematics, tuple[Answer, ...]] = {}
-    uncertainties: dict[str, Uncertainties] = {}
-    for kinematics in KINEMATICS[: KINEMATICS.index(chosen) + 1]:
-        if kinematics not in fea.levels.theories:
-            families[kinematics] = (_between(fea, kinematics),)
-        elif fea.found.settled:
-            pair = fea.settled(kinematics)
-            families[kinematics] = pair.answer, pair.coarse
-            uncertainties[f"fea {kinematics}"] = pair.uncertainties
-        else:
-            n = fea.found.n
-            families[kinematics] = fea.levels.answer(kinematics, n), fea.levels.answer(kinematics, 2 * n)
-    return frozendict(families), uncertainties
-
-
-def _between(fea: _Reached, kinematics: Kinematics) -> Answer:
-    return replace(fea, levels=replace(fea.levels, theories=(kinematics,))).value(kinematics)
-
-
 def _perturbed(cprbm: _Reached, driven: Scene) -> Answer:
     """The settled answer at the perturbed stations, its energies settled as the energies of the scene."""
-    return replace(cprbm, levels=replace(cprbm.levels, scene=driven, reference=None)).value("bending")
+    return replace(cprbm, levels=replace(cprbm.levels, scene=driven, reference=None)).value
 
 
 def _tolerance(reached: _Reached, solver: Method, tolerance: float) -> Tolerance:

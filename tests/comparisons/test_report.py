@@ -267,7 +267,7 @@ def solved():
     hinge = cases.opened("hinge")
     choices = Choices(links=13, elements=12, kinematics="bending")
     answers = cprbm_answer(hinge, choices), fea_answer(hinge, choices)
-    runs = Runs("bending", (answers[0], answers[0]), {"bending": (answers[1], answers[1])})
+    runs = Runs("bending", (answers[0], answers[0]), (answers[1], answers[1]))
     return Comparison(hinge, runs, (), Verdict(Word.UNDECIDED, (), (), completed=False))
 
 

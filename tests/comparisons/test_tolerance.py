@@ -47,7 +47,7 @@ class Law:
         if n < self.wants:
             raise SceneError([Mistake("links", str(n), "more")])
         self.solved |= {n, 2 * n}
-        return Estimate((Stated("", "B.displacement", "load", 1.0, self.stated(n), 2),))
+        return Estimate((Stated("B.displacement", "load", 1.0, self.stated(n), 2),))
 
     def checked(self, n: int) -> Estimate:
         return self.plain(n)
@@ -55,7 +55,7 @@ class Law:
     def settled(self, n: int) -> Estimate:
         assert n // 2 in self.solved
         self.solved |= {n, 2 * n}
-        return Estimate((Stated("", "B.displacement", "load", 1.0, self.better * self.stated(n), 2),))
+        return Estimate((Stated("B.displacement", "load", 1.0, self.better * self.stated(n), 2),))
 
     def smallest(self, tolerance: float) -> float:
         return max(FIRST, (self.C / tolerance) ** (1.0 / self.p))
@@ -113,7 +113,7 @@ def test_few_links_that_a_formulation_refuses_are_passed_over_and_a_wrong_questi
 
 def test_growth_follows_the_order_that_is_seen_within_bounds():
     def estimate(fraction):
-        return Estimate((Stated("", "p", "s", 1.0, fraction, 2),))
+        return Estimate((Stated("p", "s", 1.0, fraction, 2),))
 
     assert estimate(1e-2).growth(1e-4, None, 2.0) == pytest.approx(10.0)
     assert estimate(1e-2).growth(1e-4, estimate(8e-2), 2.0) == pytest.approx(100.0 ** (1 / 3))
@@ -136,7 +136,7 @@ class Noting:
     def __call__(self, scene, choices):
         one = self.solver.solver == "cprbm"
         mine = (choices.links, choices.formulation) if one else (choices.elements, choices.kinematics)
-        self.asked.append((scene.name, *mine, None if one else choices.penetration))
+        self.asked.append((scene.name, choices.theory, *mine, None if one else choices.penetration))
         return self.solver(scene, choices)
 
 
@@ -191,7 +191,7 @@ def test_an_error_that_is_uneven_in_n_is_stated_of_what_is_settled(hinge, off):
             runs = Runs(
                 "bending",
                 (found.answer, found.coarse),
-                {"bending": (fea, fea)},
+                (fea, fea),
                 settled=frozendict({"cprbm": found.uncertainties}),
             )
             stated.append([row for row in rows_of(hinge, runs) if row.probe.name == "B.displacement"][-1])
