@@ -79,7 +79,8 @@ $(READY): requirements.lock pyproject.toml
 lock:
 	{ sed '/^$$/q' requirements.lock; \
 	  uv pip compile --universal --generate-hashes --python-version 3.11 --quiet \
-	    --extra build --extra docs --extra dxf --extra peers --extra solid --extra test --extra threads \
+	    --extra build --extra cluster --extra docs --extra dxf --extra netcdf --extra peers --extra solid --extra test \
+	    --extra threads \
 	    --no-header --no-emit-index-url pyproject.toml; } > requirements.new
 	mv requirements.new requirements.lock
 

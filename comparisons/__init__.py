@@ -100,7 +100,7 @@ def sweep(
     solver: Literal["cprbm", "fea", "compare"] = "cprbm",
     check: int = 0,
     choices: Choices | None = None,
-    executor: Executor | None = None,
+    executor: Executor | str | None = None,
     at_most: float = 600.0,
     out: str | Path | None = None,
 ) -> Sweep:
@@ -112,7 +112,8 @@ def sweep(
         solver: solver of every point, or ``compare`` for both with a verdict.
         check: number of points at which both solvers are compared.
         choices: how finely, and by which variants; the standard choices if None.
-        executor: executor of the solves, as of :mod:`concurrent.futures`; None for this machine.
+        executor: executor of the solves, as of :mod:`concurrent.futures`, or ``dask://HOST:PORT`` with the address of
+            a scheduler; None for this machine.
         at_most: time limit of a solve, s.
         out: folder of the tables, where a stopped sweep goes on; None for no folder.
 

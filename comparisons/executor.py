@@ -19,7 +19,7 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from multiprocessing import get_context, parent_process
+from multiprocessing import current_process, get_context, parent_process
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import ParamSpec, TypeVar
@@ -144,6 +144,15 @@ class Child:
 _children: WeakSet[Child] = WeakSet()
 _local = threading.local()
 _ended = threading.Event()
+
+
+def permit_children() -> None:
+    """Permit children of this process, also where the process is a daemon, such as a worker of Dask.
+
+    Python forbids children of daemons, since a daemon is ended without a chance to end its children.  A child of this
+    module ends with its parent by itself.
+    """
+    vars(current_process())["_config"]["daemon"] = False
 
 
 def call_limited(seconds: float, call: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:

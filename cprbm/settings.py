@@ -7,7 +7,6 @@ from typing import Annotated, Literal, cast
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from cprbm.routing import by_second_edition
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.requirements import refuse
@@ -74,8 +73,7 @@ class Settings(BaseModel):
             raise SceneError(
                 [Mistake(f"settings.links.{beam}", found, allowed, scene.file) for beam, found, allowed in wrong]
             )
-        second = by_second_edition(scene, self.formulation, self.links_of)
-        refuse(scene, "the CPRBM", "overlap at rest", *(("theory", "edge") if second else ()))
+        refuse(scene, "the CPRBM", "overlap at rest", "theory", "edge")
 
 
 def _doubled(links: int | Mapping[str, int]) -> int | Mapping[str, int]:

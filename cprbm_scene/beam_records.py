@@ -11,32 +11,29 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from itertools import islice, pairwise
+from itertools import pairwise
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, shape_of, with_half_waves
-from cprbm_scene.curves import Array
-from cprbm_scene.mistakes import Mistake, broken, written_place
-from cprbm_scene.record import Name, Of, Record
-from cprbm_scene.units import NUMBER, STRESS, Length, Number, PositiveLength
+from cprbm_scene.curves import SAMPLES, Array
+from cprbm_scene.mistakes import Mistake, broken, first_broken, written_place
+from cprbm_scene.units import NUMBER, STRESS, Length, Measured, Name, Number, Of, PositiveLength, Record
 
 THINNEST, THICKEST = 1e-5, 0.2
 MOST_CURVED = 0.5
 CLOSEST = 1e-6
 MOST_PLACES = 1001
 LARGEST_RATIO = 1e5
-_SAMPLES = 2001
-"""Samples of a beam of varying thickness, with two samples in 1/1000 of the length."""
 
 
 class Material(Record):
     """Linear elastic, isotropic material: ``youngs_modulus`` in Pa, ``poisson_ratio`` a number."""
 
-    youngs_modulus: Annotated[float, Field(gt=0.0), STRESS]
-    poisson_ratio: Annotated[float, Field(gt=-1.0, le=0.5), NUMBER]
+    youngs_modulus: Annotated[float, Field(gt=0.0), Measured(STRESS)]
+    poisson_ratio: Annotated[float, Field(gt=-1.0, le=0.5), Measured(NUMBER)]
 
 
 PointName = Annotated[Name, Of("point")]
@@ -68,7 +65,7 @@ class FreeEnd(Record):
     def rules(self) -> Iterator[Mistake]:
         """A name whose body is another body of the scene."""
         found = f"{self.point!r}, and another body with the name '{self.point}-body'"
-        return broken((self.point is not None, "point", found, "another name of the free end"))
+        return broken(self.point is not None and Mistake("point", found, "another name of the free end"))
 
 
 BeamEnd = Annotated[WeldedEnd | PinnedEnd | FreeEnd, Field(discriminator="joint")]
@@ -86,23 +83,32 @@ class Profile(Record):
     def rules(self) -> Iterator[Mistake]:
         """Places without ascent from 0 to 1, or more or fewer than the values; jumps of the size."""
         at, values = self.at, self.values
-        where = f"places from {at[0]:.9g} to {at[-1]:.9g}"
-        span, places = f"values from {min(values):g} m to {max(values):g} m", f"at most {MOST_PLACES} of them"
-        ratio = f"values of which the largest is at most {LARGEST_RATIO:g} times the least"
-        counts, many = f"{len(values)} values at {len(at)} places", f"{len(at)} places"
-        ends = at[0] != 0.0 or at[-1] != 1.0
-        ascent = f"places that ascend, each at least {CLOSEST:g} after the one before"
-        rules = broken(
-            (len(at) != len(values), "values", counts, "as many values as places in at"),
-            (len(at) > MOST_PLACES, "at", many, places),
-            (ends, "at", where, "fractions of the beam's length that begin with 0 and end with 1"),
-            (not max(values) / LARGEST_RATIO <= min(values), "values", span, ratio),
+        return first_broken(
+            len(at) != len(values)
+            and Mistake("values", f"{len(values)} values at {len(at)} places", "as many values as places in at"),
+            len(at) > MOST_PLACES and Mistake("at", f"{len(at)} places", f"at most {MOST_PLACES} of them"),
+            (at[0], at[-1]) != (0.0, 1.0)
+            and Mistake(
+                "at",
+                f"places from {at[0]:.9g} to {at[-1]:.9g}",
+                "fractions of the beam's length that begin with 0 and end with 1",
+            ),
+            not max(values) / LARGEST_RATIO <= min(values)
+            and Mistake(
+                "values",
+                f"values from {min(values):g} m to {max(values):g} m",
+                f"values of which the largest is at most {LARGEST_RATIO:g} times the least",
+            ),
             *(
-                (not place - before >= CLOSEST, f"at[{i}]", f"{place:.9g} after {before:.9g}", ascent)
+                not place - before >= CLOSEST
+                and Mistake(
+                    f"at[{i}]",
+                    f"{place:.9g} after {before:.9g}",
+                    f"places that ascend, each at least {CLOSEST:g} after the one before",
+                )
                 for i, (before, place) in enumerate(pairwise(at), start=1)
             ),
         )
-        return islice(rules, 1)
 
 
 def _size_tag(value: object) -> str:
@@ -155,27 +161,26 @@ class Beam(Record):
 
     def thickness_at(self, u: Array) -> Array:
         """Thickness at fractions ``u`` of the arc length, m, in the same shape."""
-        return _size_at(self.thickness, u)
+        return np.asarray(np.interp(u, *_table(self.thickness)))
 
     def width_at(self, u: Array) -> Array:
         """Width at fractions ``u`` of the arc length, m, in the same shape."""
-        return _size_at(self.width, u)
+        return np.asarray(np.interp(u, *_table(self.width)))
 
     @property
     def knots(self) -> Array:
         """Fractions (k,) between which thickness and width are linear, from 0 to 1."""
-        inner = [size.at for size in (self.thickness, self.width) if isinstance(size, Profile)]
-        return np.array(sorted({0.0, 1.0}.union(*inner)))
+        return np.union1d(_table(self.thickness)[0], _table(self.width)[0])
 
     @property
     def thinnest(self) -> float:
         """The least thickness, m."""
-        return min(self.thickness.values) if isinstance(self.thickness, Profile) else self.thickness
+        return min(_table(self.thickness)[1])
 
     @property
     def thickest(self) -> float:
         """The largest thickness, m."""
-        return max(self.thickness.values) if isinstance(self.thickness, Profile) else self.thickness
+        return max(_table(self.thickness)[1])
 
     @property
     def tapered(self) -> bool:
@@ -190,25 +195,36 @@ class Beam(Record):
     def rules(self) -> Iterator[Mistake]:
         """Thickness out of proportion to the length or the curvature, of a curve and sizes without mistakes."""
         if not _parts_sound(self):
-            return
-        shape = shape_of(self.curve)
-        for thickness in (self.thinnest, self.thickest):
-            share = thickness / shape.length
-            found = f"{thickness:g} m, which is {share:.3g} of the beam's length{mix_up(share)}"
-            allowed = f"a thickness between {THINNEST:g} and {THICKEST:g} of the beam's length"
-            if not THINNEST <= share <= THICKEST:
-                yield Mistake("thickness", found, allowed)
-                return
-        share = 0.5 * self.thickest * shape.largest_curvature
-        if share < MOST_CURVED:
-            return
-        u = np.union1d(np.linspace(0.0, 1.0, _SAMPLES), self.knots)
-        shares = 0.5 * self.thickness_at(u) * shape.curvature(u)
-        worst, share = u[[shares.argmax()]], float(shares.max()) if self.tapered else share
-        found = f"{float(self.thickness_at(worst)[0]):g} m, half of which is {share:.3g} of the radius of curvature at "
-        found += f"{float(worst[0]):.3g} of the length, near {written_place(shape.point(worst)[0])} m{mix_up(share)}"
-        allowed = f"half a thickness less than {MOST_CURVED:g} of the radius of curvature"
-        yield from broken((share >= MOST_CURVED, "thickness", found, allowed))
+            return iter(())
+        length = shape_of(self.curve).length
+        sizes = ((size, size / length) for size in (self.thinnest, self.thickest))
+        return first_broken(
+            *(
+                not THINNEST <= share <= THICKEST
+                and Mistake(
+                    "thickness",
+                    f"{size:g} m, which is {share:.3g} of the beam's length{mix_up(share)}",
+                    f"a thickness between {THINNEST:g} and {THICKEST:g} of the beam's length",
+                )
+                for size, share in sizes
+            ),
+            _too_curved(self),
+        )
+
+
+def _too_curved(beam: Beam) -> Mistake | None:
+    """The mistake of a thickness beside the radius of curvature."""
+    shape = shape_of(beam.curve)
+    share = 0.5 * beam.thickest * shape.largest_curvature
+    if share < MOST_CURVED:
+        return None
+    u = np.union1d(np.linspace(0.0, 1.0, SAMPLES), beam.knots)
+    shares = 0.5 * beam.thickness_at(u) * shape.curvature(u)
+    worst, share = u[[shares.argmax()]], float(shares.max()) if beam.tapered else share
+    found = f"{float(beam.thickness_at(worst)[0]):g} m, half of which is {share:.3g} of the radius of curvature at "
+    found += f"{float(worst[0]):.3g} of the length, near {written_place(shape.point(worst)[0])} m{mix_up(share)}"
+    allowed = f"half a thickness less than {MOST_CURVED:g} of the radius of curvature"
+    return Mistake("thickness", found, allowed) if share >= MOST_CURVED else None
 
 
 def mix_up(share: float) -> str:
@@ -226,7 +242,6 @@ def _sound(beam: Beam) -> bool:
     return _parts_sound(beam) and not any(beam.rules())
 
 
-def _size_at(size: float | Profile, u: Array) -> Array:
-    if isinstance(size, Profile):
-        return np.asarray(np.interp(u, size.at, size.values))
-    return np.full(np.shape(u), size)
+def _table(size: float | Profile) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Fractions of the arc length and values of a size."""
+    return (size.at, size.values) if isinstance(size, Profile) else ((0.0, 1.0), (size, size))

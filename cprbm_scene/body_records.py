@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import chain
+from collections.abc import Iterator, Mapping
 from math import isnan, nan
 from typing import Annotated, ClassVar, Literal, cast
 
@@ -11,9 +10,24 @@ from pydantic import Field, create_model
 
 from cprbm_scene.beam_records import PointName
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, broken, unknown_names
-from cprbm_scene.record import Name, Named, Of, Record, nonzero
-from cprbm_scene.units import ANGLE, FORCE, LENGTH, LINE_LOAD, MOMENT, Direction, Point, Share, Unit
+from cprbm_scene.mistakes import Mistake, broken, unknown_name
+from cprbm_scene.units import (
+    ANGLE,
+    FORCE,
+    LENGTH,
+    LINE_LOAD,
+    MOMENT,
+    Angle,
+    Direction,
+    Measured,
+    Name,
+    Named,
+    Of,
+    Point,
+    Record,
+    Share,
+    Unit,
+)
 
 SHORTEST_STRETCH = 1e-6
 """Least length of a distributed load, of the beam's length."""
@@ -61,15 +75,21 @@ class SlidingBody(Record):
         return next(iter(self.points)) if self.about is None else self.about
 
     def rules(self) -> Iterator[Mistake]:
-        """A guide without direction; a pin without a point, of another body or without ``turns``."""
-        names, known = ", ".join(map(repr, self.points)), self.about in self.points
-        turned = f"{self.about!r}, a point to turn about, of a body that does not turn"
+        """A pin without a point, of another body or without ``turns``."""
         nothing = "nothing: of the points of a body that slides and turns, one stays in the slot"
-        yield from nonzero("along", self.along)
-        yield from unknown_names("about", self.about, "point of this body", self.points)
-        yield from broken(
-            (known and not self.turns, "about", turned, "turns = true, or no point"),
-            (self.turns and self.about is None and len(self.points) > 1, "about", nothing, f"one of {names}"),
+        return broken(
+            _pivot(self.about, self.points),
+            self.about in self.points
+            and not self.turns
+            and Mistake(
+                "about",
+                f"{self.about!r}, a point to turn about, of a body that does not turn",
+                "turns = true, or no point",
+            ),
+            self.turns
+            and self.about is None
+            and len(self.points) > 1
+            and Mistake("about", nothing, f"one of {', '.join(map(repr, self.points))}"),
         )
 
 
@@ -85,7 +105,12 @@ class TurningBody(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """A pivot outside the body's points."""
-        return unknown_names("about", self.about, "point of this body", self.points)
+        return broken(_pivot(self.about, self.points))
+
+
+def _pivot(about: Name | None, points: Mapping[Name, Point]) -> Mistake | bool:
+    """The mistake of a pivot outside a body's points."""
+    return about not in (None, *points) and unknown_name("about", str(about), "point of this body", points)
 
 
 Body = Annotated[FixedBody | FreeBody | SlidingBody | TurningBody, Field(discriminator="motion")]
@@ -109,16 +134,16 @@ class Stop(Record):
     beam: BeamName
     end: Literal["start", "end"]
     towards: PointName
-    least: Annotated[float, ANGLE] | None = None
-    most: Annotated[float, ANGLE] | None = None
+    least: Angle | None = None
+    most: Angle | None = None
 
     def rules(self) -> Iterator[Mistake]:
         """No limit, or limits in the wrong order."""
         least, most = (nan if limit is None else limit for limit in (self.least, self.most))
         both = f"least = {least:g} rad and most = {most:g} rad"
         return broken(
-            (isnan(least) and isnan(most), "", "neither 'least' nor 'most'", "at least one of the two, rad"),
-            (least >= most, "", both, "a least angle that is less than the most"),
+            isnan(least) and isnan(most) and Mistake("", "neither 'least' nor 'most'", "at least one of the two, rad"),
+            least >= most and Mistake("", both, "a least angle that is less than the most"),
         )
 
 
@@ -130,7 +155,7 @@ class Assembly(Record):
     an assembled state among several.  Contacts act throughout, stops as soon as the ends are at their points.
     """
 
-    moments: Annotated[Named[Annotated[float, MOMENT]], Of("beam")] = Field(default_factory=frozendict)
+    moments: Annotated[Named[Annotated[float, Measured(MOMENT)]], Of("beam")] = Field(default_factory=frozendict)
 
 
 class Moment(Record):
@@ -141,15 +166,7 @@ class Moment(Record):
     body: BodyName
 
 
-class _Directed(Record):
-    """Load or drive along a ``direction`` of any length but zero."""
-
-    def rules(self) -> Iterator[Mistake]:
-        """A direction [0, 0]."""
-        return nonzero("direction", getattr(self, "direction"))  # noqa: B009 - a field of the records below
-
-
-class Force(_Directed):
+class Force(Record):
     """Dead force at a body's ``point``, N: the ``direction`` (of any length but zero) stays as the body turns."""
 
     unit: ClassVar[Unit] = FORCE
@@ -158,7 +175,7 @@ class Force(_Directed):
     direction: Direction
 
 
-class BeamForce(_Directed):
+class BeamForce(Record):
     """Dead force on a ``beam``, N, ``at`` a fraction of the arc length from the start.
 
     The ``direction`` (of any length but zero) stays as the beam turns.
@@ -193,10 +210,10 @@ class DistributedLoad(Record):
     along: tuple[Share, Share] = (0.0, 1.0)
 
     def rules(self) -> Iterator[Mistake]:
-        """A direction [0, 0], and a stretch without length."""
+        """A stretch without length."""
         (begin, end), allowed = self.along, "two fractions of the beam's length, the smaller one first"
-        short = (end - begin < SHORTEST_STRETCH, "along", f"a stretch from {begin:.9g} to {end:.9g}", allowed)
-        return chain(nonzero("direction", self.direction), broken(short))
+        found = f"a stretch from {begin:.9g} to {end:.9g}"
+        return broken(end - begin < SHORTEST_STRETCH and Mistake("along", found, allowed))
 
 
 Load = Annotated[Moment | Force | BeamForce | BeamMoment | DistributedLoad, Field(discriminator="kind")]
@@ -221,7 +238,7 @@ class _Drive(_From):
         return cast("str | None", getattr(self, "from"))
 
 
-class DisplacementDrive(_Drive, _Directed):
+class DisplacementDrive(_Drive):
     """Prescribed displacement of a body's ``point`` along ``direction`` (of any length but zero), m.
 
     With ``from`` the displacement is free before the named stage, and then holds the value that it has there.

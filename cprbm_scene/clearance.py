@@ -21,11 +21,14 @@ axis by ∫ cos φ dφ/κ > 3.8 T.
 
 Bounds on rigid shapes are dimensionless: 1e-6 ≤ r/L ≤ 1e6, and L ≥ 1e-6 of all coordinates; larger or farther shapes
 leave a gap without digits.
+
+A place is behind a rigid line if the nearest place of the line is no end of the line and the place lies opposite to the
+line's normal towards the free side.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import lru_cache
 from itertools import pairwise, product
 from math import dist
@@ -33,13 +36,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm_scene.beam_records import Beam, WeldedEnd
 from cprbm_scene.curve_records import MEETING, SHORTEST, shape_of
-from cprbm_scene.curves import Array, least
-from cprbm_scene.edges import distance_from
-from cprbm_scene.mistakes import Mistake, written_place
+from cprbm_scene.curves import Array, Curve, least, unit_vector
+from cprbm_scene.mistakes import Mistake, broken, written_place
 from cprbm_scene.statement import (
     Arc,
+    Beam,
     BeamContact,
     CircleContact,
     EllipseContact,
@@ -51,6 +53,7 @@ from cprbm_scene.statement import (
     Scene,
     Spline,
     SplineContact,
+    WeldedEnd,
 )
 
 Range = tuple[float, float]
@@ -134,11 +137,10 @@ def wrong_clearance(scene: Scene) -> Iterator[Mistake]:
             yield from _itself(f"beams.{name}.curve", beam)
     for name, contact in scene.contacts.items():
         beams = [scene.beams[beam] for beam in contact.beams if beam in scene.beams and scene.beams[beam].sound]
-        if isinstance(contact, BeamContact) and len(beams) == 2 and contact.between[0] != contact.between[1]:
+        if isinstance(contact, BeamContact) and len(beams) == len(set(contact.between)) == 2:
             found = _too_deep(scene, contact, beams) if contact.thick else _crossing(*beams)
-            if found is not None:
-                names = f"{contact.between[0]!r} and {contact.between[1]!r}"
-                yield Mistake(f"contacts.{name}", f"{names} {found[0]}", found[1])
+            names = f"{contact.between[0]!r} and {contact.between[1]!r}"
+            yield from (Mistake(f"contacts.{name}", f"{names} {what}", allowed) for what, allowed in found)
         elif isinstance(contact, RigidContact) and beams and not any(contact.shape_rules()):
             yield from _rigid(scene, f"contacts.{name}", contact, beams[0])
 
@@ -163,34 +165,28 @@ def _left(ranges: list[Range]) -> bool:
     return all(low < high for low, high in ranges)
 
 
-def _too_deep(scene: Scene, contact: BeamContact, beams: list[Beam]) -> tuple[str, str] | None:
-    """Values found and allowed for thick beams; None without an overlap beyond touching."""
+def _too_deep(scene: Scene, contact: BeamContact, beams: list[Beam]) -> list[tuple[str, str]]:
+    """Values found and allowed for thick beams; none without an overlap beyond touching."""
     depth, mean = overlap_at_rest(scene, contact), 0.5 * sum(beam.thinnest for beam in beams)
-    allowed = OVERLAP if any(beam.tapered for beam in beams) else TOUCHING
-    return (
-        None
-        if depth <= allowed * mean
-        else (
-            f"that overlap at the start by {depth:.3g} m, {depth / mean:.3g} of their mean thickness",
-            f"beams that touch or are apart (overlap at most {allowed:g} of the mean thickness)",
-        )
-    )
+    most = OVERLAP if any(beam.tapered for beam in beams) else TOUCHING
+    found = f"that overlap at the start by {depth:.3g} m, {depth / mean:.3g} of their mean thickness"
+    allowed = f"beams that touch or are apart (overlap at most {most:g} of the mean thickness)"
+    return [(found, allowed)] if depth > most * mean else []
 
 
-def _crossing(first: Beam, second: Beam) -> tuple[str, str] | None:
-    """Values found and allowed for beams as lines; None without a crossing."""
+def _crossing(first: Beam, second: Beam) -> list[tuple[str, str]]:
+    """Values found and allowed for beams as lines; none without a crossing."""
     shapes = shape_of(first.curve), shape_of(second.curve)
     shortest = min(shape.length for shape in shapes)
     ranges = _apart_from_shared(first, second, CROSSING_ANGLE * shortest)
     if not _left(ranges):
-        return None
-    pair = beam_gap(first, second, *ranges, thick=False)
-    t1, t2 = (shape.tangent(np.array([u]))[0] for shape, u in zip(shapes, pair[1:], strict=True))
-    inside = all(1e-6 < u < 1.0 - 1e-6 for u in pair[1:])
-    if not (inside and pair.gap <= MEETING * shortest and abs(t1[0] * t2[1] - t1[1] * t2[0]) > CROSSING_ANGLE):
-        return None
-    place = written_place(shapes[0].point(np.array([pair.u1]))[0])
-    return f"that cross at the start, at {place} m", "neutral lines that touch or are apart"
+        return []
+    gap, *places = beam_gap(first, second, *ranges, thick=False)
+    t1, t2 = (shape.tangent(np.array([u]))[0] for shape, u in zip(shapes, places, strict=True))
+    inside = gap <= MEETING * shortest and all(1e-6 < u < 1.0 - 1e-6 for u in places)
+    found = f"that cross at the start, at {written_place(shapes[0].point(np.array(places[:1]))[0])} m"
+    crossing = inside and abs(t1[0] * t2[1] - t1[1] * t2[0]) > CROSSING_ANGLE
+    return [(found, "neutral lines that touch or are apart")] if crossing else []
 
 
 def _apart_from_shared(first: Beam, second: Beam, left_out: float) -> list[Range]:
@@ -212,12 +208,12 @@ def _apart_from_held(scene: Scene, beams: tuple[Beam, Beam], mean: float, ranges
     for sides in product(("start", "end"), repeat=2):
         joints = [getattr(beam, side) for beam, side in zip(beams, sides, strict=True)]
         places = [getattr(beam.curve, side) for beam, side in zip(beams, sides, strict=True)]
-        bodies = {owners.get(joint.point) if isinstance(joint, WeldedEnd) else None for joint in joints}
-        if None in bodies or len(bodies) == 2 or dist(*places) > SIDE_BY_SIDE * mean:
-            continue
-        for i, (beam, side) in enumerate(zip(beams, sides, strict=True)):
-            (low, high), share = cut[i], JOINED * mean / shape_of(beam.curve).length
-            cut[i] = (max(low, share), high) if side == "start" else (low, min(high, 1.0 - share))
+        one, other = (owners.get(joint.point) if isinstance(joint, WeldedEnd) else None for joint in joints)
+        if one is not None and one == other and dist(*places) <= SIDE_BY_SIDE * mean:
+            for i, (beam, side) in enumerate(zip(beams, sides, strict=True)):
+                share = JOINED * mean / shape_of(beam.curve).length
+                low, high = (share, 1.0) if side == "start" else (0.0, 1.0 - share)
+                cut[i] = max(cut[i][0], low), min(cut[i][1], high)
     return cut
 
 
@@ -227,39 +223,39 @@ def _itself(key: str, beam: Beam) -> Iterator[Mistake]:
 
     shape, u = shape_of(beam.curve), np.linspace(*WHOLE, 3 * _SAMPLES // 2)
     p, half, step = shape.point(u), _half(beam, u, thick=True), 2.0 / (len(u) - 1)
-    i, j = cKDTree(p).query_pairs(beam.thickest + step * shape.length, output_type="ndarray").T
-    far = (u[j] - u[i]) * shape.length > NEIGHBOURS * beam.thickest
-    if not np.any(far):
-        return
-    i, j = i[far], j[far]
+    pairs = cKDTree(p).query_pairs(beam.thickest + step * shape.length, output_type="ndarray")
+    i, j = pairs[(u[pairs[:, 1]] - u[pairs[:, 0]]) * shape.length > NEIGHBOURS * beam.thickest].T
+    if not len(i):
+        return iter(())
     k = int(np.argmin(np.hypot(*(p[i] - p[j]).T) - half[i] - half[j]))
-    pair = beam_gap(
-        beam, beam, *((max(0.0, at - step), min(1.0, at + step)) for at in (float(u[i[k]]), float(u[j[k]])))
-    )
-    thickness = float(np.mean(beam.thickness_at(np.array(pair[1:]))))
-    if -pair.gap > OVERLAP * thickness:
-        found = f"a beam that overlaps itself: near {written_place(shape.point(np.array([pair.u1]))[0])} m it comes to "
-        found += f"{thickness + pair.gap:.3g} m from itself, and is {thickness:g} m thick"
-        yield Mistake(key, found, "a curve that keeps a thickness away from itself")
+    ranges = ((max(0.0, at - step), min(1.0, at + step)) for at in (float(u[i[k]]), float(u[j[k]])))
+    gap, *places = beam_gap(beam, beam, *ranges)
+    thickness = float(np.mean(beam.thickness_at(np.array(places))))
+    found = f"a beam that overlaps itself: near {written_place(shape.point(np.array(places[:1]))[0])} m it comes to "
+    found += f"{thickness + gap:.3g} m from itself, and is {thickness:g} m thick"
+    return broken(-gap > OVERLAP * thickness and Mistake(key, found, "a curve that keeps a thickness away from itself"))
 
 
 def _rigid(scene: Scene, key: str, contact: RigidContact, beam: Beam) -> Iterator[Mistake]:
     """A shape out of proportion to the beam, or a beam that overlaps the shape or lies behind the edge."""
-    shape, mistakes = shape_of(beam.curve), list(_proportions(key, contact, shape_of(beam.curve).length))
-    if mistakes:
-        yield mistakes[0]
-        return
+    shape, circle = shape_of(beam.curve), isinstance(contact, CircleContact)
+    if mistakes := list(_proportions(key, contact, shape.length)):
+        return iter(mistakes[:1])
     away, samples = distance_from(contact), np.union1d(np.linspace(*WHOLE, 2 * _SAMPLES - 1), beam.knots)
     depth = -least(lambda u: np.asarray(away(shape.point(u)) - _half(beam, u, thick=contact.thick)), samples)[0]
     measure, of = (beam.thinnest, "its thickness") if contact.thick else (shape.length, "its length")
     points = scene.bodies[contact.body].points if contact.body in scene.bodies else {}
-    held = any(getattr(end, "point", None) in points for end in (beam.start, beam.end))
-    circle = isinstance(contact, CircleContact)
-    if depth > max(OVERLAP * measure, MEETING * shape.length if held and not circle else 0.0):
-        what = "that overlaps the circle" if circle else "on the wrong side of the edge, or overlapping the edge,"
-        side = f"circle from {contact.side}" if isinstance(contact, CircleContact) else "edge from the free side"
-        found = f"the beam {contact.beam!r} {what} at the start by {depth:.3g} m, {depth / measure:.3g} of {of}"
-        yield Mistake(key, found, f"a beam that touches the {side} or is apart (overlap at most {OVERLAP:g} of {of})")
+    held = any(getattr(end, "point", None) in points for end in (beam.start, beam.end)) and not circle
+    what = "that overlaps the circle" if circle else "on the wrong side of the edge, or overlapping the edge,"
+    side = f"circle from {getattr(contact, 'side', '')}" if circle else "edge from the free side"
+    return broken(
+        depth > max(OVERLAP * measure, MEETING * shape.length if held else 0.0)
+        and Mistake(
+            key,
+            f"the beam {contact.beam!r} {what} at the start by {depth:.3g} m, {depth / measure:.3g} of {of}",
+            f"a beam that touches the {side} or is apart (overlap at most {OVERLAP:g} of {of})",
+        )
+    )
 
 
 def _proportions(key: str, contact: RigidContact, length: float) -> Iterator[Mistake]:
@@ -275,12 +271,83 @@ def _proportions(key: str, contact: RigidContact, length: float) -> Iterator[Mis
         case FunctionContact(curve=curve) | SplineContact(curve=curve) | EllipseContact(curve=curve):
             part = {"beam-function": "range", "beam-spline": "points"}.get(contact.kind, "semi_axes")
             places, sizes = (curve.start, curve.end), [(part, shape_of(curve).length)]
-    for part, size in sizes:
-        if not SHORTEST * length <= size <= length / SHORTEST:
-            found = f"{size:.3g} m, which is {size / length:.3g} of the beam's length"
-            allowed = f"between {SHORTEST:g} and {1.0 / SHORTEST:g} of the beam's length"
-            yield Mistake(f"{key}.{part}", found, allowed)
     largest = max(abs(coordinate) for place in places for coordinate in place)
-    if not SHORTEST * largest <= length:
-        found = f"coordinates up to {largest:.3g} m beside a beam of {length:.3g} m"
-        yield Mistake(where, found, f"coordinates of which the beam's length is at least {SHORTEST:g}")
+    return broken(
+        *(
+            not SHORTEST * length <= size <= length / SHORTEST
+            and Mistake(
+                f"{key}.{part}",
+                f"{size:.3g} m, which is {size / length:.3g} of the beam's length",
+                f"between {SHORTEST:g} and {1.0 / SHORTEST:g} of the beam's length",
+            )
+            for part, size in sizes
+        ),
+        not SHORTEST * largest <= length
+        and Mistake(
+            where,
+            f"coordinates up to {largest:.3g} m beside a beam of {length:.3g} m",
+            f"coordinates of which the beam's length is at least {SHORTEST:g}",
+        ),
+    )
+
+
+_ON_EDGE = 257
+"""Samples of a curve, from the nearest of which Newton's method starts."""
+_STEPS = 20
+
+
+def distance_from(contact: RigidContact) -> Callable[[Array], Array]:
+    """The distance D (k,), m, as a function of places (k, 2), m."""
+    sign = 1.0 if getattr(contact, "side", "") in ("outside", "left") else -1.0
+    match contact:
+        case CircleContact():
+            return lambda p: np.asarray(sign * (np.hypot(*(p - np.array(contact.center)).T) - contact.radius))
+        case LineContact():
+            return lambda p: _from_line(np.array(contact.points), sign, p, closed=contact.closed)
+        case HalfPlaneContact():
+            return lambda p: np.asarray((p - np.array(contact.point)) @ unit_vector(contact.normal))
+        case EllipseContact():
+            # the curve runs counter-clockwise, with the inside on the left
+            return lambda p: _from_curve(shape_of(contact.curve), -sign, p, closed=True)
+        case FunctionContact():
+            upwards = (contact.side == "above") == (contact.range[0] < contact.range[1])
+            sign = 1.0 if upwards == (contact.axis == "x") else -1.0
+    assert isinstance(contact, FunctionContact | SplineContact)
+    return lambda p: _from_curve(shape_of(contact.curve), sign, p, closed=False)
+
+
+def _from_line(points: Array, sign: float, p: Array, *, closed: bool) -> Array:
+    along = np.diff(points, axis=0)
+    length = np.hypot(*along.T)
+    tau = along / length[:, None]
+    n = sign * np.column_stack((-tau[:, 1], tau[:, 0]))
+    r = p[:, None, :] - points[None, :-1]
+    t = np.clip((r * tau).sum(axis=2), 0.0, length)
+    away = r - t[:, :, None] * tau
+    nearest = np.hypot(away[:, :, 0], away[:, :, 1]).argmin(axis=1)
+    every = np.arange(len(p))
+    away, t = away[every, nearest], t[every, nearest]
+    # at a corner the normals of both pieces decide the side
+    other = np.where(t <= 0.0, nearest - 1, np.where(t >= length[nearest], nearest + 1, nearest))
+    other = other % len(tau) if closed else other
+    beyond = (other < 0) | (other >= len(tau))
+    towards = n[nearest] + n[np.clip(other, 0, len(tau) - 1)]
+    behind = ~beyond & ((away * towards).sum(axis=1) < 0.0)
+    return np.asarray(np.where(behind, -1.0, 1.0) * np.hypot(*away.T))
+
+
+def _from_curve(curve: Curve, sign: float, p: Array, *, closed: bool) -> Array:
+    samples = curve.samples[:: max(1, len(curve.samples) // _ON_EDGE)]
+    samples = samples if closed else np.append(samples, 1.0)
+    places = curve.place(samples)
+    w = samples[((places[:, 0] - p[:, :1]) ** 2 + (places[:, 1] - p[:, 1:]) ** 2).argmin(axis=1)]
+    for _ in range(_STEPS):
+        away, along = curve.place(w) - p, curve.derivative(w, 1)
+        slope, bent = (away * along).sum(axis=1), (along**2 + away * curve.derivative(w, 2)).sum(axis=1)
+        # beyond the centre of curvature the distance has a maximum: the sample stays
+        w = w - np.where(bent > 0.0, slope / np.where(bent > 0.0, bent, 1.0), 0.0)
+        w = w % 1.0 if closed else np.clip(w, 0.0, 1.0)
+    away, along = p - curve.place(w), curve.derivative(w, 1)
+    slope, side = (away * along).sum(axis=1), sign * (along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0])
+    beyond = ((w <= 0.0) & (slope < 0.0)) | ((w >= 1.0) & (slope > 0.0))
+    return np.asarray(np.where((beyond & (not closed)) | (side >= 0.0), 1.0, -1.0) * np.hypot(*away.T))

@@ -14,8 +14,18 @@ from cprbm_scene.curve_records import MOST_POINTS, Polynomial, Spline, SplinePoi
 from cprbm_scene.curves import unit_vector
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
-from cprbm_scene.record import Name, Named, Of, Record, nonzero
-from cprbm_scene.units import ANGLE, Coefficients, Direction, Length, Point, PositiveLength
+from cprbm_scene.units import (
+    Angle,
+    Coefficients,
+    Direction,
+    Length,
+    Name,
+    Named,
+    Of,
+    Point,
+    PositiveLength,
+    Record,
+)
 
 BACKWARDS = 1e-3
 """1 + cos of the angle between two pieces of a line, below which the line turns back on itself: 2.6 degrees."""
@@ -30,14 +40,32 @@ class Related(Record):
     def rules(self) -> Iterator[Mistake]:
         """Ranges of both coordinates or of none, and descending ranges."""
         ranges = {axis: span for axis, span in (("x", self.x), ("y", self.y)) if span is not None}
-        found, allowed = "both x and y" if ranges else "neither x nor y", "a range from the smaller to the larger value"
+        found = "both x and y" if ranges else "neither x nor y"
         return broken(
-            (len(ranges) != 1, "", found, "a range in exactly one of x and y"),
-            *((span[0] >= span[1], axis, str(list(span)), allowed) for axis, span in ranges.items()),
+            len(ranges) != 1 and Mistake("", found, "a range in exactly one of x and y"),
+            *(
+                low >= high and Mistake(axis, str([low, high]), "a range from the smaller to the larger value")
+                for axis, (low, high) in ranges.items()
+            ),
         )
 
 
-class PaperContact(Record):
+class PaperRigid(Record):
+    """Joints of the beam outside the rigid shape in the formulation ``paper``; without an entry all joints."""
+
+    related: Named[Related] = Field(default_factory=frozendict)
+
+    def of_others(self, beams: tuple[str, ...], allowed: str) -> Iterator[Mistake]:
+        """Entries for beams outside the contact."""
+        return broken(
+            *(
+                beam not in beams and Mistake(f"paper.related.{beam}", f"the beam {beam!r}", allowed)
+                for beam in self.related
+            )
+        )
+
+
+class PaperContact(PaperRigid):
     """Data for the formulation ``paper``: beam and axis of the boundary function, related joints.
 
     ``boundary`` names the beam of the function g_s; ``axis`` is the axis of the gap: ``y`` for g_s(x) − y,
@@ -46,22 +74,6 @@ class PaperContact(Record):
 
     boundary: Name
     axis: Literal["x", "y"] = "y"
-    related: Named[Related] = Field(default_factory=frozendict)
-
-
-class PaperRigid(Record):
-    """Joints of the beam outside the rigid shape in the formulation ``paper``; without an entry all joints."""
-
-    related: Named[Related] = Field(default_factory=frozendict)
-
-
-def _paper_rules(paper: PaperContact | PaperRigid | None, beams: tuple[str, ...], allowed: str) -> Iterator[Mistake]:
-    """Entries for beams outside the contact."""
-    boundary, related = getattr(paper, "boundary", beams[0]), paper.related if paper is not None else ()
-    return broken(
-        (boundary not in beams, "paper.boundary", repr(boundary), allowed),
-        *((beam not in beams, f"paper.related.{beam}", f"the beam {beam!r}", allowed) for beam in related),
-    )
 
 
 class BeamContact(Record):
@@ -79,10 +91,16 @@ class BeamContact(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """A pair of the same beam twice, and data for ``paper`` of other beams."""
-        (one, other), allowed = self.between, f"one of the pair: {', '.join(map(repr, self.between))}"
+        (one, other), paper = self.between, self.paper
+        allowed = f"one of the pair: {one!r}, {other!r}"
         different = "two different beams; a beam may touch itself in a contact of kind 'beam-self'"
-        twice = broken((one == other, "between", f"{one!r} twice", different))
-        return chain(twice, _paper_rules(self.paper, self.between, allowed))
+        return broken(
+            one == other and Mistake("between", f"{one!r} twice", different),
+            paper is not None
+            and paper.boundary not in self.between
+            and Mistake("paper.boundary", repr(paper.boundary), allowed),
+            *(paper.of_others(self.between, allowed) if paper is not None else ()),
+        )
 
 
 class SelfContact(Record):
@@ -122,9 +140,8 @@ class RigidContact(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """Data for ``paper`` of other beams, and shapes without geometry."""
-        return chain(
-            _paper_rules(self.paper, self.beams, f"the contact's beam {self.beam!r}"), islice(self.shape_rules(), 1)
-        )
+        paper = () if self.paper is None else self.paper.of_others(self.beams, f"the contact's beam {self.beam!r}")
+        return chain(paper, islice(self.shape_rules(), 1))
 
     def shape_rules(self) -> Iterator[Mistake]:
         """Mistakes of the shape, only the first of them valid; none by default."""
@@ -158,22 +175,23 @@ class LineContact(RigidContact):
 
     def shape_rules(self) -> Iterator[Mistake]:
         """Too many points, repeated points, lines with reversals or crossings."""
-        pieces, many = list(pairwise(self.points)), f"at most {MOST_POINTS} of them"
+        pieces = list(pairwise(self.points))
         yield from broken(
-            (len(self.points) > MOST_POINTS, "points", f"{len(self.points)} points", many),
+            len(self.points) > MOST_POINTS
+            and Mistake("points", f"{len(self.points)} points", f"at most {MOST_POINTS} of them"),
             *(
-                (a == b, f"points[{i}]", "a point 0 m from the one before", "two different points")
+                a == b and Mistake(f"points[{i}]", "a point 0 m from the one before", "two different points")
                 for i, (a, b) in enumerate(pieces, start=1)
             ),
         )
         tau = [unit_vector((b[0] - a[0], b[1] - a[1])) for a, b in pieces]
-        back = "a point at which the line turns back on itself"
         corners = enumerate(pairwise([*tau, tau[0]] if self.closed else tau), start=1)
+        back = "a point at which the line turns back on itself"
         yield from broken(
-            *((1.0 + a @ b < BACKWARDS, f"points[{i}]", back, "a line that goes on") for i, (a, b) in corners)
+            *(1.0 + a @ b < BACKWARDS and Mistake(f"points[{i}]", back, "a line that goes on") for i, (a, b) in corners)
         )
         for (i, first), (j, second) in combinations(enumerate(pieces), 2):
-            neighbours = j == i + 1 or (self.closed and j - i == len(pieces) - 1)
+            neighbours = j - i in ((1, len(pieces) - 1) if self.closed else (1,))
             if not neighbours and _crosses(first, second) and _crosses(second, first):
                 found = f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}"
                 yield Mistake("points", found, "a line that does not meet itself")
@@ -195,10 +213,6 @@ class HalfPlaneContact(RigidContact):
     kind: Literal["beam-half-plane"]
     point: Point
     normal: Direction
-
-    def shape_rules(self) -> Iterator[Mistake]:
-        """A normal [0, 0]."""
-        return nonzero("normal", self.normal)
 
 
 class FunctionContact(RigidContact):
@@ -241,8 +255,8 @@ class SplineContact(RigidContact):
     @property
     def curve(self) -> Spline:
         """The edge as a curve."""
-        directions = {"start_direction": self.start_direction, "end_direction": self.end_direction}
-        return Spline(kind="spline", points=self.points, **directions)
+        ends = {"start_direction": self.start_direction, "end_direction": self.end_direction}
+        return Spline(kind="spline", points=self.points, **ends)
 
     def shape_rules(self) -> Iterator[Mistake]:
         """Mistakes of the spline."""
@@ -258,7 +272,7 @@ class EllipseContact(RigidContact):
     kind: Literal["beam-ellipse"]
     center: Point
     semi_axes: tuple[PositiveLength, PositiveLength]
-    angle: Annotated[float, ANGLE] = 0.0
+    angle: Angle = 0.0
     side: Literal["outside", "inside"] = "outside"
 
     @property

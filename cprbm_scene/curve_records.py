@@ -20,11 +20,10 @@ from typing import Annotated, Literal, cast
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
 
-from cprbm_scene.curves import CircularArc, Curve, Graph, SplineCurve, StraightLine
+from cprbm_scene.curves import Curve, circular_arc, graph, slowest, spline, steepest, straight_line
 from cprbm_scene.mistakes import Mistake, broken, written_place
 from cprbm_scene.point_table import read_points
-from cprbm_scene.record import Record, nonzero
-from cprbm_scene.units import Coefficients, Direction, Length, Point, Reading
+from cprbm_scene.units import Coefficients, Direction, Length, Point, Reading, Record
 
 SHORTEST = 1e-6
 STEEPEST = 1e3
@@ -146,14 +145,13 @@ def shape_of(curve: NeutralLine) -> Curve:
     """Geometry of a curve by fractions of the arc length; curves without mistakes have a geometry."""
     match curve:
         case Line():
-            return StraightLine(curve.start, curve.end)
+            return straight_line(curve.start, curve.end)
         case Arc():
-            ccw = curve.direction == "counterclockwise"
-            return CircularArc(curve.center, curve.start, curve.end, counterclockwise=ccw)
+            return circular_arc(curve.center, curve.start, curve.end, clockwise=curve.direction == "clockwise")
         case Polynomial():
-            return Graph(curve.coefficients, *curve.range, along=int(curve.axis == "y"))
+            return graph(curve.coefficients, *curve.range, along=int(curve.axis == "y"))
         case Spline():
-            return SplineCurve(curve.points, (curve.start_direction, curve.end_direction))
+            return spline(curve.points, (curve.start_direction, curve.end_direction))
 
 
 def with_half_waves(curve: NeutralLine, amplitude: float, half_waves: int) -> Spline:
@@ -180,27 +178,30 @@ def with_half_waves(curve: NeutralLine, amplitude: float, half_waves: int) -> Sp
 
 
 def _curve_rules(curve: NeutralLine) -> Iterator[Mistake]:
-    match curve:
-        case Polynomial():
-            yield from graph_rules(curve)
-        case Spline():
-            yield from _spline_rules(curve)
+    if isinstance(curve, Polynomial):
+        yield from graph_rules(curve)
+    if isinstance(curve, Spline):
+        yield from _spline_rules(curve)
     same = f"a start and an end at the same place {written_place(curve.start)} m"
-    yield from broken((curve.start == curve.end, "", same, "two different places"))
-    places = curve.points if isinstance(curve, Spline) else (curve.start, curve.end)
+    yield from broken(curve.start == curve.end and Mistake("", same, "two different places"))
     if isinstance(curve, Arc):
         yield from _arc_rules(curve)
-        places += (curve.center,)
+    places = (curve.start, curve.end, *getattr(curve, "points", ()), getattr(curve, "center", curve.start))
     length, largest = shape_of(curve).length, max(abs(number) for place in places for number in place)
     term = _largest_term(curve) if isinstance(curve, Polynomial) else 0.0
-    short, allowed = (
-        f"a length of {length:.3g} m at coordinates up to {largest:.3g} m",
-        f"a length of at least {SHORTEST:g}",
-    )
-    steep = f"a term of {term:.3g} m in a curve of {length:.3g} m"
     yield from broken(
-        (not SHORTEST * largest <= length < inf, "", short, f"{allowed} of the largest coordinate"),
-        (not SHORTEST * term <= length, "coefficients", steep, f"{allowed} of the largest term"),
+        not SHORTEST * largest <= length < inf
+        and Mistake(
+            "",
+            f"a length of {length:.3g} m at coordinates up to {largest:.3g} m",
+            f"a length of at least {SHORTEST:g} of the largest coordinate",
+        ),
+        not SHORTEST * term <= length
+        and Mistake(
+            "coefficients",
+            f"a term of {term:.3g} m in a curve of {length:.3g} m",
+            f"a length of at least {SHORTEST:g} of the largest term",
+        ),
     )
 
 
@@ -209,22 +210,24 @@ def _arc_rules(curve: Arc) -> Iterator[Mistake]:
     found = f"ends that lie on no common circle: the start is {first:.9g} m from the center, the end {last:.9g} m"
     allowed = f"distances that differ by at most {MEETING:g} of the radius"
     return broken(
-        (min(first, last) == 0.0, "", "an end at the arc's own center", "ends on a circle about the center"),
-        (not abs(last - first) <= MEETING * first, "", found, allowed),
+        min(first, last) == 0.0 and Mistake("", "an end at the arc's own center", "ends on a circle about the center"),
+        not abs(last - first) <= MEETING * first and Mistake("", found, allowed),
     )
 
 
 def graph_rules(curve: Polynomial) -> Iterator[Mistake]:
     """Mistakes of a polynomial that leave no graph with a finite slope; each rule needs the earlier ones."""
-    (first, last), many = curve.range, f"{len(curve.coefficients)} coefficients"
+    (first, last), count = curve.range, len(curve.coefficients)
+    most, same = f"at most {HIGHEST_DEGREE + 1} of them", f"a range from {first:g} m to the same {last:g} m"
     yield from broken(
-        (len(curve.coefficients) > HIGHEST_DEGREE + 1, "coefficients", many, f"at most {HIGHEST_DEGREE + 1} of them"),
-        (first == last, "range", f"a range from {first:g} m to the same {last:g} m", "two different values"),
+        count > HIGHEST_DEGREE + 1 and Mistake("coefficients", f"{count} coefficients", most),
+        first == last and Mistake("range", same, "two different values"),
     )
     finite = isfinite(_largest_term(curve)) and isfinite(last - first)
-    slope = Graph(curve.coefficients, first, last, along=0).steepest if finite else inf
+    slope = steepest(shape_of(curve), along=0 if curve.axis == "x" else 1) if finite else inf
     allowed = f"a slope of at most {STEEPEST:g} (a steeper curve may be a function of {'yx'['xy'.index(curve.axis)]})"
-    yield from broken((not slope <= STEEPEST, "coefficients", f"a slope of up to {slope:.3g} in the range", allowed))
+    found = f"a slope of up to {slope:.3g} in the range"
+    yield from broken(not slope <= STEEPEST and Mistake("coefficients", found, allowed))
 
 
 def _largest_term(curve: Polynomial) -> float:
@@ -235,19 +238,21 @@ def _largest_term(curve: Polynomial) -> float:
 
 
 def _spline_rules(curve: Spline) -> Iterator[Mistake]:
-    many, most = f"{len(curve.points)} points", f"at most {MOST_POINTS} of them"
-    yield from broken((len(curve.points) > MOST_POINTS, "points", many, most))
-    yield from nonzero("start_direction", curve.start_direction)
-    yield from nonzero("end_direction", curve.end_direction)
-    chords = [dist(*pair) for pair in pairwise(curve.points)]
-    whole, allowed = (
-        sum(chords),
-        f"a point at least {SHORTEST:g} of all the distances between the points away from the one before",
+    count, chords = len(curve.points), [dist(*pair) for pair in pairwise(curve.points)]
+    whole = sum(chords)
+    yield from broken(
+        count > MOST_POINTS and Mistake("points", f"{count} points", f"at most {MOST_POINTS} of them"),
+        *(
+            not SHORTEST * whole <= chord < inf
+            and Mistake(
+                f"points[{i}]",
+                f"{written_place(curve.points[i])} m, {chord:.3g} m from the point before",
+                f"a point at least {SHORTEST:g} of all the distances between the points away from the one before",
+            )
+            for i, chord in enumerate(chords, start=1)
+        ),
     )
-    for i, chord in enumerate(chords, start=1):
-        found = f"{written_place(curve.points[i])} m, {chord:.3g} m from the point before"
-        yield from broken((not SHORTEST * whole <= chord < inf, f"points[{i}]", found, allowed))
-    speed, place = cast(SplineCurve, shape_of(curve)).slowest
+    speed, place = slowest(shape_of(curve))
     found = f"points through which a smooth line has to turn back on the spot, near {written_place(place)} m"
     allowed = "points (and directions) that a smooth line follows; more of them where it turns sharply"
-    yield from broken((not speed >= SLOWEST, "points", found, allowed))
+    yield from broken(not speed >= SLOWEST and Mistake("points", found, allowed))

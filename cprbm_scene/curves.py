@@ -4,13 +4,14 @@
 symbol   meaning
 =======  ============================================================
 u        fraction of the arc length, from 0 to 1
-w        parameter of a curve without a closed form of the arc length
-q(w)     point less the start, divided by the size T
-T        size: extent of a graph's range, sum of a spline's chords, m
+w        parameter of the curve, from 0 to 1
+q(w)     point less the origin, divided by the size T
+T        size: radius, extent of a graph's range, sum of a spline's chords, m
 κ        |q' × q''|/(T |q'|³), absolute curvature, 1/m
 =======  ============================================================
 
-Lines and arcs have closed forms.  A graph y = f(x) has the parameter w = |x − x₀|/T, so that q = (± w, (f − f₀)/T).
+Of lines and arcs |q'| is constant, and w = u.  A graph y = f(x) has the parameter w = |x − x₀|/T, so that
+q = (± w, (f − f₀)/T).
 A spline has two cubic splines of the chord length, q' with respect to chord length over T.  Chord lengths keep a cubic
 spline within the fourth power of the points' distance of a smooth curve through the points (M. S. Floater, Chordal
 cubic spline interpolation is fourth-order accurate, IMA Journal of Numerical Analysis 26 (2006) 25-33).
@@ -25,7 +26,6 @@ from collections.abc import Callable, Sequence
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from math import atan2, dist, hypot, tau
-from typing import Protocol
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -33,6 +33,10 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Point = tuple[float, float]
+
+SAMPLES = 2001
+"""Samples of a curve, between which extrema are refined: a bend of 1/1000 of the length has two samples."""
 _NODES, _WEIGHTS = leggauss(12)
 _MOST_PANELS = 1 << 16
 _SETTLED = 1e-14
@@ -42,54 +46,6 @@ _CLOSE = 1e-10
 """Newton step at which the iteration ends: the next step, by quadratic convergence, is below round-off."""
 _REMEMBERED = 24
 """Arrays of fractions with stored places: a solver asks for the same fractions at many stations."""
-
-
-class ArcLength:
-    """Arc length S(w) of a curve with the ``speed`` S', from panels between ``first`` (p+1,), ascending from 0 to 1."""
-
-    def __init__(self, speed: Callable[[Array], Array], first: Array) -> None:
-        self._speed, self._w, self._S = speed, first, _sums(speed, first)
-        while len(self._w) <= _MOST_PANELS:
-            before, self._w = self._S, np.sort(np.append(self._w, 0.5 * (self._w[1:] + self._w[:-1])))
-            self._S = _sums(speed, self._w)
-            if np.max(np.abs(self._S[::2] - before)) <= _SETTLED * self._S[-1]:
-                break
-        self.whole = float(self._S[-1])
-        self._places = lru_cache(maxsize=_REMEMBERED)(self._inverted)
-
-    def places(self, u: Array) -> Array:
-        """Parameters w (n,), read-only, at fractions ``u`` (n,), which are clipped to [0, 1]."""
-        return self._places(np.asarray(u, dtype=np.float64).tobytes())
-
-    def _inverted(self, fractions: bytes) -> Array:
-        S = np.clip(np.frombuffer(fractions), 0.0, 1.0) * self.whole
-        panel = np.clip(np.searchsorted(self._S, S, side="right") - 1, 0, len(self._w) - 2)
-        low, high, missing = self._w[panel], self._w[panel + 1], S - self._S[panel]
-        w = low + (high - low) * missing / (self._S[panel + 1] - self._S[panel])
-        for _ in range(_NEWTON_STEPS):
-            step = (missing - _integral(self._speed, low, w)) / self._speed(w)
-            w = np.clip(w + step, low, high)
-            if np.max(np.abs(step), initial=0.0) <= _CLOSE:
-                break
-        w.flags.writeable = False
-        return w
-
-
-def _integral(speed: Callable[[Array], Array], low: Array, high: Array) -> Array:
-    """Gauss–Legendre integrals (n,) of the speed from ``low`` (n,) to ``high`` (n,)."""
-    half = 0.5 * (high - low)
-    return np.asarray(speed(low[:, None] + half[:, None] * (1.0 + _NODES)) @ _WEIGHTS * half)
-
-
-def _sums(speed: Callable[[Array], Array], w: Array) -> Array:
-    """S at the ends ``w`` (p+1,) of the panels."""
-    return np.concatenate(([0.0], np.cumsum(_integral(speed, w[:-1], w[1:]))))
-
-
-Point = tuple[float, float]
-
-_SAMPLES = 2001
-"""Samples of a curve, between which extrema are refined: a bend of 1/1000 of the length has two samples."""
 _PANELS = 32
 _PANELS_OF_PIECE = 4
 _FEWEST_OF_PIECE, _MOST_OF_PIECE, _MOST_OF_SPLINE = 9, 65, 4001
@@ -103,98 +59,24 @@ _REAL = 1e-6
 """Imaginary part up to which a root counts as real: a sample more or less is harmless."""
 
 
-class Curve(Protocol):
-    """Geometry of a neutral line by fractions ``u`` (n,) of the arc length."""
+class Curve:
+    """Curve ``origin`` + ``size`` q(w), m, with the derivatives ``q(w, order)`` (..., 2) of order 0, 1 and 2.
 
-    @property
-    def length(self) -> float:
-        """Arc length, m."""
-
-    @property
-    def largest_curvature(self) -> float:
-        """Largest absolute curvature, 1/m."""
-
-    def point(self, u: Array) -> Array:
-        """Points (n, 2), m."""
-
-    def tangent(self, u: Array) -> Array:
-        """Unit tangents (n, 2), from start to end."""
-
-    def curvature(self, u: Array) -> Array:
-        """Absolute curvature (n,), 1/m."""
-
-
-class StraightLine:
-    """Straight line between two points, m."""
-
-    largest_curvature = 0.0
-
-    def __init__(self, start: Point, end: Point) -> None:
-        self.length = dist(start, end)
-        self._start, self._way = np.array(start), np.array(end) - np.array(start)
-
-    def point(self, u: Array) -> Array:
-        """Points (n, 2), m."""
-        return np.asarray(self._start + u[:, None] * self._way)
-
-    def tangent(self, u: Array) -> Array:
-        """Unit tangents (n, 2)."""
-        return np.tile(self._way / np.hypot(*self._way), (len(u), 1))
-
-    def curvature(self, u: Array) -> Array:
-        """Zeros (n,)."""
-        return np.zeros(len(u))
-
-
-class CircularArc:
-    """Circular arc about ``center`` from ``start`` towards ``end``, m, with the radius of ``start``."""
-
-    def __init__(self, center: Point, start: Point, end: Point, *, counterclockwise: bool) -> None:
-        first, last = (atan2(place[1] - center[1], place[0] - center[0]) for place in (start, end))
-        turn = (last - first) if counterclockwise else (first - last)
-        self.turn = (turn % tau or tau) * (1.0 if counterclockwise else -1.0)
-        self._radius, self._center, self._first = dist(start, center), np.array(center), first
-        self.length, self.largest_curvature = abs(self.turn) * self._radius, 1.0 / self._radius
-
-    def point(self, u: Array) -> Array:
-        """Points (n, 2), m."""
-        angle = self._first + self.turn * u
-        return np.asarray(self._center + self._radius * np.column_stack((np.cos(angle), np.sin(angle))))
-
-    def tangent(self, u: Array) -> Array:
-        """Unit tangents (n, 2)."""
-        angle = self._first + self.turn * u
-        return np.asarray(np.sign(self.turn) * np.column_stack((-np.sin(angle), np.cos(angle))))
-
-    def curvature(self, u: Array) -> Array:
-        """The inverse radius (n,), 1/m."""
-        return np.full(len(u), self.largest_curvature)
-
-
-class ParametricCurve:
-    """Curve ``start`` + ``size`` q(w), with the derivatives ``q(w, order)`` (..., 2) of order 0, 1 and 2.
-
-    ``panels`` are places of w between which q is smooth; ``samples`` are places of w that are dense on the curve.
+    ``panels`` are places of w between which q is smooth, None for constant |q'|; ``samples`` are places of w that are
+    dense on the curve.
     """
 
     def __init__(
-        self, start: Point, size: float, q: Callable[[Array, int], Array], panels: Array, samples: Array
+        self,
+        origin: Point,
+        size: float,
+        q: Callable[[Array, int], Array],
+        panels: Array | None = None,
+        samples: Array | Sequence[float] = (0.0, 1.0),
     ) -> None:
-        self._start, self._size, self._q, self._panels, self.samples = np.array(start), size, q, panels, samples
-
-    @cached_property
-    def _arc(self) -> ArcLength:
-        return ArcLength(self.speed, self._panels)
-
-    @cached_property
-    def length(self) -> float:
-        """Arc length, m."""
-        return self._arc.whole * self._size
-
-    @cached_property
-    def largest_curvature(self) -> float:
-        """Largest absolute curvature, 1/m."""
-        return -least(lambda w: -self._bend(w), self.samples)[0]
+        self._origin, self._size, self._q = np.array(origin), size, q
+        self._panels, self.samples = panels, np.asarray(samples)
+        self._inverted = lru_cache(maxsize=_REMEMBERED)(self._inverse)
 
     def derivative(self, w: Array, order: int) -> Array:
         """Derivatives (n, 2) of the place by the parameter, m, at parameters ``w`` (n,)."""
@@ -207,93 +89,159 @@ class ParametricCurve:
 
     def place(self, w: Array) -> Array:
         """Points (n, 2), m, at parameters ``w`` (n,)."""
-        return np.asarray(self._start + self._size * self._q(w, 0))
+        return np.asarray(self._origin + self._size * self._q(w, 0))
+
+    @cached_property
+    def length(self) -> float:
+        """Arc length, m."""
+        return float(self._arc[1][-1]) * self._size
+
+    @cached_property
+    def largest_curvature(self) -> float:
+        """Largest absolute curvature, 1/m."""
+        if self._panels is None:
+            return float(self._bend(np.zeros(1))[0])
+        return -least(lambda w: -self._bend(w), self.samples)[0]
 
     def point(self, u: Array) -> Array:
-        """Points (n, 2), m."""
-        return self.place(self._arc.places(u))
+        """Points (n, 2), m, at fractions ``u`` (n,) of the arc length."""
+        return self.place(self._places(u))
 
     def tangent(self, u: Array) -> Array:
-        """Unit tangents (n, 2)."""
-        w = self._arc.places(u)
+        """Unit tangents (n, 2), from start to end, at fractions ``u`` (n,) of the arc length."""
+        w = self._places(u)
         return np.asarray(self._q(w, 1) / self.speed(w)[:, None])
 
     def curvature(self, u: Array) -> Array:
-        """Absolute curvature (n,), 1/m."""
-        return self._bend(self._arc.places(u))
+        """Absolute curvature (n,), 1/m, at fractions ``u`` (n,) of the arc length."""
+        return self._bend(self._places(u))
 
     def _bend(self, w: Array) -> Array:
         first, second = self._q(w, 1), self._q(w, 2)
         cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
         return np.asarray(np.abs(cross) / (self.speed(w) ** 3 * self._size))
 
+    @cached_property
+    def _arc(self) -> tuple[Array, Array]:
+        """Ends w of panels, and the arc lengths S(w)/T there."""
+        if self._panels is None:
+            return np.array([0.0, 1.0]), np.array([0.0, self.speed(np.zeros(1))[0]])
+        w, S = self._panels, self._sums(self._panels)
+        while len(w) <= _MOST_PANELS:
+            coarse, w = S, np.sort(np.append(w, 0.5 * (w[1:] + w[:-1])))
+            S = self._sums(w)
+            if np.max(np.abs(S[::2] - coarse)) <= _SETTLED * S[-1]:
+                break
+        return w, S
 
-class Graph(ParametricCurve):
+    def _sums(self, w: Array) -> Array:
+        return np.concatenate(([0.0], np.cumsum(self._integral(w[:-1], w[1:]))))
+
+    def _integral(self, low: Array, high: Array) -> Array:
+        """Gauss–Legendre integrals (n,) of the speed from ``low`` (n,) to ``high`` (n,)."""
+        half = 0.5 * (high - low)
+        return np.asarray(self.speed(low[:, None] + half[:, None] * (1.0 + _NODES)) @ _WEIGHTS * half)
+
+    def _places(self, u: Array) -> Array:
+        """Parameters w (n,), read-only, at fractions ``u`` (n,), which are clipped to [0, 1]."""
+        return u if self._panels is None else self._inverted(np.asarray(u, dtype=np.float64).tobytes())
+
+    def _inverse(self, fractions: bytes) -> Array:
+        ends, sums = self._arc
+        S = np.clip(np.frombuffer(fractions), 0.0, 1.0) * sums[-1]
+        panel = np.clip(np.searchsorted(sums, S, side="right") - 1, 0, len(ends) - 2)
+        low, high, missing = ends[panel], ends[panel + 1], S - sums[panel]
+        w = low + (high - low) * missing / (sums[panel + 1] - sums[panel])
+        for _ in range(_NEWTON_STEPS):
+            step = (missing - self._integral(low, w)) / self.speed(w)
+            w = np.clip(w + step, low, high)
+            if np.max(np.abs(step), initial=0.0) <= _CLOSE:
+                break
+        w.flags.writeable = False
+        return w
+
+
+def straight_line(start: Point, end: Point) -> Curve:
+    """Straight line between two points, m."""
+    way = np.array(end) - np.array(start)
+    return Curve(start, 1.0, lambda w, order: np.multiply.outer((w, np.ones_like(w), np.zeros_like(w))[order], way))
+
+
+def circular_arc(center: Point, start: Point, end: Point, *, clockwise: bool) -> Curve:
+    """Circular arc about ``center`` from ``start`` towards ``end``, m, with the radius of ``start``."""
+    first, last = (atan2(place[1] - center[1], place[0] - center[0]) for place in (start, end))
+    turn = -((first - last) % tau or tau) if clockwise else (last - first) % tau or tau
+
+    def q(w: Array, order: int) -> Array:
+        # a derivative is a quarter of a turn ahead
+        angle = first + turn * w
+        c, s = np.cos(angle), np.sin(angle)
+        return np.stack(((c, s), (-turn * s, turn * c), (-(turn**2) * c, -(turn**2) * s))[order], axis=-1)
+
+    return Curve(center, dist(start, center), q)
+
+
+def graph(coefficients: Sequence[float], first: float, last: float, *, along: int) -> Curve:
     """Graph y = f(x), or x = f(y) with ``along`` = 1, over a range from ``first`` to ``last``, m.
 
     ``coefficients`` are those of f, lowest power first, in metres for a variable in metres.
     """
+    extent, sense = abs(last - first), float(np.sign(last - first))
+    # in units of the extent no power of the variable is larger than necessary
+    scaled, factor = [0.0], 1.0
+    for coefficient in coefficients[1:]:
+        scaled.append(coefficient * factor if coefficient else 0.0)
+        factor *= extent
+    with np.errstate(over="ignore", invalid="ignore"):
+        g = Polynomial(scaled)(Polynomial([first / extent, sense]))
+        g -= g(0.0)
+        slope = g.deriv().trim(_NEGLIGIBLE * np.max(np.abs(g.deriv().coef)))
+        # a steep graph has its sharpest bend where the graph is level
+        level = slope.roots() if np.all(np.isfinite(g.coef)) else np.zeros(0)
+        value = float(Polynomial(coefficients)(first))
+    level = level.real[(np.abs(level.imag) < _REAL) & (level.real > 0.0) & (level.real < 1.0)]
+    derivatives = ((Polynomial([0.0, sense]), g), (Polynomial([sense]), g.deriv()), (Polynomial([0.0]), g.deriv(2)))
 
-    def __init__(self, coefficients: Sequence[float], first: float, last: float, *, along: int) -> None:
-        extent, sense = abs(last - first), float(np.sign(last - first))
-        # in units of the extent no power of the variable is larger than necessary
-        scaled, factor = [0.0], 1.0
-        for coefficient in coefficients[1:]:
-            scaled.append(coefficient * factor if coefficient else 0.0)
-            factor *= extent
-        with np.errstate(over="ignore", invalid="ignore"):
-            g = Polynomial(scaled)(Polynomial([first / extent, sense]))
-            g -= g(0.0)
-            self._g = (g, g.deriv(1), g.deriv(2))
-            slope = self._g[1].trim(_NEGLIGIBLE * np.max(np.abs(self._g[1].coef)))
-            level = slope.roots() if np.all(np.isfinite(g.coef)) else np.zeros(0)
-            # a steep graph has its sharpest bend where the graph is level
-            value = float(Polynomial(coefficients)(first))
-        level = level.real[(np.abs(level.imag) < _REAL) & (level.real > 0.0) & (level.real < 1.0)]
-        self._along, self._sense = along, sense
-        super().__init__(
-            (value, first) if along else (first, value),
-            extent,
-            self._derivative,
-            np.linspace(0.0, 1.0, _PANELS + 1),
-            np.union1d(np.linspace(0.0, 1.0, _SAMPLES), level),
-        )
+    def q(w: Array, order: int) -> Array:
+        x, y = (np.asarray(each(w), dtype=np.float64) for each in derivatives[order])
+        return np.stack((y, x) if along else (x, y), axis=-1)
 
-    @property
-    def steepest(self) -> float:
-        """Largest |f'| in the range; not finite beyond the range of floating-point numbers."""
-        with np.errstate(over="ignore", invalid="ignore"):
-            return float(np.max(np.abs(self._g[1](self.samples))))
-
-    def _derivative(self, w: Array, order: int) -> Array:
-        along = (self._sense * w, np.full(np.shape(w), self._sense), np.zeros(np.shape(w)))[order]
-        both = (along, np.asarray(self._g[order](w), dtype=np.float64))
-        return np.stack(both[::-1] if self._along else both, axis=-1)
+    samples = np.union1d(np.linspace(0.0, 1.0, SAMPLES), level)
+    return Curve((value, first) if along else (first, value), extent, q, np.linspace(0.0, 1.0, _PANELS + 1), samples)
 
 
-class SplineCurve(ParametricCurve):
+def steepest(curve: Curve, *, along: int) -> float:
+    """Largest |f'| of a graph in the range; not finite beyond the range of floating-point numbers."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        rates = np.abs(curve.derivative(curve.samples, 1))
+        return float(np.max(rates[:, 1 - along] / rates[:, along]))
+
+
+def spline(points: Sequence[Point], directions: tuple[Point | None, Point | None]) -> Curve:
     """Cubic spline of the chord length through ``points`` (at least three), m.
 
     At an end with a direction the derivative is its unit vector; at an end without direction (None) the outer
     two pieces are the same cubic.
     """
+    from scipy.interpolate import CubicSpline  # scenes without splines need no SciPy
 
-    def __init__(self, points: Sequence[Point], directions: tuple[Point | None, Point | None]) -> None:
-        from scipy.interpolate import CubicSpline  # scenes without splines need no SciPy
+    t = np.concatenate(([0.0], np.cumsum([dist(*pair) for pair in pairwise(points)])))
+    w, size = t / t[-1], float(t[-1])
+    ends = tuple("not-a-knot" if each is None else (1, unit_vector(each)) for each in directions)
+    q = CubicSpline(w, (np.array(points) - np.array(points[0])) / size, bc_type=ends)
+    of_piece = max(_FEWEST_OF_PIECE, min(_MOST_OF_PIECE, _MOST_OF_SPLINE // (len(w) - 1)))
+    return Curve(points[0], size, q, _divided(w, _PANELS_OF_PIECE), _divided(w, of_piece - 1))
 
-        t = np.concatenate(([0.0], np.cumsum([dist(*pair) for pair in pairwise(points)])))
-        w, size = t / t[-1], float(t[-1])
-        ends = tuple("not-a-knot" if each is None else (1, unit_vector(each)) for each in directions)
-        spline = CubicSpline(w, (np.array(points) - np.array(points[0])) / size, bc_type=ends)
-        of_piece = max(_FEWEST_OF_PIECE, min(_MOST_OF_PIECE, _MOST_OF_SPLINE // (len(w) - 1)))
-        super().__init__(points[0], size, spline, _divided(w, _PANELS_OF_PIECE), _divided(w, of_piece - 1))
 
-    @cached_property
-    def slowest(self) -> tuple[float, Point]:
-        """The least |q'|, a pure number, zero at a cusp, and the place, m."""
-        speed = self.speed(self.samples)
-        x, y = self.place(self.samples[[np.argmin(speed)]])[0]
-        return float(np.min(speed)), (float(x), float(y))
+def slowest(curve: Curve) -> tuple[float, Array]:
+    """The least |q'| of a spline, a pure number, zero at a cusp, and the place (2,), m."""
+    speed = curve.speed(curve.samples)
+    return float(np.min(speed)), curve.place(curve.samples[[np.argmin(speed)]])[0]
+
+
+def _divided(w: Array, parts: int) -> Array:
+    """The intervals between ``w`` (k+1,) cut into equal ``parts``: places (k·parts + 1,)."""
+    return np.append(np.concatenate([np.linspace(*ends, parts, endpoint=False) for ends in pairwise(w)]), w[-1])
 
 
 def unit_vector(direction: Point) -> Array:
@@ -328,8 +276,3 @@ def least(
         )
         found.append((float(refined.fun), float(samples[i] + refined.x)))
     return min(found)
-
-
-def _divided(w: Array, parts: int) -> Array:
-    """The intervals between ``w`` (k+1,) cut into equal ``parts``: places (k·parts + 1,)."""
-    return np.append(np.concatenate([np.linspace(*ends, parts, endpoint=False) for ends in pairwise(w)]), w[-1])

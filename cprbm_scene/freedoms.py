@@ -1,38 +1,50 @@
-"""Small motions of rigid bodies as rows over the three freedoms of a body; loads and drives along them.
+"""Mobility of the mechanism: pins, supports, loose bodies, motions held twice, actions without a motion.
 
 =======  ===============================================================================
 symbol   meaning
 =======  ===============================================================================
-u, v, ω  small translations, and rotation times ℓ, of a body about the scene's origin
+u, v, ω  small translations, and rotation times ℓ, of a part about the scene's origin
 e        unit vector of a drive, a force or a guide
 r        place of a point less the origin, m
 ℓ        extent of all points, m: rows are pure numbers
 =======  ===============================================================================
 
-The displacement of a point along e is (e, r × e/ℓ)·(u, v, ω); a rotation is (0, 0, 1)·(u, v, ω).  All bodies have the
-same origin: bodies with a common motion have common rows.  Rows state the geometry of the initial position.
+The displacement of a point along e is (e, r × e/ℓ)·(u, v, ω); a rotation is (0, 0, 1)·(u, v, ω).  All parts have the
+same origin: parts with a common motion have common rows.  Rows state the geometry of the initial position.
 
+=======  ==============================================================================
+symbol   meaning
+=======  ==============================================================================
+A        rows of guides, pins and drives over the freedoms of all bodies
+B        the same with every beam as a further rigid body, and rows of the beams' joints
+=======  ==============================================================================
 
-A load or drive acts on a movable body, along a motion that no guide and no other drive holds.
+The rows of pins and drives must be independent in A: a linkage with a dependent row closes only by chance.  The null
+space of B contains the motions without bending: no force resists them.  A load or drive acts on a movable body, along a
+motion that no guide and no other drive holds.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Container, Iterator, Mapping, Sequence
+from math import dist
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cprbm_scene.curve_records import MEETING
 from cprbm_scene.curves import unit_vector
-from cprbm_scene.mistakes import Mistake, broken
+from cprbm_scene.mistakes import Mistake, first_broken, written_place
+from cprbm_scene.names import unknown_names
 from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,
     BodyLoad,
-    DisplacementDrive,
     Drive,
     FixedBody,
     Force,
+    FreeEnd,
     Moment,
     PinnedEnd,
     Point,
@@ -40,11 +52,14 @@ from cprbm_scene.statement import (
     Scene,
     SlidingBody,
     TurningBody,
+    WeldedEnd,
 )
 
 Row = NDArray[np.float64]
 NEGLIGIBLE = 1e-9
 """Share of a row, or of a unit vector, that counts as round-off."""
+DEPENDENT = 1.5 * NEGLIGIBLE
+"""Part of a row of length one, normal to the rows before, that counts as round-off: rounded directions differ so."""
 
 TURN = np.array([0.0, 0.0, 1.0])
 AXES = ((1.0, 0.0), (0.0, 1.0))
@@ -52,14 +67,17 @@ unit = unit_vector
 
 
 class Freedoms:
-    """Rows (3,) of the bodies of a scene; ``owners`` are the names of bodies by point."""
+    """Rows of the parts of a scene; ``owners`` are the names of bodies by point.
+
+    A row (3,) is that of a single part.  A wide row (3·parts,) has the freedoms of all bodies and then of all beams.
+    """
 
     def __init__(self, scene: Scene) -> None:
-        self.scene = scene
-        self.owners = scene.owners
-        self.places = {point: np.array(scene.place_of(point)) for point in self.owners}
+        self.scene, self.owners = scene, scene.owners
+        self.places = {point: np.array(scene.bodies[name].points[point]) for point, name in self.owners.items()}
         self.origin = np.array(next(iter(next(iter(scene.bodies.values())).points.values())))
         self.extent = max(float(np.hypot(*(place - self.origin))) for place in self.places.values()) or 1.0
+        self.parts = [*(f"bodies.{name}" for name in scene.bodies), *(f"beams.{name}" for name in scene.beams)]
 
     def along(self, point: str, direction: Point) -> Row:
         """Row of the displacement of a ``point`` along a direction."""
@@ -67,7 +85,7 @@ class Freedoms:
         return np.array([e[0], e[1], x * e[1] - y * e[0]])
 
     def guide(self, name: str) -> list[Row]:
-        """Rows of the motions without freedom: all of a fixed body, across a guide, of a pivot."""
+        """Rows of the motions of a body without freedom: all of a fixed body, across a guide, of a pivot."""
         match self.scene.bodies[name]:
             case FixedBody():
                 return list(np.eye(3))
@@ -76,8 +94,7 @@ class Freedoms:
                 return [across] if body.pin is not None else [across, TURN]
             case TurningBody(about=about):
                 return [self.along(about, axis) for axis in AXES]
-            case _:
-                return []
+        return []
 
     def owner(self, acting: BodyLoad | Drive) -> str:
         """Name of the body of a load or drive."""
@@ -85,105 +102,253 @@ class Freedoms:
 
     def row(self, acting: BodyLoad | Drive) -> Row:
         """Row of the motion prescribed by a drive, or conjugate to a load."""
-        if isinstance(acting, Moment | RotationDrive):
-            return TURN
-        return self.along(acting.point, acting.direction)
+        return TURN if isinstance(acting, Moment | RotationDrive) else self.along(acting.point, acting.direction)
+
+    def wide(self, rows: Mapping[str, Row]) -> Row:
+        """Wide row of length one with the ``rows`` of parts."""
+        row = np.concatenate([rows.get(part, np.zeros(3)) for part in self.parts])
+        return np.asarray(row / np.linalg.norm(row))
+
+    def constraints(self, drives: Container[str]) -> Iterator[tuple[str, Row]]:
+        """Keys and wide rows of guides, pins and some ``drives``."""
+        for name in self.scene.bodies:
+            yield from ((f"bodies.{name}", self.wide({f"bodies.{name}": row})) for row in self.guide(name))
+        for name, pin in self.scene.pins.items():
+            for axis in AXES:
+                one, other = ((f"bodies.{self.owners[point]}", self.along(point, axis)) for point in pin.points)
+                yield f"pins.{name}", self.wide({one[0]: one[1], other[0]: -other[1]})
+        for name, drive in self.scene.drives.items():
+            if name in drives:
+                yield f"drives.{name}", self.wide({f"bodies.{self.owner(drive)}": self.row(drive)})
+
+    def joints(self) -> Iterator[Row]:
+        """Wide rows of the beams' ends, with every beam as a rigid part."""
+        for name, beam in self.scene.beams.items():
+            for end in (beam.start, beam.end):
+                if not isinstance(end, FreeEnd):
+                    pinned = [self.along(end.point, axis) for axis in AXES]
+                    for row in np.eye(3) if isinstance(end, WeldedEnd) else pinned:
+                        yield self.wide({f"beams.{name}": row, f"bodies.{self.owners[end.point]}": -row})
 
 
-def rank(rows: Sequence[Row] | Row) -> int:
-    """Number of independent rows."""
-    return int(np.linalg.matrix_rank(np.array(rows), tol=NEGLIGIBLE)) if len(rows) else 0
+def independent(rows: Sequence[Row]) -> list[bool]:
+    """For every row, True if the row does not depend on the rows before: the Gram-Schmidt process, done twice."""
+    basis, found = np.zeros((0, len(rows[0]) if rows else 0)), []
+    for row in rows:
+        rest = row / np.linalg.norm(row)
+        for _ in range(2):
+            rest = rest - basis.T @ (basis @ rest)
+        found.append(bool(np.linalg.norm(rest) > DEPENDENT))
+        basis = np.vstack((basis, rest / np.linalg.norm(rest))) if found[-1] else basis
+    return found
 
 
-def held(row: Row, rows: Sequence[Row]) -> bool:
-    """True if ``row`` depends on ``rows``."""
-    return rank([*rows, row / np.linalg.norm(row)]) == rank(rows)
+FREEDOMS = 3
+"""Freedoms of a rigid body in the plane."""
+
+_KINDS = {"slides": "sliding", "turns": "turning"}
+_ACTING = {"moment": "a moment on", "force": "a force at", "rotation": "a drive of", "displacement": "a drive at"}
+_HELD = {"pins": "bodies", "drives": "a motion", "bodies": "a motion"}
+
+
+def wrong_mobility(scene: Scene) -> Iterator[Mistake]:
+    """Pins between unsuitable points, missing supports, motions with two holders, loose bodies.
+
+    Checks of the whole mechanism need known points, guides and directions.
+    """
+    yield from _pins(scene)
+    unknown = {mistake.key for mistake in unknown_names(scene)}
+    acting = [*scene.bodies.values(), *scene.drives.values()]
+    sound = not any(key.startswith(("drives", "pins")) or key.endswith(".point") for key in unknown)
+    sound = sound and not any(mistake for record in acting for mistake in record.rules())
+    freedoms = Freedoms(scene) if sound else None
+    loose = list(unsupported(scene, freedoms))
+    yield from (mistake for mistake, names in loose if not _acted_on(scene, names))
+    if freedoms is None or any(len({*map(scene.body_of, pin.points)}) == 1 for pin in scene.pins.values()):
+        return
+    if scene.pins:
+        keys, rows = zip(*freedoms.constraints(scene.drives), strict=True)
+        held_twice = dict.fromkeys(key for key, free in zip(keys, independent(rows), strict=True) if not free)
+        allowed = "as many pins and drives as there are motions to hold, each for one of its own"
+        found = "that guides, pins and drives hold already where it begins"
+        yield from (Mistake(key, f"{_HELD[key.partition('.')[0]]} {found}", allowed) for key in held_twice)
+    held_otherwise = scene.contacts or scene.stops or scene.assembly is not None
+    if not loose and (scene.pins or not held_otherwise):
+        yield from _loose(scene, freedoms)
+
+
+def _pins(scene: Scene) -> Iterator[Mistake]:
+    """Pins within a body, between fixed bodies, or between distant points."""
+    owners = scene.owners
+    places = {point: scene.bodies[name].points[point] for point, name in owners.items()}
+    extent = float(np.ptp(list(places.values()), axis=0).max()) if places else 0.0
+    known = {name: pin.points for name, pin in scene.pins.items() if owners.keys() >= set(pin.points)}
+    for key, (p, q) in ((f"pins.{name}.points", points) for name, points in known.items()):
+        one, other, apart = owners[p], owners[q], dist(places[p], places[q])
+        yield from first_broken(
+            one == other
+            and Mistake(key, f"{p!r} and {q!r}, both of the body {one!r}", "points of two different bodies"),
+            scene.bodies[one].motion == scene.bodies[other].motion == "fixed"
+            and Mistake(key, f"points of two fixed bodies, {one!r} and {other!r}", "one that moves"),
+            not apart <= MEETING * extent
+            and Mistake(
+                key,
+                f"points {apart:.3g} m apart: {written_place(places[p])} m and {written_place(places[q])} m",
+                f"at most {MEETING:g} of the scene's extent between them",
+            ),
+        )
+
+
+def unsupported(scene: Scene, freedoms: Freedoms | None) -> Iterator[tuple[Mistake, set[str]]]:
+    """Scenes without ground or drives, beams without supports, bodies without a way to a support.
+
+    Beside each mistake stand the names of the bodies and beams that move together; without ``freedoms`` of beams only.
+    """
+    drives = [drive for drive in scene.drives.values() if scene.holds(drive, scene.stages[0].name)]
+    if all(body.motion == "free" for body in scene.bodies.values()) and not drives:
+        yield Mistake("bodies", "no fixed body", 'at least one body with motion = "fixed"'), set()
+        return
+    joints = {
+        name: [end for end in (beam.start, beam.end) if end.joint != "free"] for name, beam in scene.beams.items()
+    }
+    for name, ends in joints.items():
+        mistakes = first_broken(
+            not ends
+            and Mistake(
+                f"beams.{name}", "two free ends", "at least one end that meets a body, or a contact that holds the beam"
+            ),
+            [end.joint for end in ends] == ["pin"]
+            and Mistake(
+                f"beams.{name}",
+                "a pin at one end and nothing at the other: the beam turns freely",
+                "a weld, joints at both ends, or a contact or a load",
+            ),
+        )
+        yield from ((mistake, {name}) for mistake in mistakes)
+    if freedoms is None:
+        return
+    met = {name: {freedoms.owners[str(end.point)] for end in ends} for name, ends in joints.items()}
+    met |= {name: {freedoms.owners[point] for point in pin.points} for name, pin in scene.pins.items()}
+    for name, body in scene.bodies.items():
+        together, reached = _connected(name, list(met.values())), any(name in bodies for bodies in met.values())
+        rows = [row for each in together for row in freedoms.guide(each)]
+        rows += [freedoms.row(drive) for drive in drives if freedoms.owner(drive) in together]
+        if sum(independent(rows)) < FREEDOMS:
+            mistake = Mistake(
+                f"bodies.{name}",
+                f"a {_KINDS.get(body.motion, 'free')} body that no {'fixed body holds' if reached else 'beam meets'}",
+                "beams that lead to a fixed body, or slides, pivots, drives, contacts and loads that hold it"
+                if reached
+                else "a beam's end, a pin, a contact or a load on it",
+            )
+            yield mistake, together | {beam for beam in met if met[beam] & together}
+
+
+def _acted_on(scene: Scene, names: set[str]) -> bool:
+    """True if a contact with other parts, a load or a drive may hold the bodies and beams of the ``names``."""
+    acting, owners = (*scene.loads.values(), *scene.drives.values()), scene.owners
+    moved = {getattr(each, "body", getattr(each, "beam", None)) for each in acting}
+    moved |= {owners.get(getattr(each, "point", "")) for each in acting}
+    touching = ({*contact.beams, getattr(contact, "body", contact.beams[0])} for contact in scene.contacts.values())
+    return bool(names & moved) or any(parts & names and parts - names for parts in touching)
+
+
+def _connected(body: str, met: Sequence[set[str]]) -> set[str]:
+    """Bodies connected to a ``body`` by beams and pins, including the body."""
+    reached = {body}
+    while more := {other for bodies in met if bodies & reached for other in bodies} - reached:
+        reached |= more
+    return reached
+
+
+def _loose(scene: Scene, freedoms: Freedoms) -> Iterator[Mistake]:
+    """Bodies with a motion in the null space of B."""
+    drives = [name for name, drive in scene.drives.items() if scene.holds(drive, scene.stages[0].name)]
+    rows = [*(row for _, row in freedoms.constraints(drives)), *freedoms.joints()]
+    _, values, motions = np.linalg.svd(np.array(rows))
+    null_space = motions[np.count_nonzero(values > NEGLIGIBLE) :]
+    for i, name in enumerate(scene.bodies):
+        own = [motion for motion in null_space[:, 3 * i : 3 * i + 3] if np.abs(motion).max() > NEGLIGIBLE]
+        if own:
+            how = _in_words(freedoms, own[0]) if len(null_space) == 1 else f"move in {sum(independent(own))} ways"
+            found = f"a body that can {how} where it is without bending a beam"
+            yield Mistake(f"bodies.{name}", found, "pins, guides, drives and beams that hold it")
+
+
+def _in_words(freedoms: Freedoms, motion: Row) -> str:
+    """A small motion (3,) of a body: a turn about a place, or a displacement along a direction."""
+    u, v, turn = np.where(np.abs(motion) <= NEGLIGIBLE * np.abs(motion).max(), 0.0, motion)
+    if turn == 0.0:
+        x, y = unit((float(u), float(v))) * np.sign(u if abs(u) > abs(v) else v)
+        return f"move along [{x + 0.0:.4g}, {y + 0.0:.4g}]"
+    x, y = freedoms.origin + freedoms.extent * np.array([-v, u]) / turn
+    return f"turn about [{x + 0.0:.4g}, {y + 0.0:.4g}] m"
 
 
 def wrong_actions(scene: Scene) -> Iterator[Mistake]:
     """Loads and drives of fixed bodies or across guides, and motions with two drives or with a drive and a load."""
     if not any(body.points for body in scene.bodies.values()):
         return
-    freedoms = Freedoms(scene)
-    driven: dict[str, dict[str, Row]] = {}
+    freedoms, driven = Freedoms(scene), defaultdict[str, list[str]](list)
     drives = {f"drives.{name}": drive for name, drive in scene.drives.items()}
     loads = {f"loads.{name}": load for name, load in scene.loads.items() if isinstance(load, BodyLoad)}
     for key, acting in (drives | loads).items():
-        known = scene.bodies if isinstance(acting, Moment | RotationDrive) else freedoms.owners
-        named = acting.body if isinstance(acting, Moment | RotationDrive) else acting.point
-        if named not in known or any(acting.rules()):
-            continue
-        owner = freedoms.owner(acting)
-        mistakes = list(_without_freedom(freedoms, key, acting))
-        if not mistakes and not any(scene.bodies[owner].rules()):
-            mistakes = list(_driven_already(freedoms, key, acting, driven.setdefault(owner, {})))
-            if not mistakes and key in drives:
-                driven[owner][key] = freedoms.row(acting)
-        yield from mistakes
+        owner = acting.body if isinstance(acting, Moment | RotationDrive) else freedoms.owners.get(acting.point, "")
+        if owner in scene.bodies:
+            mistakes = list(_without_motion(freedoms, key, acting, driven[owner]))
+            yield from mistakes
+            if key in drives and not mistakes:
+                driven[owner].append(key.removeprefix("drives."))
+    fixed = {point for body in scene.bodies.values() if body.motion == "fixed" for point in body.points}
     for name, load in scene.loads.items():
-        if isinstance(load, BeamForce | BeamMoment):
-            yield from _held_end(scene, name, load)
+        if isinstance(load, BeamForce | BeamMoment) and load.beam in scene.beams and load.at in (0.0, 1.0):
+            end = scene.beams[load.beam].start if load.at == 0.0 else scene.beams[load.beam].end
+            found = f"{load.at:g}, an end of {load.beam!r} that is held at {end.point!r}, a point of a fixed body"
+            turns = isinstance(load, BeamMoment) and isinstance(end, PinnedEnd)
+            if end.point in fixed and not turns:
+                yield Mistake(f"loads.{name}.at", found, "a place of the beam that can move")
 
 
-def _without_freedom(freedoms: Freedoms, key: str, acting: BodyLoad | Drive) -> Iterator[Mistake]:
-    """The mistake of a fixed body, or of a motion that a guide holds."""
-    scene, owner = freedoms.scene, freedoms.owner(acting)
-    body = scene.bodies[owner]
-    turns = isinstance(acting, Moment | RotationDrive)
-    place, direction = ("body", "body") if turns else ("point", "direction")
-    what = "a drive of" if isinstance(acting, RotationDrive) else "a moment on"
-    if isinstance(acting, Force | DisplacementDrive):
-        what = f"{'a force' if isinstance(acting, Force) else 'a drive'} at {acting.point!r}, a point of"
-    guide = "towards the pivot" if isinstance(body, TurningBody) else "across the slide"
-    turning = f"the rotation of {owner!r}, which slides and does not turn"
-    across = turning if turns else f"a direction {guide} of {owner!r}"
-    allowed = "a body that can turn" if turns else "a direction along which the point can move"
-    movable = {name: each.points for name, each in scene.bodies.items() if each.motion != "fixed"}
-    names = movable if turns else [point for points in movable.values() for point in points]
-    can_move = f"a {place} that can move: {', '.join(map(repr, names)) or 'there is none'}"
-    fixed = body.motion == "fixed"
-    held_by_guide = not fixed and not any(body.rules()) and held(freedoms.row(acting), freedoms.guide(owner))
-    return broken(
-        (fixed, f"{key}.{place}", f"{what} the fixed body {owner!r}", can_move),
-        (held_by_guide, f"{key}.{direction}", across, allowed),
-    )
+def _without_motion(freedoms: Freedoms, key: str, acting: BodyLoad | Drive, driven: list[str]) -> Iterator[Mistake]:
+    """The mistake of a fixed body, or of a motion that a guide or the ``driven`` motions of the same body hold.
 
-
-def _driven_already(
-    freedoms: Freedoms, key: str, acting: BodyLoad | Drive, driven: dict[str, Row]
-) -> Iterator[Mistake]:
-    """The mistake of a motion that earlier drives of the body hold, of loads only by drives from the start on."""
-    row, owner, load = freedoms.row(acting), freedoms.owner(acting), isinstance(acting, BodyLoad)
-    drives = {name: freedoms.scene.drives[name.removeprefix("drives.")] for name in driven}
-    drives = {name: drive for name, drive in drives.items() if drive.begins is None or not load}
+    Loads compete with drives that hold from the start only.
+    """
+    scene, owner, load = freedoms.scene, freedoms.owner(acting), isinstance(acting, BodyLoad)
+    body, turns = scene.bodies[owner], isinstance(acting, Moment | RotationDrive)
+    if body.motion == "fixed":
+        movable = {name: each.points for name, each in scene.bodies.items() if each.motion != "fixed"}
+        names = movable if turns else [point for points in movable.values() for point in points]
+        place, of = ("body", "") if turns else ("point", f" {getattr(acting, 'point', '')!r}, a point of")
+        allowed = f"a {place} that can move: {', '.join(map(repr, names)) or 'there is none'}"
+        return iter((Mistake(f"{key}.{place}", f"{_ACTING[acting.kind]}{of} the fixed body {owner!r}", allowed),))
+    row, guide = freedoms.row(acting), [] if any(body.rules()) else freedoms.guide(owner)
+    drives = {name: scene.drives[name] for name in driven if not load or scene.drives[name].begins is None}
     opposed = [name for name, drive in drives.items() if _opposed(freedoms, acting, drive)]
-    twice = bool(opposed) or held(row, [*freedoms.guide(owner), *(driven[name] for name in drives)])
-    first = " and ".join(opposed or drives)
-    return broken(
-        (
-            twice and load,
+    across = not independent([*guide, row])[-1]
+    twice = bool(opposed) or not independent([*guide, *map(freedoms.row, drives.values()), row])[-1]
+    first = " and ".join(f"drives.{name}" for name in opposed or drives)
+    way = "towards the pivot" if isinstance(body, TurningBody) else "across the slide"
+    return first_broken(
+        across
+        and turns
+        and Mistake(
+            f"{key}.body", f"the rotation of {owner!r}, which slides and does not turn", "a body that can turn"
+        ),
+        across
+        and Mistake(
+            f"{key}.direction", f"a direction {way} of {owner!r}", "a direction along which the point can move"
+        ),
+        twice
+        and load
+        and Mistake(
             key,
             f"a load on a freedom of {owner!r} that is driven by {first}",
             "a load or a drive on one freedom, not both",
         ),
-        (
-            twice and not load,
-            key,
-            f"a freedom of {owner!r} that is driven already by {first}",
-            "one drive for each freedom",
-        ),
+        twice
+        and Mistake(key, f"a freedom of {owner!r} that is driven already by {first}", "one drive for each freedom"),
     )
-
-
-def _held_end(scene: Scene, name: str, load: BeamForce | BeamMoment) -> Iterator[Mistake]:
-    """A load at an end of a beam on a fixed body; under a moment a pinned end turns."""
-    if load.beam not in scene.beams or load.at not in (0.0, 1.0):
-        return iter(())
-    end = scene.beams[load.beam].start if load.at == 0.0 else scene.beams[load.beam].end
-    fixed = {point for body in scene.bodies.values() if body.motion == "fixed" for point in body.points}
-    turns, point = isinstance(load, BeamMoment) and isinstance(end, PinnedEnd), end.point
-    found = f"{load.at:g}, an end of {load.beam!r} that is held at {point!r}, a point of a fixed body"
-    return broken((not turns and point in fixed, f"loads.{name}.at", found, "a place of the beam that can move"))
 
 
 def _opposed(freedoms: Freedoms, load: BodyLoad | Drive, drive: Drive) -> bool:

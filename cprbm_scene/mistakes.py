@@ -1,15 +1,19 @@
-"""Mistakes of a question, with the key, the value found and the values allowed."""
+"""Mistakes of a question, with the key, the value found and the values allowed; errors of pydantic as mistakes."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from itertools import islice
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
 
 _LISTED = 200
 """Largest number of names in a message."""
@@ -50,13 +54,14 @@ class Mistake:
         return f"{where}: found {self.found}; allowed: {self.allowed}"
 
 
-Rule = tuple[object, str, str, str]
-"""A condition that is true where the rule is broken; key, found and allowed of the mistake."""
+def broken(*rules: object) -> Iterator[Mistake]:
+    """Mistakes of the broken rules, in order; a rule is ``condition and Mistake(...)``, true where it is broken."""
+    return (rule for rule in rules if isinstance(rule, Mistake))
 
 
-def broken(*rules: Rule) -> Iterator[Mistake]:
-    """Mistakes of the broken ``rules``, in order."""
-    return (Mistake(*rule[1:]) for rule in rules if rule[0])
+def first_broken(*rules: object) -> Iterator[Mistake]:
+    """The mistake of the first broken rule, if any."""
+    return islice(broken(*rules), 1)
 
 
 MOST = 100
@@ -98,11 +103,126 @@ def unknown_name(key: str, name: str, what: str, known: Iterable[str]) -> Mistak
     return Mistake(key, f"{name!r}, which names no {what}{hint(name, names)}", f"the name of a {what}: {listed}")
 
 
-def unknown_names(key: str, name: str | None, what: str, known: Iterable[str]) -> Iterator[Mistake]:
-    """The mistake of a name outside the ``known`` names, as :func:`unknown_name`; no mistake without a name."""
-    return iter(() if name is None or name in known else (unknown_name(key, name, what, known),))
-
-
 def written_place(place: Sequence[float] | NDArray[np.float64]) -> str:
     """A place as text."""
     return f"({place[0]:.9g}, {place[1]:.9g})"
+
+
+_MEASURED = re.compile(r"\s*[-+]?[\d.]+(?:e[-+]?\d+)?\s*[^\d\s]{1,8}\s*", re.ASCII | re.IGNORECASE)
+_UNITS = """units = { length = "mm" }"""
+_NUMBERS = f"; numbers have no units of their own, and the file states its once, as {_UNITS}"
+_LONGEST = 80
+"""Longest value found that a message shows in full."""
+
+_ALLOWED = {
+    "finite_number": "a finite number",
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "string_type": "a text in quotes",
+    "bool_type": "true or false",
+    "tuple_type": "a list",
+    "dict_type": "a table",
+    "mapping_type": "a table",
+    "model_type": "a table",
+    "model_attributes_type": "a table",
+    "string_unicode": "a text in quotes",
+    "string_pattern_mismatch": "a name of letters, digits, '_' and '-' that starts with a letter or '_'",
+    "greater_than": "a number greater than {gt:g}",
+    "greater_than_equal": "a number of at least {ge:g}",
+    "less_than": "a number less than {lt:g}",
+    "less_than_equal": "a number of at most {le:g}",
+    "too_short": "at least {min_length} of them",
+    "too_long": "at most {max_length} of them",
+    "string_too_long": "at most {max_length} characters",
+    "literal_error": "one of {expected}",
+}
+"""Allowed values by the type of an error, with the fields of the error's context."""
+
+
+def in_words(error: ValidationError, data: object, fields: Mapping[str, FieldInfo]) -> Iterator[Mistake]:
+    """Mistakes of a record with ``fields``, read from ``data``, with keys below the record's own.
+
+    Items with mistakes of their own, and parameters with mistakes, need no further mistake.
+    """
+    for details in error.errors():
+        kind, given, context = details["type"], details.get("input"), details.get("ctx", {})
+        short = kind == "too_short" and isinstance(given, tuple) and len(given) >= context["min_length"]
+        if not short and kind != "repeats":
+            key = _key(details["loc"], data, own=kind in ("missing", "extra_forbidden"))
+            inner = context.get("error")
+            own = inner.mistakes if isinstance(inner, SceneError) else [_mistake(details, fields)]
+            yield from (replace(each, key=f"{key}.{each.key}".strip(".")) for each in own)
+
+
+def _mistake(details: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Mistake:
+    """A mistake with both halves of the message, and with the discriminator of a union as the key."""
+    kind, loc, given, context = details["type"], details["loc"], details.get("input"), details.get("ctx", {})
+    key, found, allowed = "", shown(given), details["msg"]
+    if kind in _ALLOWED:
+        allowed = _ALLOWED[kind].format(**context)
+    match kind:
+        case "tuple_type" if loc[-1] == "points" and isinstance(given, str):
+            allowed += ", or the name of a table of points in a scene file"
+        case "extra_forbidden":
+            return unknown_name("", str(loc[-1]), "key here", (name for name in fields if name != "file"))
+        case "string_pattern_mismatch" if "x00" in context["pattern"]:
+            allowed = "a text without control characters"
+        case "missing":
+            found = "nothing"
+            allowed = "an item here" if isinstance(loc[-1], int) else "a value: this key is required"
+        case "too_long" if context["max_length"] == len(("x", "y")):
+            allowed = allowed.removeprefix("at most ")
+        case "literal_error":
+            found += hint(given, re.findall("'([^']*)'", context["expected"])) if isinstance(given, str) else ""
+        case "float_type":
+            allowed += ", or a table with the keys 'at' and 'values'" if loc[-1] == "number" else ""
+            allowed += _NUMBERS if isinstance(given, str) and _MEASURED.fullmatch(given) else ""
+        case "union_tag_invalid" | "union_tag_not_found":
+            key = context["discriminator"].strip("'")
+            value, tags = details["input"].get(key), _tags(fields[str(loc[0])].annotation, key)
+            found = "nothing" if kind == "union_tag_not_found" else shown(value)
+            found += hint(value, tags) if isinstance(value, str) else ""
+            allowed = f"one of {', '.join(map(repr, tags))}"
+        case "model_type" if loc == ("units",):
+            allowed += f", as {_UNITS}"
+    return Mistake(key, found, allowed)
+
+
+def _tags(annotation: Any, tag: str) -> list[str]:  # noqa: ANN401 - annotations have no type
+    """Kinds, joints or motions of the records in an annotation."""
+    fields = getattr(annotation, "model_fields", {})
+    inner = [fields[tag].annotation] if tag in fields else get_args(annotation)
+    return [annotation] if isinstance(annotation, str) else [name for each in inner for name in _tags(each, tag)]
+
+
+def shown(value: object) -> str:
+    """The value in TOML's notation, cut if the value is long."""
+    match value:
+        case dict():
+            text = f"a table with the keys {', '.join(map(repr, value))}" if value else "an empty table"
+        case tuple():
+            text = f"[{', '.join(shown(item) for item in value[:9])}]"
+        case bool():
+            text = str(value).lower()
+        case int() if value.bit_length() > 64:  # Python refuses to write the longest integers
+            text = f"a whole number of {value.bit_length()} bits"
+        case None | str() | int() | float():
+            text = repr(value)
+        case _:
+            text = str(value)
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+
+
+def _key(loc: tuple[int | str, ...], data: Any, *, own: bool) -> str:  # noqa: ANN401 - whatever TOML holds
+    """``("beams", "b", "curve", "arc")`` as ``beams.b.curve``: the tag of a union is no key of the ``data``.
+
+    With ``own`` the last part is a key in any case.
+    """
+    path, place = "", data
+    for depth, part in enumerate(loc, start=1):
+        tags = [place.get(tag) for tag in ("kind", "joint", "motion")] if isinstance(place, Mapping) else []
+        inside = isinstance(part, int) or (isinstance(place, Mapping) and part in place and part not in tags)
+        if inside or (own and depth == len(loc)):
+            path += f"[{part}]" if isinstance(part, int) else f".{part}"
+            place = place[part] if depth < len(loc) else None
+    return path.removeprefix(".")

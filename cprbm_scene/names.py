@@ -1,18 +1,39 @@
-"""Names of a scene: unique across the scene, and known to every reference."""
+"""Names of a scene, unique and known to every reference; probes, claims and stages that fit the named parts."""
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Iterable, Iterator, Mapping
 
-from cprbm_scene.mistakes import Mistake, unknown_name
-from cprbm_scene.record import Of, Record
-from cprbm_scene.statement import BeamContact, RigidContact, Scene
+import numpy as np
+
+from cprbm_scene.curve_records import shape_of
+from cprbm_scene.curves import SAMPLES
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake, broken, unknown_name
+from cprbm_scene.statement import (
+    CRITICAL,
+    STRESSES,
+    Beam,
+    BeamContact,
+    DisplacementDrive,
+    EdgeContact,
+    FreeEnd,
+    PinnedEnd,
+    Quantity,
+    RigidContact,
+    RotationDrive,
+    Scene,
+    SlidingBody,
+    TurningBody,
+)
+from cprbm_scene.units import Of, Record
 
 RESERVED = "scene"
 """Name of the scene itself in a probe."""
 
-_TABLES = ("bodies", "beams", "loads", "drives", "contacts", "stops", "pins")
-"""Tables whose names are unique, together with the points of all bodies."""
+_TABLES = ("beams", "loads", "drives", "contacts", "stops", "pins")
+"""Tables whose names are unique, together with the bodies and the points of all bodies."""
 
 
 def records(value: object, key: str = "") -> Iterator[tuple[str, Record]]:
@@ -38,32 +59,40 @@ def point_names(scene: Scene) -> list[str]:
 
 def repeated_names(scene: Scene) -> Iterator[Mistake]:
     """Names of points, bodies, beams, contacts, stops, pins, loads and drives with repeated or reserved names."""
-    named = [(f"{table}.{name}", name) for table in _TABLES for name in getattr(scene, table)]
+    bodies = [(f"bodies.{name}", name) for name in scene.bodies]
     points = [(f"bodies.{name}.points.{point}", point) for name, body in scene.bodies.items() for point in body.points]
-    first: dict[str, str] = {}
-    for key, name in (*named[: len(scene.bodies)], *points, *named[len(scene.bodies) :]):
-        if name == RESERVED:
-            yield Mistake(key, f"the name {name!r}, which stands for the scene itself", "another name")
-        elif name in first:
-            allowed = "names that are used once among points, bodies, beams, loads, drives, contacts, stops and pins"
-            yield Mistake(key, f"the name {name!r}, which {first[name]} has too", allowed)
-        first.setdefault(name, key)
+    others = [(f"{table}.{name}", name) for table in _TABLES for name in getattr(scene, table)]
+    named, first = (*bodies, *points, *others), dict[str, str]()
+    allowed = "names that are used once among points, bodies, beams, loads, drives, contacts, stops and pins"
+    return broken(
+        *(
+            Mistake(key, f"the name {name!r}, which stands for the scene itself", "another name")
+            if name == RESERVED
+            else first.setdefault(name, key) != key
+            and Mistake(key, f"the name {name!r}, which {first[name]} has too", allowed)
+            for key, name in named
+        )
+    )
 
 
 def repeated_contacts(scene: Scene) -> Iterator[Mistake]:
     """Contacts of the same beams, or of the same beam and rigid shape."""
     seen: dict[object, str] = {}
     for name, contact in scene.contacts.items():
-        rigid, paired = isinstance(contact, RigidContact), isinstance(contact, BeamContact)
-        shape = tuple(value for field, value in contact if field not in {"thick", "paper"})
-        first = seen.setdefault(shape if rigid else frozenset(contact.beams), name)
+        what, part, same = "beam", ".beam", frozenset[object](contact.beams)
+        if isinstance(contact, BeamContact):
+            what, part = "pair", ".between"
+        if isinstance(contact, RigidContact):
+            what, part = "beam and the shape", ""
+            same = frozenset(value for value in contact if value[0] not in {"thick", "paper"})
+        first = seen.setdefault(same, name)
         if first != name:
-            what, part = ("beam and the shape", "") if rigid else ("pair", ".between") if paired else ("beam", ".beam")
             yield Mistake(f"contacts.{name}{part}", f"the {what} of contacts.{first} again", f"each {what} once")
 
 
 def unknown_names(scene: Scene) -> Iterator[Mistake]:
     """References to materials, points, bodies, beams, loads, drives and stages without a definition."""
+    edges = [name for name, contact in scene.contacts.items() if isinstance(contact, RigidContact)]
     known: dict[str, Iterable[str]] = {
         "material": scene.materials,
         "point": point_names(scene),
@@ -72,27 +101,177 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
         "stage": [stage.name for stage in scene.stages],
         "load": scene.loads,
         "load or drive": (*scene.loads, *scene.drives),
-        "beam or contact with a rigid edge": [
-            *scene.beams,
-            *(name for name, contact in scene.contacts.items() if isinstance(contact, RigidContact)),
-        ],
+        "beam or contact with a rigid edge": (*scene.beams, *edges),
     }
-    for key, record in records(scene):
-        for field, info in type(record).model_fields.items():
-            for of in (each for each in info.metadata if isinstance(each, Of)):
-                for part, name in _named(getattr(record, field)):
-                    if name not in known[of.kind]:
-                        yield unknown_name(
-                            f"{key}.{of.key or field}{part}".removeprefix("."), name, of.kind, known[of.kind]
-                        )
+    return (
+        unknown_name(f"{key}.{of.key or field}{part}".removeprefix("."), name, of.kind, known[of.kind])
+        for key, record in records(scene)
+        for field, info in type(record).model_fields.items()
+        for of in info.metadata
+        if isinstance(of, Of)
+        for part, name in _named(getattr(record, field))
+        if name not in known[of.kind]
+    )
 
 
 def _named(value: object) -> Iterator[tuple[str, str]]:
     """Names in the value of a field, with places below the field's key."""
-    match value:
-        case str():
-            yield "", value
-        case Mapping():
-            yield from ((f".{name}", name) for name in value)
-        case tuple():
-            yield from ((f"[{i}]{part}", name) for i, each in enumerate(value) for part, name in _named(each))
+    if isinstance(value, str):
+        yield "", value
+    if isinstance(value, Mapping):
+        yield from ((f".{name}", name) for name in value)
+    if isinstance(value, tuple):
+        yield from ((f"[{i}]{part}", name) for i, each in enumerate(value) for part, name in _named(each))
+
+
+_OF: Mapping[Quantity, str] = frozendict(
+    {
+        "displacement": "a point of a body or of a free end, end = { joint = 'free', point = 'NAME' }",
+        "rotation": "a body",
+        "force": "a contact",
+        "centre": "a contact",
+        "ends": "a contact",
+        "closing_load": "a contact",
+        "bending_stress": "a beam",
+        "combined_stress": "a beam",
+        "reaction": "a point of a fixed body at which a beam ends, a pivot, a driven point, or a body that slides",
+        "reaction_moment": "a point of a fixed body at which a beam ends, or a body whose rotation is driven",
+        "potential_energy": f"{RESERVED!r}, the scene itself",
+        "angle": "a stop",
+        "moment": "a stop, or a contact with a line, a half-plane or a function of the body that the beam is pinned to",
+    }
+)
+"""Parts of the scene with a quantity."""
+
+_LISTED = 200
+"""Stations of a stage in a message."""
+
+_SEVERAL = STRESSES | {"displacement", "reaction", "ends"}
+"""Quantities of more than one number."""
+
+_BACKWARDS = 1e-9
+"""Component of a unit tangent that counts as zero."""
+_LEAST_EXTENT = 1e-3
+"""Extent of a beam along an axis, of the length, below which the beam does not run along the axis."""
+
+
+def wrong_probes(scene: Scene) -> Iterator[Mistake]:
+    """Probes of unknown names, of parts without the quantity, and repeated probes."""
+    bearers = _bearers(scene)
+    everything = list(dict.fromkeys(name for names in bearers.values() for name in names))
+    first = {probe.name: i for i, probe in reversed(list(enumerate(scene.probes)))}
+    for i, probe in enumerate(scene.probes):
+        part, known = _OF[probe.quantity], bearers[_OF[probe.quantity]]
+        allowed = f"{probe.quantity!r} of {part}: {', '.join(map(repr, known)) or 'there is none'}"
+        yield from broken(
+            probe.of not in everything
+            and unknown_name(f"probes[{i}].of", probe.of, "point, body, beam, contact or stop", everything),
+            probe.of in everything
+            and probe.of not in known
+            and Mistake(f"probes[{i}]", f"{probe.quantity!r} of {probe.of!r}", allowed),
+            first[probe.name] < i and Mistake(f"probes[{i}]", f"{probe.name!r} again", "each probe once"),
+        )
+
+
+def wrong_claims(scene: Scene) -> Iterator[Mistake]:
+    """Claims on unknown probes, stages or stations, and a single value for a probe of several numbers."""
+    probes = {probe.name: probe for probe in scene.probes}
+    ascending = {stage.name: sorted(stage.stations) for stage in scene.stages}
+    for i, claim in enumerate(scene.claims):
+        key, probe, critical = f"claims[{i}]", probes.get(claim.probe), claim.probe == CRITICAL
+        unasked = claim.stage in ascending and probe is not None and not probe.asked_in(claim.stage)
+        stations = (value for stage in scene.stages if claim.in_stage(stage.name) for value in stage.stations[:_LISTED])
+        yield from broken(
+            not (probe or critical) and unknown_name(f"{key}.probe", claim.probe, "probe", [*probes, CRITICAL]),
+            claim.value is not None
+            and probe is not None
+            and probe.quantity in _SEVERAL
+            and Mistake(f"{key}.value", f"a value of {claim.probe!r}, which has several", "a probe of one number"),
+            unasked
+            and Mistake(f"{key}.stage", f"{claim.stage!r}, in which {claim.probe!r} is not asked", "another stage"),
+            claim.station is not None
+            and critical
+            and Mistake(f"{key}.station", f"{claim.station:g}", f"none: of {CRITICAL!r} the first of a stage is meant"),
+            claim.station is not None
+            and not (unasked or critical)
+            and not any(claim.speaks_of(*station) for station in _beside(ascending, claim.station))
+            and Mistake(
+                f"{key}.station",
+                f"{claim.station:g}",
+                f"a station of a stage: {', '.join(f'{value:g}' for value in stations)}",
+            ),
+        )
+
+
+def wrong_stages(scene: Scene) -> Iterator[Mistake]:
+    """Stages with the same name, with loads of different units together, or with a drive that is free there."""
+    first = {stage.name: i for i, stage in reversed(list(enumerate(scene.stages)))}
+    for i, stage in enumerate(scene.stages):
+        units = sorted({str(scene.loads[load].unit) for load in stage.together if load in scene.loads})
+        drive = scene.drives.get(stage.steps)
+        yield from broken(
+            first[stage.name] < i and Mistake(f"stages[{i}].name", f"{stage.name!r} again", "each stage's name once"),
+            len(units) > 1 and Mistake(f"stages[{i}].steps", f"loads in {' and '.join(units)}", "loads of one unit"),
+            drive is not None
+            and not scene.holds(drive, stage.name)
+            and Mistake(
+                f"stages[{i}].steps",
+                f"{stage.steps!r}, a drive that is free until the stage {drive.begins!r}",
+                "a drive that holds, or a load",
+            ),
+        )
+
+
+def wrong_spacings(scene: Scene) -> Iterator[Mistake]:
+    """Elements of the formulation ``paper`` along an axis with reversals or without extent of the beam."""
+    for name, beam in scene.beams.items():
+        if beam.paper is not None and beam.sound and not _runs_along(beam, "xy".index(beam.paper.uniform)):
+            found = f"{beam.paper.uniform!r}, along which the curve turns back or does not run"
+            yield Mistake(f"beams.{name}.paper.uniform", found, "an axis along which the curve runs one way")
+
+
+def _runs_along(beam: Beam, axis: int) -> bool:
+    shape, extent = shape_of(beam.curve), beam.curve.end[axis] - beam.curve.start[axis]
+    forwards = np.sign(extent) * shape.tangent(np.linspace(0.0, 1.0, SAMPLES))[:, axis]
+    return abs(extent) >= _LEAST_EXTENT * shape.length and bool(np.all(forwards >= -_BACKWARDS))
+
+
+def _beside(ascending: Mapping[str, list[float]], value: float) -> Iterator[tuple[str, float]]:
+    """The two stations of every stage beside a value."""
+    for name, stations in ascending.items():
+        place = bisect(stations, value)
+        yield from ((name, station) for station in stations[max(0, place - 1) : place + 1])
+
+
+def _bearers(scene: Scene) -> dict[str, list[str]]:
+    """Names of the parts of the scene with a quantity, by the values of ``_OF``."""
+    fixed = {point for body in scene.bodies.values() if body.motion == "fixed" for point in body.points}
+    ends = [end for beam in scene.beams.values() for end in (beam.start, beam.end)]
+    supports = [end.point for end in ends if not isinstance(end, FreeEnd) and end.point in fixed]
+    supports += [point for pin in scene.pins.values() for point in pin.points if point in fixed]
+    pivots = [body.about for body in scene.bodies.values() if isinstance(body, TurningBody)]
+    slides = [name for name, body in scene.bodies.items() if isinstance(body, SlidingBody)]
+    driven = [drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)]
+    turned = [drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive)]
+    edges = [name for name, each in scene.contacts.items() if isinstance(each, EdgeContact) and _pinned(scene, each)]
+    return {
+        _OF["displacement"]: point_names(scene),
+        _OF["rotation"]: list(scene.bodies),
+        _OF["force"]: list(scene.contacts),
+        _OF["bending_stress"]: list(scene.beams),
+        _OF["reaction"]: list(dict.fromkeys((*supports, *pivots, *driven, *slides))),
+        _OF["reaction_moment"]: list(dict.fromkeys((*supports, *turned))),
+        _OF["angle"]: list(scene.stops),
+        _OF["moment"]: [*scene.stops, *edges],
+        _OF["potential_energy"]: [RESERVED],
+    }
+
+
+def _pinned(scene: Scene, contact: EdgeContact) -> bool:
+    """True if pins at the same point join the beam and the edge's body; fixed bodies count as the same body."""
+    beam, own = scene.beams.get(contact.beam), scene.bodies.get(contact.body)
+    together = {end.point for end in (beam.start, beam.end) if isinstance(end, PinnedEnd)} if beam else set()
+    for _ in scene.pins:
+        together |= {point for pin in scene.pins.values() if together & set(pin.points) for point in pin.points}
+    fixed = [body for body in scene.bodies.values() if body.motion == "fixed"]
+    return any(together & set(body.points) for body in (fixed if own in fixed else [own]) if body is not None)

@@ -12,14 +12,13 @@ import numpy as np
 from pydantic import Field
 
 from cprbm_scene.curve_records import CurveField, shape_of
+from cprbm_scene.curves import SAMPLES
 from cprbm_scene.mistakes import Mistake, broken
-from cprbm_scene.record import Name, Named, Record, Text, Title
-from cprbm_scene.units import Positive, PositiveLength, PositiveShare
+from cprbm_scene.units import Name, Named, Positive, PositiveLength, PositiveShare, Record, Text, Title
 
 FEWEST, MOST = 4, 200
 """Allowed numbers of springs."""
 
-_SAMPLES = 2001
 _ACROSS = 1e-3
 """Least component of the curve's tangent along the other axis, over which the curve is a graph."""
 
@@ -86,18 +85,19 @@ class OffsetQuestion(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """Repeated values, claims on numbers without a run, and offset curves that are no graph over the other axis."""
-        listed = (("offsets", self.offsets), ("numbers", self.numbers))
-        most = max(self.numbers)
+        most, shown = max(self.numbers), self.shown.offsets if self.shown else ()
         yield from broken(
-            *((len(set(values)) < len(values), key, "a value twice", "each once") for key, values in listed),
+            len(set(self.offsets)) < len(self.offsets) and Mistake("offsets", "a value twice", "each once"),
+            len(set(self.numbers)) < len(self.numbers) and Mistake("numbers", "a value twice", "each once"),
             *(
-                (from_ > most, f"claims[{i}].numbers_from", f"{from_}, beyond all numbers", f"at most {most}")
-                for i, from_ in enumerate(claim.numbers_from for claim in self.claims)
+                claim.numbers_from > most
+                and Mistake(f"claims[{i}].numbers_from", f"{claim.numbers_from}, beyond all numbers", f"at most {most}")
+                for i, claim in enumerate(self.claims)
             ),
         )
         if any(self.curve.rules()):
             return
-        u, shape = np.linspace(0.0, 1.0, _SAMPLES), shape_of(self.curve)
+        u, shape = np.linspace(0.0, 1.0, SAMPLES), shape_of(self.curve)
         p, tangents = shape.point(u), shape.tangent(u)
         across = tangents[:, 0 if self.axis == "y" else 1]
         if np.min(np.abs(across)) < _ACROSS or np.ptp(np.sign(across)) > 0.0:
@@ -105,12 +105,8 @@ class OffsetQuestion(Record):
             return
         normals = self.sign * np.column_stack((-tangents[:, 1], tangents[:, 0]))
         allowed = "less than the radius of curvature on that side of the curve"
-        shown = self.shown.offsets if self.shown else ()
-        for key, t in (*_items("offsets", self.offsets), *_items("shown.offsets", shown)):
-            # beyond the radius of curvature the offset curve runs backwards, with a cusp
-            forwards = (np.diff(p + t * normals, axis=0) * tangents[:-1]).sum(axis=1)
-            yield from broken((np.min(forwards) <= 0.0, key, f"{t:g}", allowed))
-
-
-def _items(key: str, values: tuple[float, ...]) -> list[tuple[str, float]]:
-    return [(f"{key}[{i}]", value) for i, value in enumerate(values)]
+        for part, offsets in (("offsets", self.offsets), ("shown.offsets", shown)):
+            for i, t in enumerate(offsets):
+                # beyond the radius of curvature the offset curve runs backwards, with a cusp
+                forwards = (np.diff(p + t * normals, axis=0) * tangents[:-1]).sum(axis=1)
+                yield from broken(np.min(forwards) <= 0.0 and Mistake(f"{part}[{i}]", f"{t:g}", allowed))

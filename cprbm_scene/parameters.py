@@ -1,9 +1,8 @@
 """Parameters of a scene, and expressions of parameters: named numbers with a unit, a range and a tolerance.
 
-An expression such as ``"= 50*sqrt(3) - t/2"`` is read by a white list of Python's syntax.
-A value is a number in the file's units together with its :class:`~cprbm_scene.units.Unit`.  Literals, pi and results of
-sin, cos and tan have no unit (None): a sum gives them the unit of the other term, a key its own unit.  A ratio of two
-lengths is a pure number, and no length.
+An expression such as ``"= 50*sqrt(3) - t/2"`` is read by a white list of Python's syntax.  A value is a number in SI
+with its :class:`~cprbm_scene.units.Unit`.  Literals, pi and results of sin, cos and tan have no unit (None): a sum
+gives them the file's unit of the other term, a key its own unit.  A ratio of two lengths is a pure number, no length.
 """
 
 from __future__ import annotations
@@ -13,22 +12,21 @@ import math
 import operator
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import astuple
-from typing import Annotated, Any, NamedTuple
+from fractions import Fraction
+from typing import Annotated, NamedTuple, get_args
 
-from pydantic import Field, ValidationInfo, ValidatorFunctionWrapHandler
+from pydantic import Field, ValidationInfo, ValidatorFunctionWrapHandler, WrapValidator
 
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import unknown_name
-from cprbm_scene.record import Record
-from cprbm_scene.units import ANGLE, FORCE, LENGTH, STRESS, Measured, Reading, Unit, Units, mistake
+from cprbm_scene.mistakes import SceneError, unknown_name
+from cprbm_scene.units import ANGLE, NUMBER, SIZES, Measured, Reading, Record, Unit, Units, mistake
 
 LONGEST = 300
 """Largest number of characters of an expression: the evaluation of a longer expression could exhaust the stack."""
 
 
 class Value(NamedTuple):
-    """A number in the file's units, with its unit; None for a number without unit."""
+    """A number in SI, with its unit; a number without unit (None) is in the unit of its place."""
 
     number: float
     unit: Unit | None = None
@@ -38,18 +36,78 @@ class ExpressionError(ValueError):
     """An expression without a value; the message completes ``found EXPRESSION``."""
 
 
-_TERMS: Mapping[type[ast.AST], Callable[[float, float], float]] = frozendict(
-    {ast.Add: operator.add, ast.Sub: operator.sub}
+Rule = Callable[[Callable[..., float], Sequence[Value], Units], Value]
+"""Value of a function of values, with the file's units for numbers without unit."""
+
+
+def _numbers(values: Sequence[Value], units: Units) -> tuple[list[float], Unit | None]:
+    """Numbers in SI of values of one dimension, and their unit."""
+    unit = next((value.unit for value in values if value.unit is not None), None)
+    if unit is None:
+        return [value.number for value in values], None
+    if any(value.unit is not None and value.unit.dimension != unit.dimension for value in values):
+        raise ExpressionError("different units in one sum or function")
+    return [value.number if value.unit is not None else unit.in_si(value.number, units) for value in values], unit
+
+
+def _alike(function: Callable[..., float], values: Sequence[Value], units: Units) -> Value:
+    """Sum, extremum or length of values of one dimension."""
+    numbers, unit = _numbers(values, units)
+    return Value(float(function(*numbers)), unit)
+
+
+def _angle(function: Callable[..., float], values: Sequence[Value], units: Units) -> Value:
+    """Angle from values of one dimension."""
+    return Value(function(*_numbers(values, units)[0]), ANGLE)
+
+
+def _of_angle(function: Callable[..., float], values: Sequence[Value], units: Units) -> Value:
+    """Sine, cosine or tangent of an angle."""
+    return Value(function(*_numbers([Value(0.0, ANGLE), *values], units)[0][1:]))
+
+
+def _product(function: Callable[..., float], values: Sequence[Value], units: Units) -> Value:
+    """Product or quotient of two values."""
+    (one, unit), (other, second) = values
+    if second is not None:
+        unit = (unit or NUMBER).times(second, -1 if function is operator.truediv else 1)
+    return Value(function(one, other), unit)
+
+
+def _power(function: Callable[..., float], values: Sequence[Value], units: Units) -> Value:
+    """Power of a value, with stress as force over the square of length; without an exponent the square root."""
+    (number, unit), (exponent, wrong) = values if len(values) > 1 else (values[0], Value(0.5))
+    if wrong is not None:
+        raise ExpressionError("no arithmetic, or an exponent with a unit")
+    if unit is not None:
+        powers = [power * exponent for power in (*unit.dimension, unit.angle)]
+        if not all(power.is_integer() for power in powers):
+            raise ExpressionError("a root of a unit")
+        unit = Unit(*map(int, powers))
+    if number < 0.0 and not exponent.is_integer():
+        raise ExpressionError("a power of a negative number")
+    return Value(number**exponent, unit)
+
+
+_RULES: Mapping[str, tuple[Callable[..., float], Rule, int]] = frozendict(
+    {
+        "+": (operator.add, _alike, 2),
+        "-": (operator.sub, _alike, 2),
+        "**": (operator.pow, _power, 2),
+        "*": (operator.mul, _product, 2),
+        "/": (operator.truediv, _product, 2),
+        **{name: (getattr(math, name), _of_angle, 1) for name in ("sin", "cos", "tan")},
+        "hypot": (math.hypot, _alike, 0),
+        "min": (lambda *numbers: min(numbers), _alike, 0),
+        "max": (lambda *numbers: max(numbers), _alike, 0),
+        "abs": (abs, _alike, 1),
+        "atan2": (math.atan2, _angle, 2),
+        "sqrt": (math.sqrt, _power, 1),
+    }
 )
-_FACTORS: Mapping[type[ast.AST], tuple[Callable[[float, float], float], int]] = frozendict(
-    {ast.Mult: (operator.mul, 1), ast.Div: (operator.truediv, -1)}
-)
-_TURNS = frozendict({"sin": math.sin, "cos": math.cos, "tan": math.tan})
-_ALIKE: Mapping[str, Callable[..., float]] = frozendict(
-    {"hypot": math.hypot, "min": min, "max": max, "abs": abs, "atan2": math.atan2}
-)
-_COUNTS = frozendict({"sqrt": 1, "sin": 1, "cos": 1, "tan": 1, "abs": 1, "atan2": 2})
-FUNCTIONS = (*_TURNS, *_ALIKE, "sqrt")
+"""Operators and functions, each with the rule of its unit and the number of its arguments (0: at least one)."""
+_SIGNS = frozendict({ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"})
+FUNCTIONS = tuple(name for name in _RULES if name.isidentifier())
 
 
 def evaluated(text: str, named: Callable[[str], Value], units: Units) -> Value:
@@ -60,20 +118,38 @@ def evaluated(text: str, named: Callable[[str], Value], units: Units) -> Value:
         named: function from a name to its value.
         units: units of the file.
 
-    Returns:
-        The number in the file's units, with its unit.
-
     Raises:
         ExpressionError: the expression is no arithmetic, has no finite value, or combines different units.
     """
     if len(text) > LONGEST:
         raise ExpressionError(f"an expression of {len(text)} characters")
+
+    def of(node: ast.expr) -> Value:
+        match node:
+            case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
+                return Value(float(number))
+            case ast.Name(id=name):
+                return Value(math.pi) if name == "pi" else named(name)
+            case ast.UnaryOp(op=ast.UAdd() | ast.USub() as sign, operand=operand):
+                number, unit = of(operand)
+                return Value(-number if isinstance(sign, ast.USub) else number, unit)
+            case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _SIGNS:
+                name, nodes = _SIGNS[type(sign)], [left, right]
+            case ast.Call(func=ast.Name(id=name), args=nodes, keywords=[]) if name in FUNCTIONS:
+                pass
+            case _:
+                raise ExpressionError(f"{ast.unparse(node)!r}, which is no arithmetic")
+        function, rule, count = _RULES[name]
+        if len(nodes) != (count or max(len(nodes), 1)):
+            raise ExpressionError(f"{name} of {len(nodes)} numbers")
+        return rule(function, [of(each) for each in nodes], units)
+
     try:
-        tree = ast.parse(text.strip(), mode="eval")
+        body = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError):
         raise ExpressionError("no arithmetic") from None
     try:
-        value = _Evaluation(named, units).of(tree.body)
+        value = of(body)
     except ArithmeticError as error:
         raise ExpressionError(f"without a value ({error.args[-1]})") from None
     if not math.isfinite(value.number):
@@ -81,101 +157,34 @@ def evaluated(text: str, named: Callable[[str], Value], units: Units) -> Value:
     return value
 
 
-class _Evaluation:
-    def __init__(self, named: Callable[[str], Value], units: Units) -> None:
-        self._named, self._units = named, units
-
-    def of(self, node: ast.expr) -> Value:
-        """Value of a node."""
-        match node:
-            case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
-                return Value(float(number))
-            case ast.Name(id="pi"):
-                return Value(math.pi)
-            case ast.Name(id=name):
-                return self._named(name)
-            case ast.UnaryOp(op=ast.UAdd() | ast.USub() as sign, operand=operand):
-                value = self.of(operand)
-                return value._replace(number=-value.number) if isinstance(sign, ast.USub) else value
-            case ast.BinOp(left=left, op=op, right=right):
-                return self._combined(op, self.of(left), self.of(right))
-            case ast.Call(func=ast.Name(id=name), args=args, keywords=[]) if name in FUNCTIONS:
-                if not args or len(args) != _COUNTS.get(name, len(args)):
-                    raise ExpressionError(f"{name} of {len(args)} numbers")
-                return self._called(name, [self.of(each) for each in args])
-        raise ExpressionError(f"{ast.unparse(node)!r}, which is no arithmetic")
-
-    def _combined(self, op: ast.operator, left: Value, right: Value) -> Value:
-        if type(op) in _TERMS:
-            (one, other), unit = self._alike((left, right))
-            return Value(_TERMS[type(op)](one, other), unit)
-        if type(op) in _FACTORS:
-            function, power = _FACTORS[type(op)]
-            unit = left.unit if right.unit is None else (left.unit or Unit()).times(right.unit, power)
-            return Value(function(left.number, right.number), unit)
-        if not isinstance(op, ast.Pow) or right.unit is not None:
-            raise ExpressionError("no arithmetic, or an exponent with a unit")
-        return self._power(left, right.number)
-
-    def _called(self, name: str, values: Sequence[Value]) -> Value:
-        if name == "sqrt":
-            return self._power(values[0], 0.5)
-        degree = math.pi / 180.0 if self._units.angle == "deg" else 1.0
-        if name in _TURNS:
-            (_, angle), _ = self._alike((Value(0.0, ANGLE), values[0]))
-            return Value(_TURNS[name](angle * degree))
-        numbers, unit = self._alike(values)
-        number = float(_ALIKE[name](*numbers)) if len(numbers) > 1 or name in ("abs", "hypot") else numbers[0]
-        return Value(number / degree, ANGLE) if name == "atan2" else Value(number, unit)
-
-    def _alike(self, values: Sequence[Value]) -> tuple[list[float], Unit | None]:
-        """Numbers in a common unit, and the unit."""
-        unit = next((value.unit for value in values if value.unit is not None), None)
-        factors = [1.0 if value.unit is None else value.unit.over(unit or Unit(), self._units) for value in values]
-        if None in factors:
-            raise ExpressionError("different units in one sum or function")
-        return [value.number * (factor or 1.0) for value, factor in zip(values, factors, strict=True)], unit
-
-    def _power(self, value: Value, exponent: float) -> Value:
-        """A power of a value, with stress as force over the square of length."""
-        number, unit = value
-        if unit is not None:
-            plain = Unit(unit.length - 2 * unit.stress, unit.force + unit.stress, unit.angle)
-            number *= unit.over(plain, self._units) or 1.0
-            powers = [power * exponent for power in astuple(plain)]
-            if any(power != round(power) for power in powers):
-                raise ExpressionError("a root of a unit")
-            unit = Unit(*map(round, powers))
-        if number < 0.0 and exponent != round(exponent):
-            raise ExpressionError("a power of a negative number")
-        return Value(number**exponent, unit)
-
-
 _SETTING = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 _ROUNDED = 1e-12
 """Share of a range by which a value may exceed the range: units are converted."""
 
-_NAMED = frozendict(
-    {name: (Units(length=name), LENGTH) for name in ("m", "cm", "mm", "um", "in")}
-    | {name: (Units(force=name), FORCE) for name in ("N", "kN", "mN", "uN")}
-    | {name: (Units(angle=name), ANGLE) for name in ("rad", "deg")}
-    | {name: (Units(stress=name), STRESS) for name in ("Pa", "kPa", "MPa", "GPa")}
+_NAMED: Mapping[str, Value] = frozendict(
+    {
+        name: Value(float(SIZES[name]), Unit(**{quantity: 1}))
+        for quantity, field in Units.model_fields.items()
+        for name in get_args(field.annotation)
+    }
 )
 
 
 class _Own(Measured):
     """Metadata of numbers in the parameter's own unit."""
 
-    def of(self, reading: Reading, record: Mapping[str, Any]) -> None:
-        """None: the parameter states the unit."""
-
-    def _number(self, value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
-        expression = isinstance(info.context, Reading) and isinstance(value, str) and value.startswith("=")
-        return value if expression else handler(value)
+    def number(self, value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
+        """The number as it is written."""
+        return handler(value)
 
 
-Own = Annotated[float, _Own()]
-PositiveOwn = Annotated[float, Field(gt=0.0), _Own()]
+def _or_expression(value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
+    expression = isinstance(info.context, Reading) and isinstance(value, str) and value.startswith("=")
+    return value if expression else handler(value)
+
+
+Own = Annotated[float, _Own(NUMBER)]
+PositiveOwn = Annotated[float, Field(gt=0.0), _Own(NUMBER)]
 
 
 class Tolerance(Record):
@@ -192,7 +201,7 @@ class Parameter(Record):
     the file's units.  After reading all numbers are in SI.
     """
 
-    value: Own
+    value: Annotated[Own, WrapValidator(_or_expression)]
     unit: str = ""
     range: tuple[Own, Own] | None = None
     tolerance: Tolerance | None = None
@@ -206,8 +215,7 @@ def register(reading: Reading, parameters: Mapping[str, Parameter]) -> Mapping[s
     """
     for name in reading.settings:
         if name not in parameters:
-            unknown = unknown_name(name, name, "parameter", parameters)
-            raise mistake(unknown.found, unknown.allowed, unknown.key)
+            raise SceneError([unknown_name(name, name, "parameter", parameters)])
     resolved = _Resolved(reading, parameters)
     found = {name: resolved.in_si(name) for name in parameters}
     reading.evaluate = resolved.evaluate
@@ -215,97 +223,91 @@ def register(reading: Reading, parameters: Mapping[str, Parameter]) -> Mapping[s
 
 
 class _Resolved:
-    """Values of parameters in the file's units, evaluated on demand."""
+    """Values of parameters, evaluated on demand."""
 
     def __init__(self, reading: Reading, parameters: Mapping[str, Parameter]) -> None:
         self._reading, self._parameters = reading, parameters
-        self._values: dict[str, Value] = {}
-        self._open: list[str] = []
+        self._values: dict[str, Value | None] = {}  # None during the evaluation
 
-    def evaluate(self, text: str, unit: Unit | None) -> float:
-        """Number of an expression in the file's units, for a key with a ``unit``; None without a check of the unit."""
+    def evaluate(self, text: str, unit: Unit | None, key: str = "") -> float:
+        """Number of an expression in SI, for a key with a ``unit``; None without a check of the unit."""
+        number, own = self._expression(text, key)
+        if own is None or unit is None:
+            return number if unit is None else unit.in_si(number, self._reading.units)
+        if own.dimension != unit.dimension:
+            raise mistake(
+                f"{text!r}, a number in {own}" if str(own) else f"{text!r}, a ratio without unit",
+                f"a number in {unit}" if str(unit) else "a number without unit",
+            )
+        return number
+
+    def _expression(self, text: str, key: str) -> Value:
         try:
-            value = evaluated(text.removeprefix("="), self._named, self._reading.units)
+            return evaluated(text.removeprefix("="), self._named, self._reading.units)
         except ExpressionError as error:
             known = ", ".join((*self._parameters, "pi", *FUNCTIONS))
-            raise mistake(f"{text!r}: {error}", f"an expression of numbers, + - * / ** ( ) and {known}") from None
-        factor = 1.0 if unit is None or value.unit is None else value.unit.over(unit, self._reading.units)
-        if factor is None:
-            found = f"{text!r}, a number in {value.unit}" if str(value.unit) else f"{text!r}, a ratio without unit"
-            raise mistake(found, f"a number in {unit}" if str(unit) else "a number without unit")
-        return value.number * factor
+            raise mistake(f"{text!r}: {error}", f"an expression of numbers, + - * / ** ( ) and {known}", key) from None
 
     def in_si(self, name: str) -> Parameter:
         """A parameter with all numbers in SI."""
-        given, value = self._parameters[name], self._value(name)
-        unit = value.unit or Unit()
+        given, (number, unit) = self._parameters[name], self._named(name)
         size, own = _unit_of(given.unit, f"{name}.unit")
-        number = unit.in_si(value.number, self._reading.units)
         span = given.range and (given.range[0] * size, given.range[1] * size)
-        if span is not None:
-            slack = _ROUNDED * max(abs(span[0]), abs(span[1]))
-            if not span[0] - slack <= number <= span[1] + slack:
-                allowed = f"a number from {span[0] / size:g} to {span[1] / size:g} {given.unit}".rstrip()
-                raise mistake(f"{number / size:.9g} {given.unit}".rstrip(), allowed, f"{name}.value")
-        scatter = given.tolerance and Tolerance(
-            normal=given.tolerance.normal and given.tolerance.normal * size,
-            uniform=given.tolerance.uniform and given.tolerance.uniform * size,
-        )
-        return Parameter(value=number, unit=str(own if given.unit else unit), range=span, tolerance=scatter)
+        slack = _ROUNDED * max(map(abs, span)) if span else 0.0
+        if span and not span[0] - slack <= number <= span[1] + slack:
+            raise mistake(
+                f"{number / size:.9g} {given.unit}".rstrip(),
+                f"a number from {span[0] / size:g} to {span[1] / size:g} {given.unit}".rstrip(),
+                f"{name}.value",
+            )
+        scatter = given.tolerance and Tolerance(**{kind: each and each * size for kind, each in given.tolerance})
+        return Parameter(value=number, unit=str(own if given.unit else unit or NUMBER), range=span, tolerance=scatter)
 
     def _named(self, name: str) -> Value:
         if name not in self._parameters:
             raise ExpressionError(unknown_name("", name, "parameter", self._parameters).found)
-        return self._value(name)
-
-    def _value(self, name: str) -> Value:
-        if name in self._open:
-            raise ExpressionError(f"a cycle: {' -> '.join((*self._open, name))}")
         if name not in self._values:
-            self._open.append(name)
+            self._values[name] = None
             self._values[name] = self._computed(name, self._parameters[name])
-            self._open.pop()
-        return self._values[name]
+        value = self._values[name]
+        if value is None:
+            cycle = [*(each for each, value in self._values.items() if value is None), name]
+            raise ExpressionError(f"a cycle: {' -> '.join(cycle)}")
+        return value
 
     def _computed(self, name: str, given: Parameter) -> Value:
-        size, unit = _unit_of(given.unit, f"{name}.unit")
         setting = self._reading.settings.get(name)
         if isinstance(given.value, str):
             if given.unit or setting is not None:
                 raise mistake(f"{given.value!r}, an expression", "a number with a unit, or an expression alone", name)
-            try:
-                return evaluated(given.value.removeprefix("="), self._named, self._reading.units)
-            except ExpressionError as error:
-                raise mistake(f"{given.value!r}: {error}", "an expression of parameters", f"{name}.value") from None
-        number = given.value
-        if isinstance(setting, str):
-            written = _SETTING.fullmatch(setting)
+            return self._expression(given.value, f"{name}.value")
+        size, unit = _unit_of(given.unit, f"{name}.unit")
+        number = given.value if setting is None else setting
+        if isinstance(number, str):
+            written = _SETTING.fullmatch(number)
             if written is None:
-                raise mistake(repr(setting), "a number with a unit, such as 1.9mm", name)
-            other_size, other = _unit_of(written[2] or given.unit, name)
-            if other.over(unit, Units()) is None:
-                raise mistake(repr(setting), f"a number in {given.unit or 'no unit'}", name)
-            number = float(written[1]) * (other_size / size)
+                raise mistake(repr(number), "a number with a unit, such as 1.9mm", name)
+            size, other = _unit_of(written[2] or given.unit, name)
+            if other.dimension != unit.dimension:
+                raise mistake(repr(number), f"a number in {given.unit or 'no unit'}", name)
+            number = float(written[1])
         elif setting is not None:
-            number = float(setting) / size
+            size = 1.0
         if not math.isfinite(number):
             raise mistake(f"{number:g}", "a finite number", name)
-        return Value(number * (size / unit.in_si(1.0, self._reading.units)), unit if given.unit else None)
+        return Value(float(Fraction(repr(number)) * Fraction(repr(size))), unit if given.unit else None)
 
 
 def _unit_of(text: str, key: str) -> tuple[float, Unit]:
     """Size in SI and powers of a unit such as ``mm`` or ``N*mm``; a plain number for an empty text."""
-    if not text:
-        return 1.0, Unit()
 
     def named(name: str) -> Value:
         if name not in _NAMED:
             raise ExpressionError(f"{name!r}, which is no unit")
-        units, unit = _NAMED[name]
-        return Value(unit.in_si(1.0, units), unit)
+        return _NAMED[name]
 
     try:
-        value = evaluated(text.replace("^", "**"), named, Units())
+        value = evaluated(text.replace("^", "**"), named, Units()) if text else Value(1.0)
     except ExpressionError as error:
         raise mistake(f"{text!r}: {error}", f"a product of {', '.join(_NAMED)}", key) from None
-    return value.number, value.unit or Unit()
+    return value.number, value.unit or NUMBER

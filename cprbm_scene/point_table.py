@@ -7,8 +7,8 @@ commas, semicolons or tabs; numbers have a decimal point.
 from __future__ import annotations
 
 import csv
-import math
 import re
+from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
 
@@ -32,42 +32,37 @@ def read_points(path: Path, unit: str) -> tuple[tuple[float, float], ...]:
         SceneError: the file cannot be read, or has a wrong header or number; the error names file, row and
             column.
     """
-    if not path.is_file():
-        raise mistake(f"{str(path)!r}, which is no file", "the path of a table of points, from the scene's folder")
     try:
         with path.open("rb") as stream:
             text = stream.read(LONGEST + 1).decode("utf-8-sig")
+    except FileNotFoundError:
+        raise mistake(
+            f"{str(path)!r}, which is no file", "a path of a table of points, from the scene's folder"
+        ) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "no text in UTF-8"
         raise mistake(f"{str(path)!r}, which cannot be read ({reason})", "a table of points in UTF-8") from None
     if len(text) > LONGEST:
         raise mistake(f"{path.name!r}, a longer file", f"at most {LONGEST // 1_000_000} MB of points")
     lines = [(row, line) for row, line in enumerate(text.splitlines(), start=1) if line.strip(" \t,;#")]
-    lines = [(row, line) for row, line in lines if not line.lstrip().startswith("#")]
-    header = lines[0][1] if lines else ""
+    lines = [(row, line) for row, line in lines if not line.lstrip().startswith("#")] or [(1, "")]
+    first, header = lines[0]
     mark = next((mark for mark in ";\t" if mark in header), ",")
-    columns = {}
-    for place, name in enumerate(header.split(mark)):
-        if found := _COLUMN.fullmatch(name.strip("\"' ")):
-            columns[found[1].lower()] = (place, (found[2] or unit).lower().replace("µ", "u"))
+    names = [_COLUMN.fullmatch(name.strip("\"' ")) for name in header.split(mark)]
+    columns = {
+        name[1].lower(): (i, (name[2] or unit).lower().replace("µ", "u")) for i, name in enumerate(names) if name
+    }
     if set(columns) != {"x", "y"}:
-        row = lines[0][0] if lines else 1
-        raise mistake(f"{header[:80]!r} in {path.name}, row {row}", _HEADER)
-    return tuple(_point(path, row, next(csv.reader([line], delimiter=mark)), columns, unit) for row, line in lines[1:])
+        raise mistake(f"{header[:80]!r} in {path.name}, row {first}", _HEADER)
+    cells = ((row, next(csv.reader([line], delimiter=mark))) for row, line in lines[1:])
+    places = (tuple(_number(path, row, line, name, *columns[name], unit) for name in "xy") for row, line in cells)
+    return tuple((x, y) for x, y in places)
 
 
-def _point(
-    path: Path, row: int, cells: list[str], columns: dict[str, tuple[int, str]], unit: str
-) -> tuple[float, float]:
-    place = []
-    for name, (column, own) in sorted(columns.items()):
-        cell = cells[column].strip() if column < len(cells) else ""
-        try:
-            number = float(cell)
-        except ValueError:
-            number = math.nan
-        if not abs(number) <= LARGEST:
-            allowed = "a finite number with a decimal point"
-            raise mistake(f"{cell!r} in {path.name}, row {row}, column {name}", allowed)
-        place.append(number if own == unit else float(Fraction(repr(number)) * SIZES[own] / SIZES[unit]))
-    return place[0], place[1]
+def _number(path: Path, row: int, cells: list[str], name: str, column: int, own: str, unit: str) -> float:
+    """Number of a cell in a unit of length."""
+    cell = cells[column].strip() if column < len(cells) else ""
+    with suppress(ValueError):
+        if abs(number := float(cell)) <= LARGEST:
+            return number if own == unit else float(Fraction(repr(number)) * SIZES[own] / SIZES[unit])
+    raise mistake(f"{cell!r} in {path.name}, row {row}, column {name}", "a finite number with a decimal point")

@@ -11,17 +11,20 @@ from pydantic import Field, WithJsonSchema, model_validator
 
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
-from cprbm_scene.record import Name, Of, Record, Text
 from cprbm_scene.units import (
     ANGLE,
     FORCE,
     LENGTH,
     MOMENT,
     STRESS,
-    Following,
+    Measured,
+    Name,
+    Of,
     Positive,
     PositiveShare,
     Reading,
+    Record,
+    Text,
     Unit,
     Units,
     mistake,
@@ -91,7 +94,7 @@ def _of_value(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
     return reading.probes.get(str(probe))
 
 
-Station = Annotated[float, Following(_of_stage)]
+Station = Annotated[float, Measured(_of_stage)]
 _SEVERAL = {"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 2}]}
 
 
@@ -115,7 +118,7 @@ class Stage(Record):
     together: Annotated[tuple[Name, ...], Of("load", key="steps")] = ()
     stations: Annotated[tuple[Station, ...], Field(min_length=1, max_length=10_001)]
     shown: tuple[Station, ...] = ()
-    critical_limit: Annotated[float, Field(gt=0.0), Following(_of_stage)] | None = None
+    critical_limit: Annotated[float, Field(gt=0.0), Measured(_of_stage)] | None = None
     beyond: Literal["stop", "jump"] | None = None
 
     @model_validator(mode="before")
@@ -135,13 +138,13 @@ class Stage(Record):
             place = bisect(before, value)
             beside = [*before[max(0, place - 2) : place - 1], *before[place : place + 1]]
             again = any(isclose(value, other, rel_tol=1e-9) for other in beside)
-            yield from broken((again, f"stations[{j}]", f"{value:g} again", allowed))
+            yield from broken(again and Mistake(f"stations[{j}]", f"{value:g} again", allowed))
         first, once = self.together[:1] in ((), (self.steps,)), len(set(self.together)) == len(self.together)
         stations = set(self.stations)
         yield from broken(
-            (not (first and once), "steps", f"{list(self.together)}", "different loads, each once"),
+            not (first and once) and Mistake("steps", f"{list(self.together)}", "different loads, each once"),
             *(
-                (value not in stations, f"shown[{j}]", f"{value:g}", "one of the stage's stations")
+                value not in stations and Mistake(f"shown[{j}]", f"{value:g}", "one of the stage's stations")
                 for j, value in enumerate(self.shown)
             ),
         )
@@ -174,7 +177,7 @@ class Probe(Record):
         """Places of quantities other than stress."""
         wrong = "points" in self.model_fields_set and self.quantity not in STRESSES
         allowed = "points for 'bending_stress' and 'combined_stress' only"
-        return broken((wrong, "points", f"places along {self.name!r}", allowed))
+        return broken(wrong and Mistake("points", f"places along {self.name!r}", allowed))
 
 
 class Claim(Record):
@@ -189,8 +192,8 @@ class Claim(Record):
 
     probe: str
     stage: Annotated[Name | None, Of("stage")] = None
-    station: Annotated[float, Following(_of_stations)] | None = None
-    value: Annotated[float, Following(_of_value)] | None = None
+    station: Annotated[float, Measured(_of_stations)] | None = None
+    value: Annotated[float, Measured(_of_value)] | None = None
     bound: Positive
     text: Text = ""
 

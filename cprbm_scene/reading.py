@@ -6,7 +6,8 @@ import re
 import tomllib
 from codecs import BOM_UTF8
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Any, TypeVar
@@ -14,18 +15,23 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from cprbm_scene.clearance import wrong_clearance
-from cprbm_scene.freedoms import wrong_actions
+from cprbm_scene.freedoms import wrong_actions, wrong_mobility
 from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
 from cprbm_scene.mistakes import Mistake, SceneError, first_of, unknown_name
-from cprbm_scene.mobility import wrong_mobility
-from cprbm_scene.names import records, repeated_contacts, repeated_names, unknown_names
+from cprbm_scene.names import (
+    records,
+    repeated_contacts,
+    repeated_names,
+    unknown_names,
+    wrong_claims,
+    wrong_probes,
+    wrong_spacings,
+    wrong_stages,
+)
 from cprbm_scene.offset import OffsetQuestion
 from cprbm_scene.parameters import register
-from cprbm_scene.questions import wrong_claims, wrong_probes, wrong_spacings, wrong_stages
-from cprbm_scene.record import Record
-from cprbm_scene.statement import Scene
-from cprbm_scene.units import Reading, Units
-from cprbm_scene.wording import in_words, keys_at, repeats_another
+from cprbm_scene.statement import Origin, Scene
+from cprbm_scene.units import Reading, Record, Units
 
 
 def broken_rules(root: Record) -> Iterator[Mistake]:
@@ -132,33 +138,25 @@ def toml_data(path: str | Path) -> dict[str, Any]:
     try:
         with Path(path).open("rb") as stream:
             content = stream.read(LARGEST + 1)
-        text = content.removeprefix(BOM_UTF8).decode("utf-8")
-        if len(content) > LARGEST:
-            found, allowed = "a file that is larger", f"at most {LARGEST // 1_000_000} MB of TOML in UTF-8"
-        elif _DEEP_KEY.search(text):
-            found, allowed = f"a key of more than {DEEPEST} parts", "the keys of a scene"
-        else:
-            return _parsed(text)
-    except UnicodeDecodeError as error:
-        found, allowed = f"bytes that are no UTF-8 text (at byte {error.start})", readable
-    except tomllib.TOMLDecodeError as error:
-        found, allowed = f"text that is no TOML ({error})", readable
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        found, allowed = f"a file that cannot be read ({reason})", readable
-    raise SceneError([Mistake("", found, allowed, str(path))]) from None
-
-
-def _parsed(text: str) -> dict[str, Any]:
-    """Plain data of a text in TOML.
-
-    Raises:
-        TOMLDecodeError: the text is no TOML, nested too deeply, or has an integer with too many digits.
-    """
+        reason = getattr(error, "strerror", None) or error
+        raise _refused(path, f"a file that cannot be read ({reason})", readable) from None
+    if len(content) > LARGEST:
+        raise _refused(path, "a file that is larger", f"at most {LARGEST // 1_000_000} MB of TOML in UTF-8")
     try:
-        return tomllib.loads(text)
+        text = content.removeprefix(BOM_UTF8).decode("utf-8")
+        if not _DEEP_KEY.search(text):
+            return tomllib.loads(text)
+    except UnicodeDecodeError as error:
+        raise _refused(path, f"bytes that are no UTF-8 text (at byte {error.start})", readable) from None
     except (RecursionError, ValueError) as error:
-        raise tomllib.TOMLDecodeError(str(error)) from None
+        # nested too deeply, or an integer with too many digits
+        raise _refused(path, f"text that is no TOML ({error})", readable) from None
+    raise _refused(path, f"a key of more than {DEEPEST} parts", "the keys of a scene")
+
+
+def _refused(path: str | Path, found: str, allowed: str) -> SceneError:
+    return SceneError([Mistake("", found, allowed, str(path))])
 
 
 def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str, float | str] | None = None) -> Scene:
@@ -187,23 +185,15 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
     """
     given = dict(parameters or {})
     scene = _record(Scene, {**data, "parameters": {}} if given and "parameters" not in data else data, file, given)
-    scene = scene.displayed_in(_units(data))
-    if scene.parameters:
-        scene._read = _Again(data, file, given)
+    scene._origin = Origin(_units(data), partial(_again, data, file, given) if scene.parameters else None)
     return scene
 
 
-@dataclass(frozen=True, slots=True)
-class _Again:
-    """Another reading of the plain data of a scene with parameters."""
-
-    data: dict[str, Any]
-    file: str
-    parameters: dict[str, float | str]
-
-    def __call__(self, values: Mapping[str, float | str]) -> Scene:
-        """The scene with other values of parameters."""
-        return scene_from(self.data, file=self.file, parameters={**self.parameters, **values})
+def _again(
+    data: dict[str, Any], file: str, given: Mapping[str, float | str], values: Mapping[str, float | str]
+) -> Scene:
+    """The scene of the plain data with other values of parameters."""
+    return scene_from(data, file=file, parameters={**given, **values})
 
 
 def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
@@ -218,21 +208,21 @@ def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
 def _record(kind: type[Asked], data: dict[str, Any], file: str, settings: Mapping[str, float | str]) -> Asked:
     """A question of a ``kind`` from plain data."""
     if "file" in data:
-        raise SceneError([replace(unknown_name("file", "file", "key here", keys_at((), kind)), file=file)])
+        keys = (key for key in kind.model_fields if key != "file")
+        raise SceneError([replace(unknown_name("file", "file", "key here", keys), file=file)])
     try:
         content = _tuples(data)
         reading = Reading(_units(content), settings=settings, folder=Path(file).parent)
         if "parameters" not in content:
             register(reading, {})
         record = kind.model_validate({**content, "file": file}, context=reading)
+        found = mistakes_in(record)
     except ValidationError as error:
-        mistakes = (in_words(details, kind) for details in error.errors() if not repeats_another(details))
-        raise SceneError(first_of((replace(each, file=file) for each in mistakes), file)) from None
+        found = first_of((each for details in error.errors() for each in details["ctx"]["error"].mistakes), file)
     except RecursionError:
-        raise SceneError([Mistake("", "tables nested too deeply", "a scene", file)]) from None
-    found = mistakes_in(record)
+        found = [Mistake("", "tables nested too deeply", "a scene")]
     if found:
-        raise SceneError(found)
+        raise SceneError([replace(each, file=file) for each in found])
     return record
 
 

@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from typing import Literal
 
 from cprbm_scene.clearance import overlap_at_rest
-from cprbm_scene.freedoms import Freedoms
+from cprbm_scene.freedoms import Freedoms, unsupported
 from cprbm_scene.mistakes import Mistake, SceneError
-from cprbm_scene.mobility import unsupported
 from cprbm_scene.statement import BeamContact, CircleContact, EllipseContact, Scene, SplineContact
 
 Requirement = Literal["theory", "overlap at rest", "from", "together", "support", "edge"]

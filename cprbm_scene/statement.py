@@ -10,7 +10,8 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import product
 from typing import Annotated, Literal, TypeVar
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
@@ -67,8 +68,7 @@ from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.parameters import Parameter, Tolerance, register
 from cprbm_scene.question_records import CRITICAL, STRESSES, UNITS, Claim, Probe, Quantity, Stage
-from cprbm_scene.record import Name, Named, Of, Record, Text, Title
-from cprbm_scene.units import Point, PositiveShare, Reading, Units
+from cprbm_scene.units import Name, Named, Of, Point, PositiveShare, Reading, Record, Text, Title, Units
 
 __all__ = [
     "CRITICAL",
@@ -136,10 +136,11 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
-class _Display:
-    """Units of tables and figures, which are no part of the question: scenes with different ones are equal."""
+class Origin:
+    """Units of a scene's file, and another reading with other parameters: no part of the question."""
 
     units: Units = field(default=Units(), compare=False)
+    again: Callable[[Mapping[str, float | str]], Scene] | None = field(default=None, compare=False)
 
 
 class Scene(Record):
@@ -174,14 +175,13 @@ class Scene(Record):
     claims: tuple[Claim, ...] = ()
     verdict_limit: PositiveShare = 0.015
     file: str = ""
-    _read: Callable[[Mapping[str, float | str]], Scene] | None = PrivateAttr(default=None)
-    _display: _Display = PrivateAttr(default=_Display())
+    _origin: Origin = PrivateAttr(default=Origin())
 
     def rules(self) -> Iterator[Mistake]:
         """Pairs of the same name."""
         return broken(
             *(
-                (one == other, f"may_cross[{i}]", f"{one!r} twice", "two different names")
+                one == other and Mistake(f"may_cross[{i}]", f"{one!r} twice", "two different names")
                 for i, (one, other) in enumerate(self.may_cross)
             )
         )
@@ -211,21 +211,18 @@ class Scene(Record):
     def _completed(self) -> Scene:
         """The scene with a free body for each named free end, and with a point for each fixed body without points."""
         beams, bodies = dict(self.beams), dict(self.bodies)
-        for name, beam in self.beams.items():
-            for side in ("start", "end"):
-                point = getattr(beam, side).point if isinstance(getattr(beam, side), FreeEnd) else None
-                if point is not None and f"{point}-body" not in bodies:
-                    points = frozendict({point: getattr(beam.curve, side)})
-                    bodies[f"{point}-body"] = FreeBody(motion="free", points=points)
-                    joint = WeldedEnd(joint="weld", point=point)
-                    beams[name] = beams[name].model_copy(update={side: joint})
-        for name, body in self.bodies.items():
-            if not body.points:
+        for name, side in product(self.beams, ("start", "end")):
+            end, place = getattr(beams[name], side), getattr(beams[name].curve, side)
+            body = f"{end.point}-body"
+            if isinstance(end, FreeEnd) and end.point is not None and body not in bodies:
+                bodies[body] = FreeBody(motion="free", points=frozendict({end.point: place}))
+                beams[name] = beams[name].model_copy(update={side: WeldedEnd(joint="weld", point=end.point)})
+        for name, each in self.bodies.items():
+            if not each.points:
                 edges = (edge for edge in self.contacts.values() if getattr(edge, "body", None) == name)
                 place = next((_place(edge) for edge in edges), next(iter(beams.values())).curve.start)
                 bodies[name] = FixedBody(motion="fixed", points=frozendict({f"{name}-point": place}))
-        if (beams, bodies) != (self.beams, self.bodies):
-            self.__dict__.update(beams=frozendict(beams), bodies=frozendict(bodies))
+        self.__dict__.update(beams=frozendict(beams), bodies=frozendict(bodies))
         return self
 
     def with_parameters(self, **values: float) -> Scene:
@@ -247,9 +244,9 @@ class Scene(Record):
             >>> hinge.beams["beam1"].thickness
             0.0019
         """
-        if self._read is None or self._read({}) != self:
+        if self._origin.again is None or self._origin.again({}) != self:
             raise ValueError("found a scene without parameters or altered after reading; allowed: a scene from a file")
-        return self._read(values)
+        return self._origin.again(values)
 
     def __repr__(self) -> str:
         """Name, and numbers of beams, contacts and probes."""
@@ -258,7 +255,7 @@ class Scene(Record):
     @property
     def display_units(self) -> Units:
         """Units of the scene's file, for tables and figures; ``model_fields_set`` lists the stated ones."""
-        return self._display.units
+        return self._origin.units
 
     def limit(self, probe: Probe) -> float:
         """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""
@@ -284,7 +281,7 @@ class Scene(Record):
     def displayed_in(self, units: Units) -> Scene:
         """The same scene with other units for tables and figures."""
         scene = self.model_copy()
-        scene._display = _Display(units)
+        scene._origin = replace(self._origin, units=units)
         return scene
 
     def place_of(self, point: str) -> Point:

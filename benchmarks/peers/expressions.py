@@ -13,7 +13,7 @@ import numpy as np
 from benchmarks.peers.formulas import Formulas
 
 if TYPE_CHECKING:
-    from cprbm.discretisation import Discretised, FittedContact, RoundContact, Spot
+    from benchmarks.peers.record import Discretised, FittedContact, RoundContact, Spot
 
 
 SX = Any  # a matrix of CasADi's scalar expressions, or a number

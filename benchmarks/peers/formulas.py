@@ -28,7 +28,7 @@ from benchmarks.peers.fitting import Fitted
 from cprbm_scene.answer import Array, Ints
 
 if TYPE_CHECKING:
-    from cprbm.discretisation import Discretised, FittedContact, RoundContact, Spot
+    from benchmarks.peers.record import Discretised, FittedContact, RoundContact, Spot
 
 
 @dataclass(frozen=True, slots=True)

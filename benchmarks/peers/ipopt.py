@@ -21,8 +21,8 @@ from benchmarks.peers.method import method
 from benchmarks.peers.solving import LATE, Solve, Solved
 
 if TYPE_CHECKING:
+    from benchmarks.peers.record import Discretised
     from comparisons.bench.contenders import Contender
-    from cprbm.discretisation import Discretised
 
 OPTIONS: dict[str, Any] = {
     "print_time": False,

@@ -21,7 +21,7 @@ from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import Probe
 
 if TYPE_CHECKING:
-    from cprbm.discretisation import Discretised
+    from benchmarks.peers.record import Discretised
 
 TOLERANCE = 1e-6
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import cprbm
+from benchmarks.peers import record
 from benchmarks.peers.judged import TOLERANCE, judged
+from benchmarks.peers.record import Discretised
 from benchmarks.peers.solving import Optimiser, Solved
 from comparisons.bench.contenders import Clocked, Contender, Outcome, Run
 from comparisons.choices import Count
-from cprbm.discretisation import Discretised
 from cprbm_scene import Scene
 
 
@@ -24,7 +25,7 @@ def discretised(scene: Scene, links: Count) -> Discretised:
         SceneError: the formulation does not offer it, or it is more than one minimum over links and bodies.
     """
     plain = links if isinstance(links, int) else dict(links)
-    return cprbm.discretised(scene, cprbm.Settings(links=plain, formulation="paper"))
+    return record.discretised(scene, cprbm.Settings(links=plain, formulation="paper"))
 
 
 def method(

@@ -14,7 +14,7 @@ from cprbm_scene.answer import Array
 if TYPE_CHECKING:
     from scipy.optimize import OptimizeResult
 
-    from cprbm.discretisation import Discretised
+    from benchmarks.peers.record import Discretised
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import BrokenExecutor
 from concurrent.futures.process import BrokenProcessPool
 from difflib import get_close_matches
 from pathlib import Path
@@ -24,6 +25,8 @@ def message(error: Exception) -> tuple[str, int] | None:
                 "to go on.",
                 NOT_FINISHED,
             )
+        case BrokenExecutor():
+            return f"{error} Finished results stand; repeat the command to go on.", NOT_FINISHED
         case MemoryError():
             return "The memory is too small for this model. Finished results stand; ask for fewer links.", NOT_FINISHED
         case OSError():

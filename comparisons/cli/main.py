@@ -10,6 +10,7 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 import click
@@ -22,7 +23,18 @@ if TYPE_CHECKING:
     from comparisons.pairing import Solvers
 
 GROUPS = {
-    "Your mechanism": ("new", "import", "solve", "compare", "converge", "sweep", "view", "report"),
+    "Your mechanism": (
+        "new",
+        "import",
+        "solve",
+        "compare",
+        "converge",
+        "sweep",
+        "tolerance",
+        "optimise",
+        "view",
+        "report",
+    ),
     "Built-in cases and evidence": ("list", "bench", "study"),
     "Development": ("schema", "doctor", "robustness"),
 }
@@ -41,38 +53,12 @@ class _SubCommands(Commands):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The sub-command with a name, or None."""
-        match cmd_name:
-            case "new":
-                from comparisons.cli.new_ import command
-            case "import":
-                from comparisons.cli.import_ import command
-            case "solve":
-                from comparisons.cli.solve_ import command
-            case "compare":
-                from comparisons.cli.compare_ import command
-            case "converge":
-                from comparisons.cli.converge_ import command
-            case "sweep":
-                from comparisons.cli.sweep_ import command
-            case "view":
-                from comparisons.cli.view_ import command
-            case "report":
-                from comparisons.cli.report_ import command
-            case "list":
-                from comparisons.cli.list_ import command
-            case "bench":
-                from comparisons.cli.bench_ import command
-            case "study":
-                from comparisons.cli.study_ import command
-            case "schema":
-                from comparisons.cli.schema_ import command
-            case "doctor":
-                from comparisons.cli.doctor_ import command
-            case "robustness" | "stress":
-                command = ToolCommand(cmd_name)
-            case _:
-                return None
-        return command
+        if cmd_name in workshop.TOOLS:
+            return ToolCommand(cmd_name)
+        if cmd_name not in self.list_commands(ctx):
+            return None
+        found: click.Command = import_module(f"comparisons.cli.{cmd_name}_").command
+        return found
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the sub-commands of every group under its heading."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -12,7 +11,8 @@ import click
 
 from comparisons.choices import Kinematics
 from comparisons.cli.completion import candidates
-from comparisons.cli.options import parameters, positive, settings, sized, variants, verbose
+from comparisons.cli.many import in_si, solved_often
+from comparisons.cli.options import settings
 
 if TYPE_CHECKING:
     from comparisons.sweeps.points import Axis, Point
@@ -29,15 +29,6 @@ def _shard(ctx: click.Context, param: click.Parameter, value: str) -> tuple[int,
     return int(found[1]), int(found[2])
 
 
-def _processes(ctx: click.Context, param: click.Parameter, value: str | None) -> int:
-    if value is None:
-        return min(2, os.cpu_count() or 1)
-    found = re.fullmatch(r"local:([1-9]\d{0,2})", value)
-    if found is None:
-        raise click.BadParameter(f"found {value!r}; allowed: local:N with N processes, as local:2")
-    return int(found[1])
-
-
 @click.command("sweep")
 @click.argument("case", metavar="CASE|FILE.toml", shell_complete=candidates)
 @click.option("--vary", multiple=True, metavar="NAME=FIRST..LAST:COUNT",
@@ -46,25 +37,15 @@ def _processes(ctx: click.Context, param: click.Parameter, value: str | None) ->
 @click.option("--sample", metavar="sobol:K|lhs:K|FILE.csv",
               help="Points of a sample in place of a grid; without --vary in the ranges of the scene's parameters.",
               )  # fmt: skip
-@parameters
 @click.option("--solver", type=click.Choice(["cprbm", "fea", "compare"]), default="cprbm", show_default=True,
               help="Solver of every point, or both with a verdict.")  # fmt: skip
 @click.option("--check", type=click.IntRange(min=0), default=0, metavar="K",
               help="Compare both solvers at K points: corners, then a Sobol subset.")  # fmt: skip
-@sized
-@variants
-@click.option("--on", "processes", callback=_processes, metavar="local:N",
-              help="Worker processes.  [default: a process per core, at most two]")  # fmt: skip
 @click.option("--shard", callback=_shard, default="1/1", metavar="I/N", show_default=True,
               help="Solve the points I, I + N, ... only.")  # fmt: skip
 @click.option("--merge", multiple=True, type=click.Path(exists=True, file_okay=False, path_type=Path), metavar="DIR",
               help="Take over the outcomes of a folder, such as of a shard; may be repeated.")  # fmt: skip
-@click.option("--at-most", callback=positive, metavar="SECONDS", default="600", show_default=True,
-              help="Time limit of a solve; a solve that crashes or takes longer is tried twice.")  # fmt: skip
-@click.option("-q", "--quiet", is_flag=True, help="Print neither tables nor progress.")
-@verbose
-@click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
-              help="Folder of tables and page; a sweep goes on from there.  [default: sweep-NAME]")  # fmt: skip
+@solved_often
 @click.pass_obj
 def command(
     planted: object,
@@ -78,7 +59,7 @@ def command(
     formulation: Literal["auto", "paper"],
     theory: Kinematics | None,
     kinematics: Kinematics | None,
-    processes: int,
+    place: str,
     shard: tuple[int, int],
     merge: tuple[Path, ...],
     at_most: float,
@@ -93,22 +74,22 @@ def command(
     from comparisons.cases import opened
     from comparisons.choices import Choices
     from comparisons.cli import output
-    from comparisons.executor import threads
     from comparisons.pairing import solvers_of
     from comparisons.sweeps.page import write_page
     from comparisons.sweeps.points import chosen_for_check
     from comparisons.sweeps.running import Sweep, known_outcomes, run, tasks_of
     from comparisons.sweeps.tables import write_tables
+    from comparisons.sweeps.workers import workers_on
 
     scene = opened(case, settings())
-    axes, points = _asked(scene, vary, sample, lambda name, text: _in_si(case, name, text))
+    axes, points = _asked(scene, vary, sample, in_si(case))
     choices = Choices(links, formulation, elements, kinematics, theory=theory)
     tasks = tasks_of(scene, points, solver, chosen_for_check(points, axes, check), choices, shard)
     out = Path(f"sweep-{scene.name}") if out is None else out
     output.room_for(None, out)
     sweep = Sweep(scene, axes, tasks, known_outcomes([out, *merge]))
-    with threads(processes) as executor, output.counted(len(tasks), shown=not quiet) as moved:
-        sweep = run(sweep, executor, choices, solvers_of(planted), at_most, out, moved)
+    with workers_on(place) as workers, output.counted(len(tasks), shown=not quiet) as moved:
+        sweep = run(sweep, workers, choices, solvers_of(planted), at_most, out, moved)
     write_tables(out, sweep)
     write_page(out, sweep)
     click.echo(f"{scene.name}: {sweep.headline}.")
@@ -128,36 +109,21 @@ def exit_code(sweep: Sweep) -> int:
     return UNDECIDED if any(outcome.verdict == "UNDECIDED" for outcome in outcomes) else 0
 
 
-def _in_si(case: str, name: str, text: str) -> float:
-    """SI value of a text for a parameter; the scene refuses an unknown parameter, a wrong unit and a wrong value."""
-    from comparisons.cases import opened
-
-    return opened(case, {**settings(), name: text}).parameters[name].value
-
-
 def _asked(
-    scene: Scene, vary: tuple[str, ...], sampled: str | None, in_si: Callable[[str, str], float]
+    scene: Scene, vary: tuple[str, ...], sampled: str | None, si: Callable[[str, str], float]
 ) -> tuple[tuple[Axis, ...], tuple[Point, ...]]:
     """Axes and points of the command line."""
-    from dataclasses import replace
+    from comparisons.sweeps.points import axes_of, axis_of, grid, in_file_units, ranges_of, read_points, sample
 
-    from comparisons.display_units import file_unit
-    from comparisons.sweeps.points import Axis, axes_of, axis_of, grid, read_points, sample
-
-    axes = tuple(axis_of(text, in_si) for text in vary)
+    axes = tuple(axis_of(text, si) for text in vary)
     if sampled is None:
         if not axes:
             raise click.UsageError("found neither --vary nor --sample; allowed: --vary t=1.8mm..2.2mm:11, or a sample.")
         points = grid(axes)
     elif sampled.endswith(".csv"):
-        points = read_points(Path(sampled), in_si)
+        points = read_points(Path(sampled), si)
         axes = axes_of(points)
     else:
-        ranges = {name: each.range for name, each in scene.parameters.items() if each.range is not None}
-        axes = axes or tuple(Axis(name, low, high) for name, (low, high) in ranges.items())
+        axes = axes or ranges_of(scene)
         points = sample(sampled, axes)
-    units = (file_unit(scene, scene.parameters[axis.name].unit) for axis in axes)
-    return tuple(
-        axis if axis.unit else replace(axis, size=size, unit=unit)
-        for axis, (size, unit) in zip(axes, units, strict=True)
-    ), points
+    return in_file_units(scene, axes), points

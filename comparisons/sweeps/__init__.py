@@ -1,1 +1,1 @@
-"""Sweeps: one scene at many values of its parameters."""
+"""Sweeps: a scene at many values of its parameters."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 from time import perf_counter
 from traceback import extract_tb
 from typing import Any, Literal
@@ -57,9 +57,15 @@ class Outcome:
         """Whether every station was reached."""
         return self.ending == "COMPLETED"
 
+    @property
+    def branch(self) -> tuple[bool, int]:
+        """Whether the answer is complete, and the branch of the last station: joined points have equal branches."""
+        return self.completed, self.numbers[-1]["branch"] if self.numbers else -1
+
     def line(self, key: str) -> str:
         """The outcome with its key as a line of JSON."""
-        return json.dumps({"key": key, **asdict(self)}, ensure_ascii=False)
+        own = {each.name: getattr(self, each.name) for each in fields(self)}  # asdict would copy all numbers
+        return json.dumps({"key": key, **own}, ensure_ascii=False)
 
 
 def outcome_of(line: str) -> tuple[str, Outcome]:

@@ -49,11 +49,6 @@ def names_of(outcome: Outcome) -> list[tuple[str, str]]:
     return [(number["stage"], name_of(number)) for number in last_numbers(outcome)]
 
 
-def branch_of(outcome: Outcome) -> tuple[bool, int]:
-    """Branch of the last station, with whether the answer is complete: joined points have equal branches."""
-    return outcome.completed, outcome.numbers[-1]["branch"] if outcome.numbers else -1
-
-
 def curve_of(outcome: Outcome, stage: str, name: str) -> list[Record]:
     """Numbers of a name in a stage, station by station."""
     return [
@@ -110,7 +105,7 @@ def _joined(axes: Axes, axis: Axis, solved: _Solved, numbers: list[float], *, jo
     """Points over a parameter; neighbours on one branch are joined."""
     places = [task.point[axis.name] / axis.size for task, _ in solved]
     start = 0
-    for _, part in groupby(solved, lambda each: branch_of(each[1])):
+    for _, part in groupby(solved, lambda each: each[1].branch):
         stop = start + len(list(part))
         axes.plot(places[start:stop], numbers[start:stop], "o-" if join else "o", color=BLUE, markersize=3.0)
         start = stop
@@ -122,10 +117,10 @@ def _contours(figure: Any, axes: Axes, sweep: Sweep, solved: _Solved, numbers: l
     shape = first.count, second.count
     values = np.full(shape[0] * shape[1], np.nan)
     branches = np.full(values.size, -1)
-    kinds = sorted({branch_of(outcome) for _, outcome in solved if outcome.completed})
+    kinds = sorted({outcome.branch for _, outcome in solved if outcome.completed})
     for (task, outcome), number in zip(solved, numbers, strict=True):
         if outcome.completed:
-            values[task.number - 1], branches[task.number - 1] = number, kinds.index(branch_of(outcome))
+            values[task.number - 1], branches[task.number - 1] = number, kinds.index(outcome.branch)
     if not np.isfinite(values).any():
         return
     levels = np.linspace(np.nanmin(values), max(np.nanmax(values), np.nextafter(np.nanmin(values), np.inf)), 12)

@@ -6,13 +6,14 @@ import csv
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
 
 import numpy as np
 
-from cprbm_scene import Mistake, SceneError
+from comparisons.display_units import file_unit
+from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.answer import Array
 
 Point = Mapping[str, float]
@@ -150,6 +151,21 @@ def axes_of(points: Sequence[Point]) -> tuple[Axis, ...]:
     names = list(points[0])
     columns = {name: [point[name] for point in points] for name in names}
     return tuple(Axis(name, min(values), max(values)) for name, values in columns.items())
+
+
+def ranges_of(scene: Scene) -> tuple[Axis, ...]:
+    """Axes of the parameters with a range."""
+    ranges = {name: each.range for name, each in scene.parameters.items() if each.range is not None}
+    return tuple(Axis(name, *ends) for name, ends in ranges.items())
+
+
+def in_file_units(scene: Scene, axes: Sequence[Axis]) -> tuple[Axis, ...]:
+    """The axes, with the units of the scene's file for axes without a unit."""
+    units = (file_unit(scene, scene.parameters[axis.name].unit) for axis in axes)
+    return tuple(
+        axis if axis.unit else replace(axis, size=size, unit=unit)
+        for axis, (size, unit) in zip(axes, units, strict=True)
+    )
 
 
 def chosen_for_check(points: Sequence[Point], axes: Sequence[Axis], count: int) -> frozenset[int]:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import logging
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 
 from comparisons.choices import Choices, check
@@ -14,6 +14,7 @@ from comparisons.pairing import Solvers
 from comparisons.store import digest, relevant
 from comparisons.sweeps.outcome import Asked, Outcome, outcome_of, solve_limited
 from comparisons.sweeps.points import Axis, Point
+from comparisons.sweeps.workers import Workers
 from comparisons.writing import append_line, whole_lines
 from cprbm_scene import Mistake, Scene, SceneError
 
@@ -21,9 +22,6 @@ _LOG = logging.getLogger(__name__)
 
 JOURNAL = "outcomes.jsonl"
 """File of all outcomes: a line per solved point, written by the asking process alone."""
-
-WINDOW = 16
-"""Number of points that an executor has at a time, so that a result is kept as soon as it is there."""
 
 _AGAIN = ("CRASHED", "TIME_LIMIT")
 """Endings that a larger time limit may change."""
@@ -144,7 +142,7 @@ def known_outcomes(folders: Sequence[Path]) -> dict[str, Outcome]:
 
 def run(
     sweep: Sweep,
-    executor: Executor,
+    workers: Workers,
     choices: Choices,
     solvers: Solvers,
     limit: float,
@@ -155,7 +153,7 @@ def run(
 
     Args:
         sweep: points and known outcomes.
-        executor: solves the points.
+        workers: solve the points.
         choices: how finely, and by which variants.
         solvers: the functions that answer.
         limit: time limit per solve, s.
@@ -169,22 +167,44 @@ def run(
     if journal is not None and journal.is_symlink():  # outcomes belong into the folder
         journal.unlink()
     wanted = {task.key: task for task in sweep.tasks}
-    outcomes = {key: found for key, found in sweep.outcomes.items() if key in wanted and not _again(found, limit)}
+    known = {key: sweep.outcomes[key] for key in wanted if key in sweep.outcomes}
+    outcomes = {key: found for key, found in known.items() if not _again(found, limit)}
     moved(len(outcomes))
-    waiting = (task for key, task in wanted.items() if key not in outcomes)
+    unknown = [task for key, task in wanted.items() if key not in outcomes]
+    for task, outcome in _solved(unknown, workers, choices, solvers, limit):
+        outcomes[task.key] = outcome
+        if journal is not None:
+            append_line(journal, outcome.line(task.key))
+        moved(len(outcomes))
+    return Sweep(sweep.scene, sweep.axes, sweep.tasks, outcomes)
+
+
+def _solved(
+    tasks: Sequence[Task], workers: Workers, choices: Choices, solvers: Solvers, limit: float
+) -> Iterator[tuple[Task, Outcome]]:
+    """Points with outcomes in the order of their ends; a point whose workers died is solved once more, last, alone."""
+    queue, suspects = deque(tasks), deque[Task]()
     pending: dict[Future[Outcome], Task] = {}
+
+    def submit(task: Task) -> None:
+        pending[workers.executor.submit(solve_limited, task.scene, choices, task.asked, solvers, limit)] = task
+
     try:
-        while True:
-            for task in islice(waiting, WINDOW - len(pending)):
-                pending[executor.submit(solve_limited, task.scene, choices, task.asked, solvers, limit)] = task
-            if not pending:
-                return Sweep(sweep.scene, sweep.axes, sweep.tasks, outcomes)
+        while queue or pending or suspects:
+            for _ in range(min(workers.window() - len(pending), len(queue))):
+                submit(queue.popleft())
+            alone = not pending
+            if alone:
+                submit(suspects.popleft())
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
-                task, outcome = pending.pop(future), future.result()
-                outcomes[task.key] = outcome
-                if journal is not None:
-                    append_line(journal, outcome.line(task.key))
-                moved(len(outcomes))
+                task = pending.pop(future)
+                try:
+                    yield task, future.result()
+                except workers.lost as error:
+                    if alone:
+                        yield task, Outcome(task.asked, "CRASHED", f"the workers died: {error}", limit=limit)
+                    else:  # an other point of the same worker may be the reason
+                        suspects.append(task)
     finally:
         for future in pending:
             future.cancel()

@@ -10,13 +10,12 @@ from itertools import product
 from pathlib import Path
 
 from comparisons.choices import Choices
-from comparisons.display_units import file_unit
-from comparisons.executor import threads
 from comparisons.pairing import Solvers
 from comparisons.sweeps.outcome import Asked
-from comparisons.sweeps.points import Axis, chosen_for_check
+from comparisons.sweeps.points import Axis, chosen_for_check, in_file_units
 from comparisons.sweeps.running import Sweep, known_outcomes, run, tasks_of
 from comparisons.sweeps.tables import write_tables
+from comparisons.sweeps.workers import Workers, workers_on
 from cprbm_scene import Scene
 
 
@@ -26,24 +25,21 @@ def start(
     asked: Asked,
     check: int,
     choices: Choices | None,
-    executor: Executor | None,
+    executor: Executor | str | None,
     limit: float,
     out: Path | None,
 ) -> Sweep:
     """The finished sweep; arguments and errors as of :func:`comparisons.sweep`."""
     points = tuple(dict(zip(vary, values, strict=True)) for values in product(*vary.values()))
     chosen = choices or Choices()
-    units = {name: file_unit(scene, each.unit) for name, each in scene.parameters.items()}
-    axes = []
-    for name, values in vary.items():
-        size, unit = units.get(name, (1.0, ""))
-        axes.append(Axis(name, min(values), max(values), len(values), unit, size))
+    axes = [Axis(name, min(each), max(each), len(each)) for name, each in vary.items()]
     tasks = tasks_of(scene, points, asked, chosen_for_check(points, axes, check), chosen)
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)
-    sweep = Sweep(scene, tuple(axes), tasks, {} if out is None else known_outcomes([out]))
-    with threads(os.cpu_count() or 1) if executor is None else nullcontext(executor) as pool:
-        sweep = run(sweep, pool, chosen, Solvers(), limit, out)
+    sweep = Sweep(scene, in_file_units(scene, axes), tasks, {} if out is None else known_outcomes([out]))
+    place = f"local:{os.cpu_count() or 1}" if executor is None else executor
+    with workers_on(place) if isinstance(place, str) else nullcontext(Workers(place)) as workers:
+        sweep = run(sweep, workers, chosen, Solvers(), limit, out)
     if out is not None:
         write_tables(out, sweep)
     return sweep

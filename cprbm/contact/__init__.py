@@ -3,8 +3,10 @@
 * :mod:`cprbm.contact.curve`: pieces, linear in the positions of nodes;
 * :mod:`cprbm.contact.compliance`: compliance lost by a chain under a point force;
 * :mod:`cprbm.contact.closest`: points, closest points, boxes; :mod:`cprbm.contact.gap`: gap and derivatives;
+* :mod:`cprbm.contact.corners`, :mod:`cprbm.contact.edges`: corners of rigid solids, places at corners;
 * :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
 * :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.own_pin`, :mod:`cprbm.contact.candidates`: contacts of a scene.
+* :mod:`cprbm.contact.law`: gaps that another law measures;
 * :mod:`cprbm.contact.contacts`: places and closed set of a state.
 """
 
@@ -14,12 +16,15 @@ from cprbm.contact.candidates import (
     fixed_places,
     joined,
     may_move,
+    on_edge,
+    places_at,
     sides_at_rest,
     taken,
 )
 from cprbm.contact.closest import curve_point, lost_at
 from cprbm.contact.contacts import TOUCHING, Contacts, open_contacts, touching_as_drawn
-from cprbm.contact.curve import STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
+from cprbm.contact.curve import BEND, CORNER, STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
+from cprbm.contact.edges import corner_sides, left_corner
 from cprbm.contact.gap import (
     COUPLING,
     GRADIENT,
@@ -33,12 +38,14 @@ from cprbm.contact.gap import (
     gap_row,
     local_indices,
 )
+from cprbm.contact.law import Columns, Law
 from cprbm.contact.pairs import Pair
 from cprbm.contact.settling import (
     BOX_TESTS,
     GAPS,
     SEARCHES,
     choose_sides,
+    find_bends,
     find_feet,
     move_places,
     near_pairs,
@@ -46,10 +53,13 @@ from cprbm.contact.settling import (
     separations,
     settle,
     settle_near,
+    sweeps_any_circle,
 )
 
 __all__ = [
+    "BEND",
     "BOX_TESTS",
+    "CORNER",
     "COUPLING",
     "GAPS",
     "GRADIENT",
@@ -60,35 +70,43 @@ __all__ = [
     "TANGENT",
     "TOUCHING",
     "TURN",
+    "Columns",
     "Contacts",
     "Curve",
     "CurveArrays",
     "Frames",
     "Geometry",
+    "Law",
     "Pair",
     "Places",
     "Row",
     "beam_curve",
     "choose_sides",
     "contact_geometry",
+    "corner_sides",
     "curve_arrays",
     "curve_point",
+    "find_bends",
     "find_feet",
     "fixed_places",
     "gap_frame",
     "gap_row",
     "joined",
+    "left_corner",
     "local_indices",
     "lost_at",
     "may_move",
     "move_places",
     "near_pairs",
     "new_counters",
+    "on_edge",
     "open_contacts",
+    "places_at",
     "separations",
     "settle",
     "settle_near",
     "sides_at_rest",
+    "sweeps_any_circle",
     "taken",
     "touching_as_drawn",
 ]

@@ -1,11 +1,12 @@
 """Places of contact: joints, ends, and the rules for their use.
 
-Fixed places are the joints and ends of the first curve, and the ends of a second beam.
+Fixed places are the joints and ends of the first curve, and the ends of a second beam.  Corners of a second curve are
+point contacts that stay at the corners, with the feet on the beam.
 
 * An end of a beam is no place on the body to which a joint holds the end.
 * The first joint behind a weld on the body of the foot has the force of the second joint.  The share of clamp and
   contact is not unique there; a row for the sum of both gaps keeps the pressure even.
-* A place may move everywhere but in an end link held by the body of the foot.
+* A place may move everywhere but in an end link held by the body of the foot.  In such a link a corner is no place.
 
 The side of two beams is the side at the least distance as drawn.  In self-contact a place lies before the foot, so
 that no gap counts twice; only the beam's end is a place as well.
@@ -21,6 +22,7 @@ import numpy as np
 from cprbm.chain import Mechanism
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
 from cprbm.contact.gap import Places, gap_frame
+from cprbm.contact.law import Law
 from cprbm.contact.pairs import Pair, contact_pairs
 from cprbm.contact.settling import find_feet, settle
 from cprbm_scene import FreeEnd, WeldedEnd
@@ -50,6 +52,8 @@ class Geometry:
         ends: bodies of the curves.
         possible: all fixed places, feet not found; node: number of a place's node on its curve.
         columns: numbers of the two curves of every pair (pairs, 2).
+        law: measures the gaps of some pairs; None without such pairs.
+        joints_alone: whether the places are joints alone: no place moves or shares a force.
     """
 
     curves: list[Curve]
@@ -59,6 +63,8 @@ class Geometry:
     possible: Places
     node: Ints
     columns: Ints
+    law: Law | None = None
+    joints_alone: bool = False
 
 
 def contact_geometry(m: Mechanism) -> Geometry | None:
@@ -111,10 +117,20 @@ def fixed_places(
     welded = geometry.ends.welded[places.curve]
     kept_welds = welded & (welds & geometry.ends.rigid[places.other])[:, None]
     held = (start & (before == 0) & ~kept_welds[:, 0]) | (end & (behind == 0) & ~kept_welds[:, 1])
+    corner = on_edge(arrays, places)
+    places.side[corner] = 0.0
+    first, last = places.foot == arrays.first[places.other], places.foot == arrays.last[places.other]
+    held = np.where(corner, (start & first) | (end & last), held)
     kept = ~held & np.isfinite(distance) & ~(itself & (places.foot < places.piece) & (behind > 0))
-    places.shares[(before == 1) & start & welded[:, 0]] = 1
-    places.shares[(behind == 1) & end & welded[:, 1]] = -1
+    if not geometry.joints_alone:
+        places.shares[(before == 1) & start & welded[:, 0]] = 1
+        places.shares[(behind == 1) & end & welded[:, 1]] = -1
     return taken(places, kept)
+
+
+def on_edge(arrays: CurveArrays, places: Places) -> Flags:
+    """Whether the places lie on a rigid curve, with the feet on a beam."""
+    return np.asarray(arrays.angle[places.piece] < 0)
 
 
 def may_move(geometry: Geometry, places: Places) -> Flags:
@@ -179,12 +195,22 @@ def _possible(arrays: CurveArrays, ends: Ends, pairs: list[Pair]) -> tuple[Place
     for number, pair in enumerate(pairs):
         links = int(arrays.last[pair.first] - arrays.first[pair.first]) + 1
         rows += [(number, pair.first, pair.second, node, links) for node in range(links + 1)]
+        rows += [(number, corner.curve, pair.first, 0, 1) for corner in pair.corners]
         if not pair.itself and not ends.rigid[pair.second]:
             links = int(arrays.last[pair.second] - arrays.first[pair.second]) + 1
             rows += [(number, pair.second, pair.first, node, links) for node in (0, links)]
-    pair, curve, other, node, links = np.array(rows, dtype=np.int64).T
+    return places_at(arrays, np.array(rows, dtype=np.int64).reshape(-1, 5))
+
+
+def places_at(arrays: CurveArrays, rows: Ints) -> tuple[Places, Ints]:
+    """Places at nodes, with the first piece of the other curve for a foot, and the nodes.
+
+    ``rows`` (k, 5) are the numbers of the pair, of both curves and of the node, and the links of the place's curve.
+    """
+    pair, curve, other, node, links = rows.T
     at_end = node == links
     zeros, none = np.zeros(len(node)), np.zeros(len(node), dtype=bool)
+    corner = arrays.angle[arrays.first[curve]] < 0
     places = Places(
         pair=pair,
         curve=curve,
@@ -195,7 +221,7 @@ def _possible(arrays: CurveArrays, ends: Ends, pairs: list[Pair]) -> tuple[Place
         eta=zeros.copy(),
         at_point=none.copy(),
         side=zeros.copy(),
-        moves=none,
+        moves=corner,
         shares=np.zeros(len(node), dtype=np.int64),
         force=zeros,
     )

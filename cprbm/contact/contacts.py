@@ -17,7 +17,7 @@ TOUCHING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """Possible places of contact, marks of the closed places, sides of the pairs, counters.
+    """Possible places of contact, marks of the closed places, sides of the pairs and of corners' curves, counters.
 
     ``given_up`` holds pairs and pieces at which a moving place failed; the pairs ``kept_open`` have no places.
     """
@@ -25,6 +25,7 @@ class Contacts:
     places: Places
     closed: Flags
     sides: Array
+    corner_sides: Array
     counters: Ints
     given_up: frozenset[tuple[int, int]] = frozenset()
     kept_open: frozenset[int] = frozenset()
@@ -38,6 +39,8 @@ class Contacts:
         count = len(self.closed)
         places, gaps = taken(self.places, np.arange(count)), np.empty(count)
         settle(z, geometry.arrays, places, gaps, np.empty(count), self.counters, 0)
+        if geometry.law is not None:
+            geometry.law.write_gaps(z, places, gaps)
         return gaps
 
 
@@ -53,4 +56,5 @@ def open_contacts(geometry: Geometry, z: Array) -> Contacts:
     """Contacts of a state as drawn, without any place."""
     counters = new_counters()
     nothing = taken(geometry.possible, np.zeros(0, dtype=np.int64))
-    return Contacts(nothing, np.zeros(0, dtype=bool), sides_at_rest(geometry, z, counters), counters)
+    sides = sides_at_rest(geometry, z, counters), np.zeros(len(geometry.curves))
+    return Contacts(nothing, np.zeros(0, dtype=bool), *sides, counters)

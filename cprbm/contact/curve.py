@@ -44,6 +44,13 @@ CLOSED = 1e-9
 """Distance of a curve's ends, over its length, below which the curve is closed: round-off of coordinates."""
 
 
+CORNER, BEND = 1, 2
+"""Marks of pieces of a rigid curve that begin at a corner, and of pieces of a sharp bend."""
+
+NO_SIDES = np.zeros((0, 2)), np.zeros((0, 2))
+"""Points before and behind an edge without straight sides."""
+
+
 @dataclass(frozen=True, eq=False)
 class Curve:
     """A curve, by pieces; lengths are in the mechanism's units.
@@ -56,6 +63,7 @@ class Curve:
         half_thickness: T at the pieces' ends (pieces + 1,).
         lost: compliance that a point force lacks on every piece (pieces, POWERS), lowest power first.
         angles: index of the angle of every link (pieces,), −1 without a link.
+        corner: ``CORNER`` of a piece that begins at a corner with a place, ``BEND`` of a piece of a sharp bend, else 0.
         beam: name of the beam, empty for a rigid curve; body: name of the body of a rigid curve, else empty.
         closed: whether the last piece leads to the first.
     """
@@ -67,6 +75,7 @@ class Curve:
     half_thickness: Array
     lost: Array
     angles: Ints
+    corner: Ints
     beam: str = ""
     body: str = ""
     closed: bool = False
@@ -87,7 +96,7 @@ class CurveArrays(NamedTuple):
 
     ``first``, ``last`` (curves,) are the first and the last piece of a curve.  Per piece: ``stencil``; ``real``,
     ``imaginary`` parts of the weights; ``arc`` at the begin and arc length ``span``; ``thickness`` at the begin and
-    the change ``thickening``; ``lost`` compliance; ``angle``.
+    the change ``thickening``; ``lost`` compliance; ``angle``; ``corner``.
     """
 
     first: Ints
@@ -103,6 +112,7 @@ class CurveArrays(NamedTuple):
     thickening: Array
     lost: Array
     angle: Ints
+    corner: Ints
 
 
 def curve_arrays(curves: Sequence[Curve]) -> CurveArrays:
@@ -123,6 +133,7 @@ def curve_arrays(curves: Sequence[Curve]) -> CurveArrays:
         thickening=np.concatenate([np.diff(curve.half_thickness) for curve in curves]),
         lost=np.concatenate([curve.lost for curve in curves]),
         angle=np.concatenate([curve.angles for curve in curves]),
+        corner=np.concatenate([curve.corner for curve in curves]),
     )
 
 
@@ -139,6 +150,7 @@ def beam_curve(m: Mechanism, beam: str, *, thick: bool) -> Curve:
         half_thickness=half_thickness,
         lost=_lost(m, chain),
         angles=m.beam_angles(beam),
+        corner=np.zeros(chain.links, dtype=np.int64),
         beam=beam,
     )
 
@@ -216,6 +228,7 @@ class Frames:
             half_thickness=np.full(pieces + 1, radius),
             lost=np.zeros((pieces, POWERS)),
             angles=np.full(pieces, -1, dtype=np.int64),
+            corner=np.zeros(pieces, dtype=np.int64),
             body=body,
             closed=pieces > 1 and abs(polynomials[-1].sum() - polynomials[0, 0]) < CLOSED * arcs[-1],
         )
@@ -232,7 +245,9 @@ class Frames:
             name, body, np.column_stack([places[:-1], chords]), np.concatenate([[0.0], np.cumsum(np.abs(chords))])
         )
 
-    def smooth_edge(self, name: str, body: str, points: Array, tangents: Array, length: float) -> Curve:
+    def smooth_edge(
+        self, name: str, body: str, points: Array, tangents: Array, length: float, sides: tuple[Array, Array] = NO_SIDES
+    ) -> Curve:
         """Cubic spline through ``points`` (k, 2), even by arc length, with unit ``tangents`` at both ends.
 
         Args:
@@ -240,6 +255,7 @@ class Frames:
             points: places on the edge; a closed edge repeats the first.
             tangents: unit tangents (k, 2) at the points.
             length: arc length of the edge.
+            sides: points (j, 2) of straight pieces before and behind the spline.
         """
         from scipy.interpolate import CubicSpline  # scenes without smooth edges do not load it
 
@@ -247,4 +263,14 @@ class Frames:
         pieces = len(points) - 1
         step = length / pieces
         spline = CubicSpline(np.arange(pieces + 1.0), places, bc_type=((1, step * slopes[0]), (1, step * slopes[-1])))
-        return self.rigid_curve(name, body, spline.c[::-1].T, np.linspace(0.0, length, pieces + 1))
+        begin, end = (
+            np.concatenate(ends) @ np.array([1.0, 1.0j]) for ends in ((sides[0], points[:1]), (points[-1:], sides[1]))
+        )
+        straight = [np.column_stack([at[:-1], np.diff(at), 0.0 * at[1:], 0.0 * at[1:]]) for at in (begin, end)]
+        spans = np.concatenate([np.abs(np.diff(begin)), np.full(pieces, step), np.abs(np.diff(end))])
+        return self.rigid_curve(
+            name,
+            body,
+            np.concatenate([straight[0], spline.c[::-1].T, straight[1]]),
+            np.concatenate([[0.0], np.cumsum(spans)]),
+        )

@@ -38,7 +38,7 @@ At an end of B, a convex corner and a circle the foot is a point: N = r/|r|, λ_
     λ_ξu = N·dC_A' + q_ξ (s_qq q + s_qe e),
 
 s the coefficients of λ_uu.  A moving place has λ_ξ = 0.  Newton's method eliminates the change of the place:
-dξ = −(λ_ξ + λ_ξu + λ_ξF dF)/λ_ξξ.  The equilibrium takes the :class:`Row` below and vectors over the nodes; λ_uu
+dξ = −(λ_ξ + λ_ξu + λ_ξF dF)/λ_ξξ.  At a corner C_A' = 0 and all derivatives by ξ vanish.  The equilibrium takes the :class:`Row` below and vectors over the nodes; λ_uu
 less λ_ξu²/λ_ξξ is a form of rank three in q, e and λ_ξu.
 """
 
@@ -71,7 +71,7 @@ class Places(NamedTuple):
         other, foot, eta: curve B, piece and parameter of the foot.
         at_point: whether the foot is a point.
         side: σ; 0 for a beam with itself: the side on which the place is now.
-        moves: whether the place is a point contact that moves to the minimum of λ.
+        moves: whether the place is a point contact: at a corner, or moving to the minimum of λ.
         shares: offset of the place whose force the place has; 0 with a force of its own.
         force: F.
     """
@@ -228,6 +228,12 @@ def gap_row(
     if not places.moves[k]:
         vectors[COUPLING] = vectors[GRADIENT]
         return Row(f.gap, f.gap, 0.0, f.qq, f.qe, f.ee, 0.0, f.slope, f.curvature, 0.0)
+    if f.curvature == 0.0:
+        for i in range(LOCAL):
+            foot = f.foot_q * vectors[TANGENT, i] + f.foot_e * vectors[TURN, i]
+            vectors[COUPLING, i] = vectors[GRADIENT, i] + 0.5 * force * f.foot_lost * foot
+        by_force = f.lost + force * f.by_force
+        return Row(f.gap + force * f.lost, f.gap, by_force, f.qq, f.qe, f.ee, 0.0, 0.0, 0.0, 0.0)
     _add(vectors[SHIFT], 0, weights[2], f.nx, f.ny, 1.0)
     lean = f.slope_by_force
     for i in range(LOCAL):

@@ -6,7 +6,7 @@ symbol   meaning
 β        opening: angle from an edge's direction at the pin to the direction of the beam
 =======  ====================================================================================
 
-At the pin the beam has no gap.  The edge limits the angle of the beam and holds the beam by a moment, like a stop.
+At the pin the beam has no gap: the pin lies on the edge, or half the beam's thickness above.  The edge limits the angle of the beam and holds the beam by a moment, like a stop.
 With the edge's direction away from the pin and the beam on the left, β ≥ 0.  Where the edge runs on behind the pin, the
 angle from the beam to the rest of the edge is limited in the same way.
 """
@@ -30,8 +30,8 @@ ON_EDGE = 1e-6
 AT_CORNER = 1e-9
 """Distance of a pin from an end of a piece, over the piece's length, below which the piece leads one way only."""
 
-STRAIGHT = 1e-9
-"""Opening below 2π, rad, that counts as zero: round-off of a beam that lies on the edge."""
+STRAIGHT = 1e-5
+"""Opening below 2π, rad, that counts as zero: rounded coordinates of a beam that lies on the edge."""
 
 
 def pin_rows(m: Mechanism, name: str, contact: EdgeContact, points: Array, side: int) -> Iterator[Row]:
@@ -44,7 +44,8 @@ def pin_rows(m: Mechanism, name: str, contact: EdgeContact, points: Array, side:
             continue
         pin = m.units.place(m.scene.place_of(joint.point))
         turned = m.angle(contact.beam, link) - m.rotation(contact.body)
-        behind, ahead = _directions(pin, points, ON_EDGE * chain.length)
+        above = 0.5 * float(chain.section.thickness(chain.arcs[[link]])[0]) if contact.thick else 0.0
+        behind, ahead = _directions(pin, points, side * above, ON_EDGE * chain.length)
         for direction, sign in ((ahead, side), (behind, -side)):
             if direction is not None:
                 opening = (sign * (chain.leaving_angle(end) - float(np.arctan2(direction[1], direction[0])))) % tau
@@ -52,14 +53,18 @@ def pin_rows(m: Mechanism, name: str, contact: EdgeContact, points: Array, side:
                 yield Row(f"{name}.pin", turned * float(sign) + Form(opening), driven=False, limit=True)
 
 
-def _directions(pin: Array, points: Array, near: float) -> tuple[Array | None, Array | None]:
-    """Directions from a pin back and on along an edge; None beyond an end of the edge, and for a pin off the edge."""
+def _directions(pin: Array, points: Array, above: float, near: float) -> tuple[Array | None, Array | None]:
+    """Directions from a pin back and on along an edge; None beyond an end of the edge, and for a pin off the edge.
+
+    A beam with thickness lies on the edge with the pin half the thickness ``above``, positive on the left.
+    """
     behind: Array | None = None
     ahead: Array | None = None
     for a, b in pairwise(points):
         chord = b - a
+        left = np.array([-chord[1], chord[0]]) / np.hypot(*chord)
         share = float((pin - a) @ chord / (chord @ chord))
-        if np.hypot(*(a + min(1.0, max(0.0, share)) * chord - pin)) < near:
+        if np.hypot(*(a + min(1.0, max(0.0, share)) * chord + above * left - pin)) < near:
             ahead = chord if share < 1.0 - AT_CORNER else ahead
             behind = -chord if share > AT_CORNER else behind
     return behind, ahead

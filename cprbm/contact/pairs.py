@@ -1,6 +1,7 @@
 """Curves of a scene's contacts, and pairs of curves.
 
-A place lies on the first curve of a pair, the foot on the second; the ends of a second beam are places too.
+A place lies on the first curve of a pair, the foot on the second; the ends of a second beam and the corners of a rigid
+curve are places too.
 A beam lies on the side +1 (left) or −1 (right) of a rigid curve, as the scene says.  The side of two beams is 0 here;
 the state as drawn decides, :mod:`cprbm.contact.candidates`.
 """
@@ -12,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.chain import Mechanism
-from cprbm.contact.curve import Curve, Frames, beam_curve
+from cprbm.contact.corners import Corner, corner_curve, part_of, sharp_bends, sharp_corners, sides_behind, with_marks
+from cprbm.contact.curve import NO_SIDES, Curve, Frames, beam_curve
 from cprbm.contact.own_pin import pin_rows
 from cprbm_scene import BeamContact, CircleContact, FunctionContact, HalfPlaneContact, LineContact, SelfContact
 from cprbm_scene.geometry import arc_length, points_on, tangents_on
@@ -22,17 +24,18 @@ PIECES = 256
 """Pieces of a smooth edge.  The error is κ³ h⁴/384: 2e-7 of the longer axis at the tip of an ellipse of 3 to 1."""
 
 REACH = 10.0
-"""Half length of a half-plane's edge, over the longest beam."""
+"""Half length of a half-plane's edge, and length of a solid's sides, over the longest beam."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Two curves of the contact ``name`` by number, and the ``side`` of the first over the second."""
+    """Two curves of the contact ``name`` by number, the ``side`` of the first over the second, corners of the second."""
 
     name: str
     first: int
     second: int
     side: int
+    corners: tuple[Corner, ...] = ()
 
     @property
     def itself(self) -> bool:
@@ -57,8 +60,15 @@ def contact_pairs(m: Mechanism) -> tuple[list[Curve], list[Pair]]:
         if isinstance(contact, BeamContact | SelfContact):
             pairs.append(Pair(name, own[0], own[-1], 0))
             continue
-        curve, side = _rigid_curve(m, frames, name, contact)
-        pairs.append(Pair(name, own[0], number(curve), side))
+        edge, side = _rigid_curve(m, frames, name, contact)
+        chain = m.chains[contact.beam]
+        link = chain.length / chain.links
+        sharp, bends = sharp_corners(edge, side, link), sharp_bends(edge, side, link)
+        second = number(with_marks(edge, sharp, bends))
+        points = [second if edge.is_point else number(corner_curve(edge, piece)) for piece in sharp]
+        starts = [*zip(points, sharp, strict=True), *((number(part_of(edge, run)), int(run[0])) for run in bends)]
+        corners = tuple(Corner(curve, (piece - 1) % edge.pieces, piece) for curve, piece in starts)
+        pairs.append(Pair(name, own[0], second, side, corners))
     return list(curves.values()), pairs
 
 
@@ -83,25 +93,31 @@ def _rigid_curve(m: Mechanism, frames: Frames, contact_name: str, contact: Rigid
         case LineContact():
             points, side = place(contact.points), 1 if contact.side == "left" else -1
             m.rows.extend(pin_rows(m, contact_name, contact, points, side))
+            if not contact.closed:
+                begin, end = sides_behind(points, side, REACH)
+                points = np.concatenate([begin, points, end])
             return frames.polyline(name, contact.body, points), side
         case FunctionContact():
             ascends = contact.range[1] > contact.range[0]
             left = (contact.side == "above") == (ascends == (contact.axis == "x"))
-            edge, side = _smooth(m, frames, name, contact), 1 if left else -1
+            side = 1 if left else -1
             points = place(points_on(contact.curve, np.linspace(0.0, 1.0, PIECES + 1)))
             m.rows.extend(pin_rows(m, contact_name, contact, points, side))
-            return edge, side
+            return _smooth(m, frames, name, contact, side), side
         case SplineContact():
-            return _smooth(m, frames, name, contact), 1 if contact.side == "left" else -1
+            side = 1 if contact.side == "left" else -1
+            return _smooth(m, frames, name, contact, side), side
         case EllipseContact():
-            return _smooth(m, frames, name, contact), 1 if contact.side == "inside" else -1
+            side = 1 if contact.side == "inside" else -1
+            return _smooth(m, frames, name, contact, side), side
     raise TypeError(f"found a rigid contact of the class {type(contact).__name__}")
 
 
 def _smooth(
-    m: Mechanism, frames: Frames, name: str, contact: FunctionContact | SplineContact | EllipseContact
+    m: Mechanism, frames: Frames, name: str, contact: FunctionContact | SplineContact | EllipseContact, side: int
 ) -> Curve:
-    """Smooth edge of a body, at even arc lengths."""
+    """Smooth edge of a body, at even arc lengths, and the sides of the solid behind an open edge."""
     u = np.linspace(0.0, 1.0, PIECES + 1)
     points, tangents = m.units.place(points_on(contact.curve, u)), tangents_on(contact.curve, u)
-    return frames.smooth_edge(name, contact.body, points, tangents, arc_length(contact.curve) / m.units.length)
+    sides = NO_SIDES if isinstance(contact, EllipseContact) else sides_behind(points, side, REACH)
+    return frames.smooth_edge(name, contact.body, points, tangents, arc_length(contact.curve) / m.units.length, sides)

@@ -65,6 +65,20 @@ def find_feet(
 
 
 @compiled
+def find_bends(z: Array, curves: CurveArrays, places: Places, rounds: int) -> None:  # pragma: no cover
+    """Move places on bends to the beams, from chord to chord and back in some rounds; write the feet."""
+    weights = np.empty((2, STENCIL))
+    for k in range(places.piece.size):
+        if curves.angle[places.piece[k]] >= 0 or curves.is_point[places.curve[k]]:
+            continue
+        for _ in range(rounds):
+            x, y = curve_point(z, curves, places.foot[k], places.eta[k], 0, weights)
+            places.piece[k], places.xi[k], _ = closest_chord(z, curves, places.curve[k], x, y, 0.0, 0.0, weights)
+            x, y = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights)
+            places.foot[k], places.eta[k], _ = closest_chord(z, curves, places.other[k], x, y, 0.0, 0.0, weights)
+
+
+@compiled
 def is_unturned(z: Array, curves: CurveArrays, places: Places, k: int) -> bool:  # pragma: no cover
     """True if a beam has not turned back between a place and a foot on the same beam: no contact there."""
     if places.curve[k] != places.other[k]:
@@ -102,6 +116,8 @@ def _settle_place(
         if not places.moves[k] or f.curvature == 0.0:
             break
         if steps == 0:
+            if curves.angle[places.piece[k]] < 0:
+                break
             gaps[k] -= 0.5 * f.slope * f.slope / abs(f.curvature)
             break
         step = -f.slope / abs(f.curvature)
@@ -117,7 +133,7 @@ def settle(
 ) -> None:  # pragma: no cover
     """Move all feet, and in at most ``steps`` the moving places; write gaps and curvatures λ'' by arc length.
 
-    Without steps the gap of a moving place is the minimum of the parabola.
+    Without steps the gap of a place that moves along a beam is the minimum of the parabola.
     """
     weights = np.empty((4, 2, STENCIL))
     for k in range(places.piece.size):
@@ -173,6 +189,8 @@ def move_places(
         if not places.moves[k]:
             continue
         row = gap_row(z, curves, places, k, vectors, weights)
+        if row.curvature == 0.0:
+            continue
         local_indices(curves, places, k, index)
         slope = row.slope + row.slope_by_force * by_force[k]
         for i in range(LOCAL):
@@ -197,11 +215,44 @@ def separations(z: Array, curves: CurveArrays, places: Places) -> Array:  # prag
 
 
 @compiled
+def sweeps_any_circle(
+    before: Array, after: Array, curves: CurveArrays, pairs: Ints, counters: Ints
+) -> bool:  # pragma: no cover
+    """True if a beam sweeps over the centre of a circle of the ``pairs`` (pairs, 2) in a step."""
+    old, new = curve_boxes(before, curves), curve_boxes(after, curves)
+    low, high = np.minimum(old[:, :2], new[:, :2]), np.maximum(old[:, 2:], new[:, 2:])
+    for k in range(len(pairs)):
+        a, b = pairs[k]
+        if curves.is_point[b]:
+            counters[BOX_TESTS] += 1
+            met = max(np.max(low[a] - high[b]), np.max(low[b] - high[a])) < 0.0
+            if met and _sweeps_over(before, after, curves, a, b):
+                return True
+    return False
+
+
+@compiled
+def _sweeps_over(before: Array, after: Array, curves: CurveArrays, beam: int, circle: int) -> bool:  # pragma: no cover
+    """True if the part of a beam next to a circle lies on the other side of the centre after a step."""
+    weights, centre = np.empty((2, STENCIL)), curves.first[circle]
+    for z in (before, after):
+        cx, cy = curve_point(z, curves, centre, 0.0, 0, weights)
+        piece, xi, _ = closest_chord(z, curves, beam, cx, cy, 0.0, 0.0, weights)
+        ax, ay = curve_point(before, curves, piece, xi, 0, weights)
+        bx, by = curve_point(before, curves, centre, 0.0, 0, weights)
+        cx, cy = curve_point(after, curves, piece, xi, 0, weights)
+        dx, dy = curve_point(after, curves, centre, 0.0, 0, weights)
+        if (ax - bx) * (cx - dx) + (ay - by) * (cy - dy) < 0.0:
+            return True
+    return False
+
+
+@compiled
 def choose_sides(z: Array, curves: CurveArrays, places: Places) -> None:  # pragma: no cover
-    """Write the present sides of places whose side is 0; the feet must be found."""
+    """Write the present sides of places of a beam on itself; the feet must be found."""
     weights = np.empty((2, STENCIL))
     for k in range(places.piece.size):
-        if places.side[k] == 0.0 and not is_unturned(z, curves, places, k):
+        if places.curve[k] == places.other[k] and not is_unturned(z, curves, places, k):
             ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights)
             bx, by = curve_point(z, curves, places.foot[k], places.eta[k], 0, weights)
             tx, ty = curve_point(z, curves, places.foot[k], places.eta[k], 1, weights)

@@ -40,6 +40,11 @@ def assembled(system: System, settings: Settings) -> Driver:
     state = without_repeated(system, replace(state, driven=state.driven & ~loose))
     try:
         first = equilibrium(system, state, settings.iterations)
+        passed = system.limits & (first.values < 0.0)
+        if system.mechanism.scene.assembly is None and passed.any():
+            # rounded coordinates of a beam drawn beyond an edge at the own pin: the beam turns to the edge
+            closed = replace(first.state, driven=first.state.driven | passed)
+            first = equilibrium(system, closed, settings.iterations)
     except NotConvergedError as failure:
         raise StepError(Ending.STEP_TOO_SMALL, f"no equilibrium as drawn: {failure}") from failure
     driver = Driver(system, settings, first, np.zeros(len(loose), dtype=bool), drawn=drawn_names(system, state))

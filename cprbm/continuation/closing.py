@@ -25,17 +25,19 @@ from cprbm.equilibrium.contact_gaps import least_gap
 from cprbm.equilibrium.newton import NotConvergedError, Solved
 from cprbm.equilibrium.solving import at_state
 from cprbm.equilibrium.system import State, System
+from cprbm_scene.answer import Flags
 
 CLOSED = 1e-11
 """Overlap, over the longest beam, at which a contact has closed: ten times the active set's round-off."""
 
 
 class ContactChange(NamedTuple):
-    """Pairs that close or open at a fraction ``share`` of a step."""
+    """Pairs that close or open at a fraction ``share`` of a step, the pair ``first`` exactly there."""
 
     share: float
     pairs: frozenset[int]
     closes: bool
+    first: int
 
 
 def pressing(solved: Solved) -> frozenset[int]:
@@ -58,7 +60,9 @@ def drawn_names(system: System, state: State) -> frozenset[str]:
     geometry, contacts = system.geometry, state.contacts
     if geometry is None or contacts is None:
         return frozenset()
-    return frozenset(geometry.pairs[pair].name for pair in touching_as_drawn(geometry, state.z, contacts))
+    at_ends = touching_as_drawn(geometry, state.z, contacts)
+    gaps = {pair: least_gap(geometry, state.z, contacts, pair) for pair in range(len(geometry.pairs))}
+    return frozenset(geometry.pairs[pair].name for pair, gap in gaps.items() if pair in at_ends or gap < TOUCHING)
 
 
 def touches(solved: Solved) -> bool:
@@ -88,22 +92,50 @@ def pair_name(system: System, pair: int) -> str:
     return "" if system.geometry is None else system.geometry.pairs[pair].name
 
 
-def without(solved: Solved, pair: int) -> Solved:
-    """The state without the places of a pair, of which the force is about zero.
+class Pressed(NamedTuple):
+    """Closed places that may lift off together: a pair, or the joint at the begin of a ``piece`` (−1: all)."""
+
+    pair: int
+    piece: int = -1
+
+    def places(self, solved: Solved) -> Flags:
+        """The closed places in a state."""
+        contacts = solved.state.contacts
+        if contacts is None:
+            return np.zeros(0, dtype=bool)
+        joint = (contacts.places.piece == self.piece) | (self.piece < 0)
+        return np.asarray(contacts.pressing(self.pair) & joint)
+
+    def force(self, solved: Solved) -> float:
+        """Sum of the contact forces."""
+        contacts = solved.state.contacts
+        return 0.0 if contacts is None else float(contacts.places.force[self.places(solved)].sum())
+
+
+def pressing_joints(solved: Solved) -> list[Pressed]:
+    """Closed joints where all places are joints; else empty."""
+    geometry, contacts = solved.system.geometry, solved.state.contacts
+    if geometry is None or contacts is None or not geometry.joints_alone:
+        return []
+    pair, piece = contacts.places.pair[contacts.closed], contacts.places.piece[contacts.closed]
+    return [Pressed(*each) for each in zip(pair.tolist(), piece.tolist(), strict=True)]
+
+
+def may_lift(solved: Solved) -> list[Pressed]:
+    """Closed pairs, and where all places are joints every closed joint."""
+    return [*(Pressed(pair) for pair in sorted(pressing(solved))), *pressing_joints(solved)]
+
+
+def without(solved: Solved, lifted: Pressed) -> Solved:
+    """The state without closed places, of which the force is about zero.
 
     Raises:
         NotConvergedError: the Hessian is singular.
     """
     state, contacts = solved.state, solved.state.contacts
     assert contacts is not None
-    closed = contacts.closed & ~contacts.pressing(pair)
+    closed = contacts.closed & ~lifted.places(solved)
     return at_state(solved.system, replace(state, contacts=replace(contacts, closed=closed)))
-
-
-def pair_force(solved: Solved, pair: int) -> float:
-    """F."""
-    contacts = solved.state.contacts
-    return 0.0 if contacts is None else float(contacts.places.force[contacts.pressing(pair)].sum())
 
 
 def first_change(
@@ -139,7 +171,9 @@ def _closing(
 
     if gap(1.0) >= 0.0:
         return []
-    return [ContactChange(located(gap), apart, closes=True)]
+    share = located(gap)
+    touched = solve(share, apart)
+    return [ContactChange(share, apart, closes=True, first=min(apart, key=lambda pair: _gap(touched, pair)))]
 
 
 def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[ContactChange]:
@@ -147,11 +181,11 @@ def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> lis
 
     def force(share: float) -> float:
         solved = solve(share, frozenset())
-        return pair_force(solved, pair) if pair in pressing(solved) else -_gap(solved, pair)
+        return Pressed(pair).force(solved) if pair in pressing(solved) else -_gap(solved, pair)
 
     if not force(0.0) > 0.0 > force(1.0):
         return []
-    return [ContactChange(located(force), frozenset([pair]), closes=False)]
+    return [ContactChange(located(force), frozenset([pair]), closes=False, first=pair)]
 
 
 def _gap(solved: Solved, pair: int) -> float:

@@ -19,7 +19,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm.continuation.closing import pair_force, pressing, without
+from cprbm.contact import taken
+from cprbm.continuation.closing import Pressed, may_lift, pressing, without
 from cprbm.continuation.path import Reached, tangent
 from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.stability import Mode, softest
@@ -85,14 +86,47 @@ def contact_opens(trail: list[Reached], beyond: float) -> CriticalPoint | None:
     geometry, earlier = last.solved.system.geometry, _earlier(trail, width)
     if geometry is None or earlier is None:
         return None
-    for pair in sorted(pressing(last.solved)):
-        now, before = pair_force(last.solved, pair), pair_force(earlier.solved, pair)
+    for lifted in may_lift(last.solved):
+        now, before = lifted.force(last.solved), lifted.force(earlier.solved)
         zero = last.t + now * (last.t - earlier.t) / (before - now) if now < before else np.inf
         if zero - last.t <= NEAR * width:
-            after = without(last.solved, pair)
+            after = without(last.solved, lifted)
             if after.lost:
-                return opened(last.solved, after, zero, Loss.CONTACT, geometry.pairs[pair].name, width)
+                return opened(last.solved, after, zero, Loss.CONTACT, geometry.pairs[lifted.pair].name, width)
     return None
+
+
+def contact_slips(trail: list[Reached], beyond: float) -> CriticalPoint | None:
+    """The slip of a contact off an end of a beam, from the decrease of the distance to the end; or None.
+
+    Args:
+        trail: last minima on the branch in order.
+        beyond: fraction of the way at which no minimum was found that continues the branch.
+    """
+    last, width = trail[-1], beyond - trail[-1].t
+    geometry, earlier = last.solved.system.geometry, _earlier(trail, width)
+    if geometry is None or earlier is None:
+        return None
+    for pair in sorted(pressing(last.solved)):
+        now, before = _to_end(last.solved, pair), _to_end(earlier.solved, pair)
+        zero = last.t + now * (last.t - earlier.t) / (before - now) if now < before < np.inf else np.inf
+        if zero - last.t <= NEAR * width:
+            name = geometry.pairs[pair].name
+            return opened(last.solved, without(last.solved, Pressed(pair)), zero, Loss.SLIP, name, width)
+    return None
+
+
+def _to_end(solved: Solved, pair: int) -> float:
+    """Least distance of the feet of a pair's closed places from an end of the beam that they lie on; inf without."""
+    geometry, contacts = solved.system.geometry, solved.state.contacts
+    if geometry is None or contacts is None:
+        return np.inf
+    places, arrays = taken(contacts.places, contacts.pressing(pair)), geometry.arrays
+    arcs = arrays.arc[places.foot] + places.eta * arrays.span[places.foot]
+    last = arrays.last[places.other]
+    length = arrays.arc[last] + arrays.span[last]
+    on_beam = arrays.angle[places.foot] >= 0
+    return float(np.min(np.minimum(arcs, length - arcs)[on_beam], initial=np.inf))
 
 
 def _earlier(trail: list[Reached], width: float) -> Reached | None:

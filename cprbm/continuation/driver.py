@@ -33,7 +33,7 @@ from cprbm.continuation.closing import (
     pair_name,
     pressing_names,
 )
-from cprbm.continuation.critical import CriticalPoint, contact_opens, critical_point, opened
+from cprbm.continuation.critical import CriticalPoint, contact_opens, contact_slips, critical_point, opened
 from cprbm.continuation.descent import descend
 from cprbm.continuation.jumps import jumped
 from cprbm.continuation.limits import StopChange, changed, first_event
@@ -163,22 +163,32 @@ class Driver:
 
         try:
             solved = solve(1.0)
+            # an event is not sought in a step that is too long
+            self._check_turn(solved, largest)
             change, at = self._first_event(solved, solve), t
             if change is not None:
                 at = begin + change.share * (t - begin)
                 opened = change.pairs if isinstance(change, ContactChange) and change.closes else frozenset()
                 solved = solve(change.share, opened) if change.share else self.solved
+            self._check_turn(solved, largest)
         except (NotConvergedError, ValueError) as failure:
             return StepError(Ending.STEP_TOO_SMALL, str(failure))
-        turn = turned(self.solved, solved)
-        if turn > largest:
-            return StepError(Ending.STEP_TOO_SMALL, f"a link turned by {turn:.2f} rad in one load step")
         certificate, ending = certify(solved, self.settings.tolerance, 0, self.acting, with_curvature=False)
         if ending is not Ending.COMPLETED:
             return StepError(ending, certificate.failures[0])
         if jumped(self.solved, solved, (at - begin) * self._moving(way)):
             return StepError(Ending.STEP_TOO_SMALL, "the links went another way than the path's tangents")
         return at, solved, change
+
+    def _check_turn(self, solved: Solved, largest: float) -> None:
+        """Refuse a state too far from the present state.
+
+        Raises:
+            NotConvergedError: a link turned by more than ``largest``.
+        """
+        turn = turned(self.solved, solved)
+        if turn > largest:
+            raise NotConvergedError(f"a link turned by {turn:.2f} rad in one load step")
 
     def _first_event(self, solved: Solved, solve: Callable[..., Solved]) -> Change:
         """The first stop or contact that changes in a step; None without any."""
@@ -225,7 +235,7 @@ class Driver:
             name = rows[change.row].name.rpartition(".")[0]
         else:
             state = kept_open(before.state, frozenset() if change.closes else change.pairs)
-            name = pair_name(self.system, min(change.pairs))
+            name = pair_name(self.system, change.first)
         try:
             after = self._equilibrium(state)
         except NotConvergedError as failure:
@@ -245,7 +255,7 @@ class Driver:
         Raises:
             StepError: the solve ends.
         """
-        point = contact_opens(trail, t) or critical_point(trail, t, self._moving(way))
+        point = contact_opens(trail, t) or contact_slips(trail, t) or critical_point(trail, t, self._moving(way))
         if point is None:
             point = self._locked(way, t, trail, refused)
         return self._leave(way, point, beyond)

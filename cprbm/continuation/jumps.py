@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm.continuation.closing import touches
+from cprbm.continuation.closing import pressing_joints, touches
 from cprbm.continuation.path import potential, power, power_rate, tangent
 from cprbm.equilibrium.newton import Solved
 from cprbm_scene.answer import Array
@@ -41,7 +41,8 @@ SMALLEST_WORK = 1e-9
 def jumped(before: Solved, after: Solved, change: Array) -> bool:
     """True if a step between two minima, with a ``change`` of the targets, left the branch.
 
-    Where open places touch at the first state, the tangent there is one-sided.  Then only the energy tells.
+    Where open places touch at the first state, the tangent there is one-sided.  Where all places are joints and other
+    joints press at the end, the tangent has changed at every exchange of joints.  Then only the energy tells.
     """
     system = before.system
     rates = tangent(before, change), tangent(after, change)
@@ -49,7 +50,7 @@ def jumped(before: Solved, after: Solved, change: Array) -> bool:
     turn = after.state.z[angles] - before.state.z[angles]
     largest = float(np.abs(turn).max())
     mean = 0.5 * (rates[0][angles] + rates[1][angles])
-    one_sided = touches(before)
+    one_sided = touches(before) or pressing_joints(before) != pressing_joints(after)
     if (
         not one_sided
         and max(largest, float(np.abs(mean).max())) > SMALLEST_TURN

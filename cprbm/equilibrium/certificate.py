@@ -9,7 +9,8 @@ r        unbalanced generalised force over the largest moment
 
 The moments of joints are products of stiffness and angles, uncertain by ε k |θ|; the sums of a
 chain add ε √m of the largest moment.  A contact holds positions, which a gap with its weights knows to some ε of the
-longest beam; over a link that is an angle of some ε/h, in two neighbouring joints.  Four times the sum is the floor.
+longest beam; over a link that is an angle of some ε/h, in two neighbouring joints, and the force on a node is a moment
+over h.  Four times the sum is the floor.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from math import sqrt
 import numpy as np
 
 from cprbm.chain import add_row_gradient
+from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.contact_gaps import contact_measures
 from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.stability import softest
@@ -84,7 +86,9 @@ def certify(
     turned = float(np.abs(state.z[system.angles]).max())
     stiffest = float(system.joints.stiffness.max())
     contacts = state.contacts
-    turns = turned + (PLACES / float(system.metric.min()) if contacts is not None and contacts.closed.any() else 0.0)
+    shortest = float(system.metric.min())
+    pressed = contacts is not None and contacts.closed.any()
+    turns = turned + ((PLACES + 1.0 / shortest) / shortest if pressed else 0.0)
     floor = 4.0 * EPSILON * (stiffest * turns + sqrt(len(system.metric)) * scale) / scale
     force_rows, equations = _parts(system)
     residual = float(np.abs(solved.gradient[force_rows]).max()) / scale
@@ -108,6 +112,9 @@ def certify(
         (float(solved.lost), 0.0, Ending.NOT_A_MINIMUM, "the energy falls in {:.0f} independent directions"),
     )
     failures = [(ending, text.format(found, most)) for found, most, ending, text in checks if not found <= most]
+    if system.geometry is not None and system.geometry.law is not None and contacts is not None:
+        invalid = system.geometry.law.invalid(state.z, contacts.places, contacts.closed)
+        failures += [(Ending.LEFT_BOUNDARY, invalid)] if invalid else []
     certificate = Certificate(
         residual=residual,
         residual_floor=floor,
@@ -167,7 +174,10 @@ def _complementarity(solved: Solved, acting: Flags) -> float:
 def _balance(solved: Solved, scale: float) -> Balance:
     """Resultants of the forces of all rows on nodes and bodies, over the largest force or moment."""
     system, z = solved.system, solved.state.z
-    acting = np.zeros(system.size)
+    acting, contacts = np.zeros(system.size), solved.state.contacts
+    if system.geometry is not None and system.geometry.law is not None and contacts is not None:
+        # a law along an axis leaves a moment
+        acting += contact_terms(system.geometry, z, contacts.places, contacts.closed)[1]
     add_row_gradient(z, system.rows, solved.state.multipliers(system), acting)
     m = system.mechanism
     bodies = np.array(list(m.bodies.values()), dtype=np.int64)

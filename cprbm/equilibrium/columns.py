@@ -24,8 +24,6 @@ A column has entries at the nodes of two pieces, at most six nodes each: it reac
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from cprbm.chain.compiled import compiled
@@ -37,6 +35,7 @@ from cprbm.contact import (
     STENCIL,
     TANGENT,
     TURN,
+    Columns,
     CurveArrays,
     Geometry,
     Places,
@@ -49,28 +48,11 @@ MOTIONS = 3
 """Most local motions of a place."""
 
 
-class Columns(NamedTuple):
-    """Columns of closed places: columns of forces first, then columns of local motions.
-
-    Attributes:
-        values: of the rows with a force of their own (forces,).
-        negative: number of negative eigenvalues of all S⁻¹/F.
-        diagonal, beside: block of the columns: diagonal, and entry beside the column before (columns,).
-        entry_column, entry_index, entry_value: entries by column, unknown and value.
-    """
-
-    values: Array
-    negative: int
-    diagonal: Array
-    beside: Array
-    entry_column: Ints
-    entry_index: Ints
-    entry_value: Array
-
-
 def contact_terms(geometry: Geometry, z: Array, places: Places, closed: Flags) -> tuple[Columns, Array]:
     """Columns of the places marked ``closed``, and the gradient (size,) of all −F λ; shared forces are equal."""
     gradient = np.zeros(len(z))
+    if geometry.law is not None:
+        return geometry.law.columns(z, places, closed, gradient), gradient
     return contact_columns(z, geometry.arrays, places, closed, gradient), gradient
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.contact import Contacts, Geometry, Places, may_move, settle, taken
+from cprbm.contact import CORNER, Contacts, Geometry, Places, may_move, on_edge, settle, taken
 from cprbm.equilibrium.contact_set import FINDING, arc_of, with_fixed_places
 from cprbm.equilibrium.iteration import beside_points
 from cprbm.equilibrium.newton import Solved
@@ -33,7 +33,9 @@ def joints_of(geometry: Geometry, places: Places, pair: int) -> tuple[Ints, Flag
 
 
 def minima(geometry: Geometry, contacts: Contacts, gaps: Array, pair: int) -> Ints:
-    """Open joints of a pair with the locally least gap, without a closed neighbour."""
+    """Open joints of a pair with the locally least gap, without a closed neighbour; empty where no place moves."""
+    if geometry.joints_alone:
+        return np.zeros(0, dtype=np.int64)
     joints, beside = joints_of(geometry, contacts.places, pair)
     gap, closed = gaps[joints], contacts.closed[joints]
     other = np.where(beside, gap[1:], np.inf), np.where(beside, gap[:-1], np.inf)
@@ -44,11 +46,18 @@ def minima(geometry: Geometry, contacts: Contacts, gaps: Array, pair: int) -> In
 
 
 def as_point(geometry: Geometry, z: Array, contacts: Contacts, k: int, force: float) -> tuple[Places, float, float]:
-    """A joint as a moving place at the minimum of the gap; gap and curvature there."""
+    """A joint as a moving place at the minimum of the gap; gap and curvature there.
+
+    Inf and 0 without a minimum between the neighbouring joints, and at a corner, which is a place.
+    """
     trial = taken(contacts.places, np.array([k]))
     trial.moves[:], trial.force[:] = True, force
     gap, curvature = np.empty(1), np.empty(1)
     settle(z, geometry.arrays, trial, gap, curvature, contacts.counters, FINDING)
+    apart = abs(arc_of(geometry, trial)[0] - arc_of(geometry, contacts.places)[k])
+    at_corner = trial.at_point[0] and geometry.arrays.corner[trial.foot[0]] == CORNER
+    if at_corner or apart > NEIGHBOURS * geometry.arrays.span[trial.piece[0]]:
+        return trial, np.inf, 0.0
     return trial, float(gap[0]), float(curvature[0])
 
 
@@ -88,7 +97,8 @@ def contact_measures(solved: Solved) -> ContactMeasures:
     follows = places.shares != 0
     np.add.at(gaps, leaders[follows], solved.gaps[follows])
     thick = geometry.arrays.thickness[places.piece] + geometry.arrays.thickness[places.foot] > 0.0
-    free = ~closed & ~follows & ~beside & ~places.moves & (thick | ~places.at_point)
+    corner = on_edge(geometry.arrays, places)
+    free = ~closed & ~follows & ~beside & (~places.moves | corner) & (thick | ~places.at_point)
     overlap = float(np.max(-gaps[free] - depth[free], initial=0.0))
     violation = float(np.abs(solved.contact_values).max(initial=0.0))
     return ContactMeasures(violation, overlap, float(np.max(-places.force[closed], initial=0.0)))

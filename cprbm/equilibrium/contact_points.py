@@ -17,7 +17,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from cprbm.contact import Contacts, Geometry, Places, joined, may_move, settle, taken
+from cprbm.contact import (
+    Contacts,
+    Geometry,
+    Places,
+    corner_sides,
+    joined,
+    left_corner,
+    may_move,
+    on_edge,
+    settle,
+    taken,
+)
 from cprbm.equilibrium.contact_gaps import as_point, joints_of, minima
 from cprbm.equilibrium.contact_set import (
     FINDING,
@@ -59,13 +70,15 @@ def touched_equilibrium(
     Raises:
         NotConvergedError: no equilibrium was found, the places do not settle, or a beam passed through itself.
     """
-    contacts = with_fixed_places(geometry, start.z, replace(contacts, given_up=frozenset()))
-    joints_tried, before, old = False, start.z, contacts.places
+    corners = corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters)
+    contacts = replace(contacts, given_up=frozenset(), corner_sides=corners)
+    contacts = with_fixed_places(geometry, start.z, contacts)
+    joints_tried, before, old = False, start.z, _of_all_pairs(geometry, start.z, contacts)
     for _ in range(ROUNDS):
         try:
             solved = solve_set(system, geometry, start, contacts, iterations, springs)
         except NotConvergedError:
-            moves = contacts.places.moves
+            moves = contacts.places.moves & ~on_edge(geometry.arrays, contacts.places)
             if not moves.any():
                 raise
             if joints_tried:
@@ -78,8 +91,9 @@ def touched_equilibrium(
         revised = _revised(geometry, solved)
         if revised is None:
             new = with_fixed_places(geometry, solved.state.z, solved.contacts)
-            if passed_through(geometry, before, old, solved.state.z, new.places):
-                raise NotConvergedError("a beam passed through itself")
+            every = _of_all_pairs(geometry, solved.state.z, new)
+            if passed_through(geometry, before, old, solved.state.z, every, contacts.counters):
+                raise NotConvergedError("a beam passed through itself or over a circle")
             if not _come_near(geometry, solved, new):
                 return solved
             revised = new
@@ -87,13 +101,23 @@ def touched_equilibrium(
     raise NotConvergedError("the places of contact do not settle")
 
 
+def _of_all_pairs(geometry: Geometry, z: Array, contacts: Contacts) -> Places:
+    """Places of all pairs, those that are kept open included: an open pair must not pass through itself either."""
+    if not contacts.kept_open:
+        return contacts.places
+    return with_fixed_places(geometry, z, replace(contacts, kept_open=frozenset())).places
+
+
 def _revised(geometry: Geometry, solved: Touched) -> Contacts | None:
     """Contacts with other places, or None if the places are right."""
+    if geometry.joints_alone:
+        return None
     contacts, places = solved.contacts, solved.contacts.places
     arcs, span = arc_of(geometry, places), geometry.arrays.span[places.piece]
     allowed = may_move(geometry, places)
     gone, light = np.zeros(len(arcs), dtype=bool), np.zeros(len(arcs), dtype=bool)
-    for k in np.flatnonzero(places.moves).tolist():
+    corners = on_edge(geometry.arrays, places)
+    for k in np.flatnonzero(places.moves & ~corners).tolist():
         apart = np.abs(arcs - arcs[k])
         near = _same(places, k) & ~places.moves & contacts.closed & (apart >= span[k]) & (apart < ISOLATED * span[k])
         pressed = places.force[near].sum() > LIGHT * places.force[k]
@@ -105,11 +129,33 @@ def _revised(geometry: Geometry, solved: Touched) -> Contacts | None:
         kept = taken(places, np.arange(len(arcs)))
         kept.force[light] = 0.0
         return replace(contacts, places=kept, closed=contacts.closed & ~light)
-    created, replaced = _points(geometry, solved)
+    created, replaced = _leaving_corners(geometry, solved)
+    if not len(created.pair):
+        created, replaced = _points(geometry, solved)
     if not len(created.pair):
         return None
     closed = np.concatenate([contacts.closed[~replaced], np.ones(len(created.pair), dtype=bool)])
     return replace(contacts, places=joined(taken(places, ~replaced), created), closed=closed)
+
+
+def _leaving_corners(geometry: Geometry, solved: Touched) -> tuple[Places, Flags]:
+    """Moving places on faces for points of contact that leave corners; the replaced places at corners.
+
+    A corner at the end of a length of contact stays.
+    """
+    contacts, places, z = solved.contacts, solved.contacts.places, solved.state.z
+    replaced = np.zeros(len(contacts.closed), dtype=bool)
+    created = taken(places, replaced)
+    arcs = arc_of(geometry, places)
+    for k in np.flatnonzero(contacts.closed & on_edge(geometry.arrays, places)).tolist():
+        trial = left_corner(geometry, z, places, k, contacts.sides, contacts.counters)
+        if trial is None:
+            continue
+        mine = contacts.closed & (places.pair == places.pair[k]) & (np.arange(len(arcs)) != k)
+        apart = np.abs(arcs[mine] - arc_of(geometry, trial))
+        if np.all(apart > ISOLATED * geometry.arrays.span[trial.piece]):
+            replaced[k], created = True, joined(created, trial)
+    return created, replaced
 
 
 def _come_near(geometry: Geometry, solved: Touched, contacts: Contacts) -> bool:
@@ -128,7 +174,8 @@ def _flattest(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
     places = taken(contacts.places, np.arange(len(contacts.closed)))
     gaps, curvatures = np.empty(len(contacts.closed)), np.empty(len(contacts.closed))
     settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, FINDING)
-    return np.asarray(np.arange(len(gaps)) == np.argmin(np.where(places.moves, curvatures, np.inf)))
+    moving = places.moves & ~on_edge(geometry.arrays, places)
+    return np.asarray(np.arange(len(gaps)) == np.argmin(np.where(moving, curvatures, np.inf)))
 
 
 def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
@@ -156,6 +203,7 @@ def _points(geometry: Geometry, solved: Touched) -> tuple[Places, Flags]:
         if len(run) > LONGEST_RUN or given_up:
             continue
         best = run[int(np.argmax(places.force[run]))]
+        run = np.flatnonzero(np.isin(np.arange(len(arcs)) + places.shares, run))
         trial, gap, curvature = as_point(geometry, z, contacts, best, places.force[run].sum())
         overlaps = contacts.closed[best] or gap < -OVERLAP - depth[best]
         if not overlaps or curvature <= 0.0 or not may_move(geometry, trial)[0]:

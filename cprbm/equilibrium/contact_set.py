@@ -8,6 +8,7 @@ path's tangent.  A moving place is an unknown; a closed moving place stands for 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -16,18 +17,21 @@ from cprbm.contact import (
     Geometry,
     Places,
     choose_sides,
+    find_bends,
     fixed_places,
     joined,
     near_pairs,
+    on_edge,
     separations,
     settle_near,
+    sweeps_any_circle,
     taken,
 )
 from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_of, new_work, pulls, solved_border
-from cprbm.equilibrium.iteration import begin_iteration, change_set, end_iteration
+from cprbm.equilibrium.iteration import begin_by_law, begin_iteration, change_set, end_iteration
 from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
-from cprbm_scene.answer import Array
+from cprbm_scene.answer import Array, Ints
 
 FREE_CHANGES = 12
 """Iterations with any change of the set; later iterations change one place at a time."""
@@ -40,6 +44,9 @@ ARRIVED = 1e-6
 
 FINDING = 40
 """Iterations of moving places on a frozen state."""
+
+ROUNDS = 5
+"""Rounds from chord to chord for the place of a bend."""
 
 REACH = 0.1
 """Distance of two boxes, over the longest beam, up to which a pair has places."""
@@ -67,23 +74,29 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     near[old.pair[contacts.closed]] = True
     near[list(contacts.kept_open)] = False
     fixed = fixed_places(geometry, z, contacts.sides, near, contacts.counters)
-    known = {_identity(old, k): k for k in range(len(old.pair)) if not old.moves[k]}
-    closed = np.zeros(len(fixed.pair), dtype=bool)
+    moving = old.moves & ~on_edge(geometry.arrays, old)
+    find_bends(z, geometry.arrays, fixed, ROUNDS)
+    known = {_identity(old, k): k for k in np.flatnonzero(~moving).tolist()}
+    closed, corner = np.zeros(len(fixed.pair), dtype=bool), on_edge(geometry.arrays, fixed)
     for k in range(len(closed)):
         before = known.get(_identity(fixed, k))
         if before is not None and contacts.closed[before]:
             closed[k], fixed.force[k] = True, old.force[before]
-            fixed.foot[k], fixed.eta[k] = old.foot[before], old.eta[before]
+            fixed.piece[k], fixed.xi[k] = old.piece[before], old.xi[before]
+            fixed.foot[k], fixed.eta[k], fixed.side[k] = old.foot[before], old.eta[before], old.side[before]
     choose_sides(z, geometry.arrays, fixed)
-    both = joined(fixed, taken(old, old.moves))
-    return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[old.moves]]))
+    fixed.side[corner] = contacts.corner_sides[fixed.curve[corner]]
+    both = joined(fixed, taken(old, moving))
+    return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[moving]]))
 
 
-def passed_through(geometry: Geometry, before: Array, old: Places, after: Array, new: Places) -> bool:
-    """True if a beam in self-contact went through itself: the vector from a foot to a place turned round.
+def passed_through(geometry: Geometry, before: Array, old: Places, after: Array, new: Places, counters: Ints) -> bool:
+    """True if a beam went through itself or over a circle: the vector from a foot or a centre to a place turned round.
 
-    The side of a beam over itself follows from the state, so that only the way between two states shows a passage.
+    The gaps of a beam to itself and to a circle have no sign: only the way between two states shows a passage.
     """
+    if geometry.arrays.is_point.any() and sweeps_any_circle(before, after, geometry.arrays, geometry.columns, counters):
+        return True
     first, second = separations(before, geometry.arrays, old), separations(after, geometry.arrays, new)
     number = {_identity(new, k): k for k in range(len(new.pair)) if not new.moves[k]}
     for k in np.flatnonzero((old.curve == old.other) & ~old.moves & (np.hypot(*first.T) < REACH)).tolist():
@@ -94,7 +107,9 @@ def passed_through(geometry: Geometry, before: Array, old: Places, after: Array,
 
 
 def _identity(places: Places, k: int) -> tuple[int, int, int, float]:
-    return int(places.pair[k]), int(places.curve[k]), int(places.piece[k]), float(places.xi[k])
+    """Pair, curve, piece and parameter of a place; a bend has a single place."""
+    piece, xi = (-1, 0.0) if places.moves[k] else (int(places.piece[k]), float(places.xi[k]))
+    return int(places.pair[k]), int(places.curve[k]), piece, xi
 
 
 def solve_set(
@@ -124,15 +139,18 @@ def solve_set(
     gaps, curvatures, room = np.empty(len(closed)), np.empty(len(closed)), np.zeros(len(closed))
     linear = z, m, driven, start.target, *pulls(system, springs), work
     settling = curves, places, closed, gaps, curvatures, room, contacts.counters
+    begin = begin_iteration if geometry.law is None else partial(begin_by_law, geometry.law)
     settle_near(z, *settling, FINDING)
     seen: dict[bytes, int] = {}
-    last = np.inf
+    last, free_changes = np.inf, FREE_CHANGES
     for iteration in range(1, iterations + 1):
-        most = 0 if iteration == 1 else len(closed) if iteration <= FREE_CHANGES else 1
-        changed, bordered, change, reduced = begin_iteration(*linear, *settling, geometry.columns, most)
+        most = 0 if iteration == 1 else len(closed) if iteration <= free_changes else 1
+        changed, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
         if changed:
             seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
-            if seen[closed.tobytes()] > RETURNS:
+            if seen[closed.tobytes()] > RETURNS and geometry.joints_alone and iteration <= free_changes:
+                free_changes, seen = iteration, {}
+            elif seen[closed.tobytes()] > RETURNS:
                 raise NotConvergedError("the set of closed places returns")
         try:
             factors = factors_of(system, driven, work, bordered)
@@ -148,6 +166,8 @@ def solve_set(
         if arrived and not changed:
             room[:] = 0.0
             settle_near(z, *settling, FINDING)
+            if geometry.law is not None:
+                geometry.law.write_gaps(z, places, gaps)
             if not change_set(curves, places, closed, gaps, geometry.columns, len(closed)):
                 settled = replace(contacts, places=places, closed=closed)
                 return Touched(replace(start, z=z), settled, factors, gaps, curvatures, iteration)
@@ -155,5 +175,7 @@ def solve_set(
 
 
 def arc_of(geometry: Geometry, places: Places) -> Array:
-    """Arc lengths of places on their own curves."""
-    return np.asarray(geometry.arrays.arc[places.piece] + places.xi * geometry.arrays.span[places.piece])
+    """Arc lengths of places on their beams: of the feet of corners."""
+    corner = on_edge(geometry.arrays, places)
+    piece, at = np.where(corner, places.foot, places.piece), np.where(corner, places.eta, places.xi)
+    return np.asarray(geometry.arrays.arc[piece] + at * geometry.arrays.span[piece])

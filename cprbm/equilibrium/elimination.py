@@ -34,7 +34,7 @@ import numpy as np
 from cprbm.chain import Blocks, RowArrays
 from cprbm.chain.compiled import compiled
 from cprbm.chain.mechanism import PER_LINK
-from cprbm.equilibrium.columns import Columns
+from cprbm.contact import Columns
 from cprbm_scene.answer import Array, Flags, Ints
 
 LEAST_PIVOT = 1e-300

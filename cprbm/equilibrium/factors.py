@@ -12,7 +12,7 @@ import numpy as np
 from scipy.linalg.lapack import dsytrf, dsytrs
 
 from cprbm.chain import empty_blocks
-from cprbm.equilibrium.columns import Columns
+from cprbm.contact import Columns
 from cprbm.equilibrium.elimination import negative_pivots
 from cprbm.equilibrium.linear import NO_COLUMNS, Bordered, Work, linearise, reduced_load, restored
 from cprbm.equilibrium.system import State, System

@@ -7,7 +7,7 @@ from math import isfinite
 import numpy as np
 
 from cprbm.chain.compiled import compiled
-from cprbm.contact import CurveArrays, Places, move_places, settle_near
+from cprbm.contact import BEND, CORNER, CurveArrays, Law, Places, move_places, settle_near
 from cprbm.equilibrium.columns import contact_columns
 from cprbm.equilibrium.elimination import Beams, Border, Reached
 from cprbm.equilibrium.linear import Bordered, Numbers, Work, correction, linearise, reduced_load, restored
@@ -15,6 +15,9 @@ from cprbm_scene.answer import Array, Flags, Ints
 
 OVERLAP = 1e-12
 """Overlap, over the longest beam, from which an open place closes: round-off."""
+
+NEARBY = 4.0
+"""Pieces around a point contact in which the chain's curve misses the lost compliance."""
 
 LONGEST_MOVE = 2.0
 """Largest change of a moving place in an iteration, pieces."""
@@ -62,21 +65,29 @@ def _wanted(
         if places.shares[k] != 0:
             continue
         thick = curves.thickness[places.piece[k]] + curves.thickness[places.foot[k]] > 0.0
+        # a corner is a place of its own, but a round end of a beam presses on the corner by the end's place
+        end = places.xi[k] == 0.0 and places.piece[k] == curves.first[places.curve[k]]
+        end = end or (places.xi[k] == 1.0 and places.piece[k] == curves.last[places.curve[k]])
+        at_corner = curves.corner[places.foot[k]] == CORNER and places.at_point[k]
+        on_bend = curves.corner[places.foot[k]] == BEND and not places.moves[k]
+        beside[k] = beside[k] or ((at_corner or on_bend) and not end)
         opens[k] = closed[k] and (places.force[k] < 0.0 or beside[k])
         closes[k] = not closed[k] and not beside[k] and gap[k] < -OVERLAP - depth[k]
         # a foot on an end of the first curve is the foot of that end's own place
         second = places.curve[k] != pairs[places.pair[k], 0]
         last = places.curve[k] == places.other[k] and places.xi[k] == 1.0
         doubled = places.at_point[k] and (second or last)
-        closes[k] = closes[k] and (thick or not places.at_point[k]) and not doubled
+        left = end and curves.angle[places.piece[k]] < 0 and not curves.is_point[places.curve[k]]
+        closes[k] = closes[k] and (thick or not places.at_point[k]) and not doubled and not left
     return opens, closes, gap
 
 
 @compiled
 def beside_points(curves: CurveArrays, places: Places, closed: Flags) -> tuple[Flags, Array]:  # pragma: no cover
-    """Fixed places within a piece of a closed moving place, and the overlap of every pair's point contact.
+    """Places within a piece of a closed point contact, and the overlap of every pair's point contact.
 
-    Outside of the point the other places of the pair may overlap by as much without contact.
+    Outside of the point the other places of the pair may overlap by as much without contact, corners only nearby.
+    Closed point contacts stay closed beside each other, and two corners are two contacts.
     """
     beside, depth = np.zeros(closed.size, np.bool_), np.zeros(closed.size)
     for k in range(closed.size):
@@ -85,14 +96,28 @@ def beside_points(curves: CurveArrays, places: Places, closed: Flags) -> tuple[F
         piece, foot, lost = places.piece[k], places.foot[k], 0.0
         for i in range(curves.lost.shape[1]):
             lost += (curves.lost[piece, i] + curves.lost[foot, i]) * 0.5**i
-        arc = curves.arc[piece] + places.xi[k] * curves.span[piece]
+        corner = curves.angle[piece] < 0
+        curve, arc, span = place_on_beam(curves, places, k)
         for j in range(closed.size):
-            if places.moves[j] or places.pair[j] != places.pair[k]:
+            if places.pair[j] != places.pair[k] or (closed[j] and places.moves[j]):
                 continue
-            depth[j] = max(depth[j], lost * places.force[k])
-            apart = abs(curves.arc[places.piece[j]] + places.xi[j] * curves.span[places.piece[j]] - arc)
-            beside[j] = beside[j] or (places.curve[j] == places.curve[k] and apart < curves.span[piece])
+            other, at, _ = place_on_beam(curves, places, j)
+            pieces = abs(at - arc) / span if other == curve else np.inf
+            at_corner = curves.angle[places.piece[j]] < 0
+            if not at_corner or pieces < NEARBY:
+                depth[j] = max(depth[j], lost * places.force[k])
+            beside[j] = beside[j] or (pieces < 1.0 and not (corner and at_corner))
     return beside, depth
+
+
+@compiled
+def place_on_beam(curves: CurveArrays, places: Places, k: int) -> tuple[int, float, float]:  # pragma: no cover
+    """Curve, arc length and span of the piece: of a place on a beam, or of the foot of a corner."""
+    if curves.angle[places.piece[k]] < 0:
+        piece, at, curve = places.foot[k], places.eta[k], places.other[k]
+    else:
+        piece, at, curve = places.piece[k], places.xi[k], places.curve[k]
+    return curve, curves.arc[piece] + at * curves.span[piece], curves.span[piece]
 
 
 @compiled
@@ -122,6 +147,36 @@ def begin_iteration(
     changed = most > 0 and change_set(curves, places, closed, gaps, pairs, most)
     gradient = np.zeros(z.size)
     columns = contact_columns(z, curves, places, closed, gradient)
+    bordered = linearise(z, m, driven, target, stiffness, anchor, work, columns, gradient)
+    load = -gradient
+    return changed, bordered, load, reduced_load(m, work, driven, bordered, columns.values, load)
+
+
+def begin_by_law(
+    law: Law,
+    z: Array,
+    m: Numbers,
+    driven: Flags,
+    target: Array,
+    stiffness: Array,
+    anchor: Array,
+    work: Work,
+    curves: CurveArrays,
+    places: Places,
+    closed: Flags,
+    gaps: Array,
+    curvatures: Array,
+    room: Array,
+    counters: Ints,
+    pairs: Ints,
+    most: int,
+) -> tuple[bool, Bordered, Array, Array]:
+    """The same as :func:`begin_iteration` where a ``law`` measures gaps."""
+    settle_near(z, curves, places, closed, gaps, curvatures, room, counters, 0)
+    law.write_gaps(z, places, gaps)
+    changed = most > 0 and change_set(curves, places, closed, gaps, pairs, most)
+    gradient = np.zeros(z.size)
+    columns = law.columns(z, places, closed, gradient)
     bordered = linearise(z, m, driven, target, stiffness, anchor, work, columns, gradient)
     load = -gradient
     return changed, bordered, load, reduced_load(m, work, driven, bordered, columns.values, load)

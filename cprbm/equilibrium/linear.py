@@ -13,7 +13,7 @@ import numpy as np
 
 from cprbm.chain import Blocks, Joints, Links, RowArrays, add_row_gradient, evaluate_chains, row_values
 from cprbm.chain.compiled import compiled
-from cprbm.equilibrium.columns import Columns
+from cprbm.contact import Columns
 from cprbm.equilibrium.elimination import Beams, Border, Reached, border_block, eliminate, reduce_load, restore
 from cprbm_scene.answer import Array, Flags, Ints
 

@@ -19,6 +19,7 @@ import numpy as np
 
 from cprbm.chain.rows import END, ends_of
 from cprbm.contact import STENCIL, Geometry, Places, curve_point, gap_frame
+from cprbm.equilibrium.columns import contact_terms
 from cprbm.results.view import View
 from cprbm_scene import FreeEnd
 from cprbm_scene.answer import Array, ContactState, PointForce, PointForces, frozen_array
@@ -72,6 +73,10 @@ def _pressed(view: View, geometry: Geometry, places: Places, k: int) -> Pressed:
     weights = np.empty((2, STENCIL))
     at = tuple(np.array(curve_point(z, arrays, p, t, 0, weights)) for p, t in ((piece, xi), (foot, eta)))
     force = float(places.force[k]) * normal
+    law = geometry.law
+    if law is not None and law.measures(places)[k]:
+        force = law.force(z, places, k)
+        normal = force / np.hypot(*force) if force.any() else normal
     surface = at[0] - normal * (arrays.thickness[piece] + xi * arrays.thickening[piece])
     on_first = places.curve[k] == geometry.pairs[places.pair[k]].first
     # of a beam with itself the smaller arc length counts as the first
@@ -100,7 +105,15 @@ def pin_moments(view: View, contact: str) -> Iterator[PinMoment]:
 
 def forces_of_contacts(view: View) -> Iterator[PointForce]:
     """Forces of all contacts on beams and bodies, and moments at own pins."""
+    spread = frozenset[str]()
+    geometry, contacts = view.solved.system.geometry, view.solved.state.contacts
+    if geometry is not None and geometry.law is not None and contacts is not None:
+        measured = geometry.law.measures(contacts.places)
+        spread = frozenset(geometry.pairs[pair].name for pair in contacts.places.pair[measured].tolist())
     for name, contact in view.scene.contacts.items():
+        if name in spread:
+            yield from _spread_forces(view, name)
+            continue
         targets = (contact.beams[0], getattr(contact, "body", contact.beams[-1]))
         for each in pressed(view, name):
             for target, s, place, force in zip(targets, each.arcs, each.places, each.forces, strict=True):
@@ -111,6 +124,24 @@ def forces_of_contacts(view: View) -> Iterator[PointForce]:
             s, place = view.end(pin.beam, pin.end)
             yield PointForce(name, pin.beam, s, place, NO_FORCE, pin.moment)
             yield PointForce(name, view.scene.body_of(joint.point), nan, place, NO_FORCE, -pin.moment)
+
+
+def _spread_forces(view: View, contact: str) -> Iterator[PointForce]:
+    """Forces on nodes and moments on links of both beams of a contact that a law measures."""
+    geometry, contacts = view.solved.system.geometry, view.solved.state.contacts
+    assert geometry is not None
+    assert contacts is not None
+    pair = next(k for k, each in enumerate(geometry.pairs) if each.name == contact)
+    pull = contact_terms(geometry, view.z, contacts.places, contacts.pressing(pair))[1]
+    for beam in view.scene.contacts[contact].beams:
+        arcs, places = view.chain(beam).arcs, view.nodes(beam)
+        nodes, angles = view.mechanism.beam_nodes(beam), view.mechanism.beam_angles(beam)
+        forces = -pull[np.column_stack([nodes, nodes + 1])]
+        for node in np.flatnonzero(forces.any(axis=1)).tolist():
+            yield PointForce(contact, beam, float(arcs[node]), places[node], forces[node], 0.0)
+        for link in np.flatnonzero(pull[angles]).tolist():
+            s, place = 0.5 * (arcs[link] + arcs[link + 1]), 0.5 * (places[link] + places[link + 1])
+            yield PointForce(contact, beam, float(s), place, NO_FORCE, -float(pull[angles[link]]))
 
 
 def contact_force(view: View, contact: str) -> float:
@@ -151,8 +182,17 @@ def touching_places(view: View) -> dict[str, Array]:
 
 
 def states_of_contacts(view: View, forces: PointForces, touching: Mapping[str, Array]) -> Mapping[str, ContactState]:
-    """States of all contacts; a force that a clamp shares with the contact beside it is indeterminate."""
+    """States of all contacts.
+
+    A force that a clamp, or a moment at an own pin, shares with the contact beside it is indeterminate.
+    """
     units = view.mechanism.units
     states = contact_states(view.scene.contacts, forces, touching, (units.length, units.force))
-    shared = {name: any(each.share for each in pressed(view, name)) for name in view.scene.contacts}
+    shared = {name: _is_shared(view, name) for name in view.scene.contacts}
     return {name: replace(state, indeterminate=shared[name]) for name, state in states.items()}
+
+
+def _is_shared(view: View, contact: str) -> bool:
+    """True if a joint beside a weld or an own pin takes a part of the force."""
+    found = pressed(view, contact)
+    return any(each.share for each in found) or (bool(found) and any(True for _ in pin_moments(view, contact)))

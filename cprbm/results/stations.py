@@ -16,6 +16,9 @@ from cprbm.continuation.driver import ContactEvent, Driver, Passed, StepError
 from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.system import System, system_of
+from cprbm.paper.contacts import paper_geometry, refuse_contacts
+from cprbm.paper.crossing import Crossings, crossings_of
+from cprbm.paper.remarks import Remarks
 from cprbm.results.contacts import states_of_contacts, touching_places
 from cprbm.results.forces import point_forces
 from cprbm.results.probes import displacement, probe_values
@@ -49,6 +52,7 @@ class Run:
         values: present values (SI) of loads and drives.
         closing: values (SI) at which contacts first closed.
         stations, events, critical, gone_over, notes: of the answer.
+        remarks, crossings: of contacts in the formulation ``paper``.
     """
 
     scene: Scene
@@ -61,6 +65,8 @@ class Run:
     critical: list[Critical] = field(default_factory=list)
     gone_over: list[GoneOver] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    remarks: Remarks = field(default_factory=Remarks)
+    crossings: Crossings | None = None
     seconds: float = 0.0
 
     def __post_init__(self) -> None:
@@ -72,7 +78,12 @@ class Run:
         links = {beam: self.settings.links_of(beam) for beam in self.scene.beams}
         mechanism = mechanism_of(self.scene, links, self.scene.theory, corrected=corrected)
         add_rows(mechanism)
-        return system_of(mechanism, contact_geometry(mechanism))
+        geometry = contact_geometry(mechanism)
+        if self.settings.formulation == "paper" and geometry is not None:
+            refuse_contacts(self.scene)
+            every, geometry = geometry, paper_geometry(mechanism, geometry, self.settings.degree)
+            self.crossings = crossings_of(mechanism, every)
+        return system_of(mechanism, geometry)
 
     def answer(self) -> Answer:
         """Solve the scene."""
@@ -86,6 +97,10 @@ class Run:
                 self.values, self.closing = {}, {}
                 self.notes = [PLAIN]
                 ending, sentence = self._solve()
+        touched = {name for station in self.stations for name in station.touching}
+        never = [f"contact '{name}' never closed at a station" for name in self.scene.contacts if name not in touched]
+        if self.settings.formulation == "paper" and self.driver is not None:
+            self.notes += self.remarks.told(self.driver.solved)
         return Answer(
             solver="cprbm",
             scene=self.scene.name,
@@ -97,7 +112,7 @@ class Run:
             critical=tuple(self.critical),
             gone_over=tuple(self.gone_over),
             seconds=self.seconds + time.perf_counter() - began,
-            notes=tuple(self.notes),
+            notes=(*never, *self.notes),
         )
 
     def _solve(self) -> tuple[Ending, str]:
@@ -139,6 +154,11 @@ class Run:
         certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent, driver.acting)
         if ending is not Ending.COMPLETED:
             raise StepError(ending, certificate.failures[0])
+        if self.crossings is not None:
+            crossed = self.crossings.found(driver.solved)
+            if crossed:
+                raise StepError(Ending.BEAMS_CROSSED, crossed)
+            self.remarks.look(driver.solved, f"{stage.name} {station:.6g}")
         self.stations.append(self._station(driver, stage, station, certificate))
         station_reached(LOGGER, self.scene, len(self.stations), self.stations[-1])
 
@@ -186,8 +206,13 @@ class Run:
         view = View(driver.solved, dict(self.values), self.scene.theory == "shear", self.closing)
         units = self.system.mechanism.units
         touching = touching_places(view)
+        # the paper's contacts press on joints and turn links: no places of the line carry the forces
+        told = self.crossings is None
         forces = PointForces.collected(
-            point_forces(view), units.length, units.force, (float(units.origin[0]), float(units.origin[1]))
+            point_forces(view) if told else (),
+            units.length,
+            units.force,
+            (float(units.origin[0]), float(units.origin[1])),
         )
         return StationAnswer(
             stage=stage.name,
@@ -197,7 +222,7 @@ class Run:
             touching=touching,
             certificate=certificate,
             branch=len(self.critical),
-            beams={beam: beam_state(view, beam) for beam in self.scene.beams},
+            beams={beam: beam_state(view, beam) for beam in self.scene.beams if told},
             forces=forces,
             contacts=states_of_contacts(view, forces, touching),
             bodies=_motions(view),

@@ -33,6 +33,9 @@ SMEARED = 1
 JOINTS = 5
 """Joints for three second differences."""
 
+NEGLIGIBLE = 1e-4
+"""Force of a joint, over the largest force, that errors of the discretisation leave on a flat edge."""
+
 FARTHEST = 1.5
 """Distance, in links, of e from the outermost force; a larger one shows another law of g."""
 
@@ -43,10 +46,12 @@ def contact_ends(view: View, contact: str) -> list[float]:
     pins = [view.end(pin.beam, pin.end)[0] for pin in pin_moments(view, contact)]
     if geometry is None or (not found and not pins):
         return []
+    heavy = NEGLIGIBLE * max((float(np.hypot(*each.forces[0])) for each in found), default=0.0)
+    found = [each for each in found if np.hypot(*each.forces[0]) >= heavy]
     arcs = [each.arcs[0] for each in found] + pins
     low, high = min(arcs), max(arcs)
     pair = next(k for k, each in enumerate(geometry.pairs) if each.name == contact)
-    of_joints = all(each.on_first for each in found) and not geometry.pairs[pair].itself
+    of_joints = all(each.on_first or each.moves for each in found) and not geometry.pairs[pair].itself
     if (len(found) < ZONE and not pins) or not of_joints:
         return [low, high]
     length = float(geometry.curves[geometry.pairs[pair].first].arcs[-1])

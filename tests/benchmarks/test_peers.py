@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
-import cprbm
 from benchmarks.peers import ipopt, slsqp
 from benchmarks.peers.expressions import expressions
 from benchmarks.peers.formulas import Formulas
@@ -19,14 +19,13 @@ from comparisons import cases
 from comparisons.bench.question import asked
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer
-from cprbm.closure import closure_rows, closure_values
-from cprbm.energy import load_work, spring_moments, strain_energy, strain_gradient
-from cprbm.first_contact import NO_ROWS
-from cprbm.kinematics import State, positions
-from cprbm.mechanism import mechanism_of
-from cprbm.point import contact_gradient, point_at
+from cprbm.chain import add_rows, mechanism_of, row_values, strain_energy
+from cprbm.contact import contact_geometry, fixed_places, new_counters
+from cprbm.equilibrium.system import rest_state, system_of
+from cprbm.paper.contacts import paper_geometry
 from cprbm_scene import SceneError
 from cprbm_scene.frozendict import frozendict
+from tests.cprbm.second.systems import gradient
 
 OFFERED = ("hinge", "gripper", "gripper-driven", "wrapped", "platform", "tapered")
 COUNT = frozendict({"hinge": 20, "gripper": frozendict({"beam1": 15, "beam2": 20}), "gripper-driven": 20})
@@ -45,39 +44,71 @@ def bent(formulas, seed):
     return formulas.rest + 0.02 * np.random.default_rng(seed).standard_normal(formulas.size)
 
 
+def system_of_case(case):
+    """System of the formulation ``paper``, and targets of the rows at the last loads and drives."""
+    scene, links = cases.opened(case), count_of(case)
+    counts = dict.fromkeys(scene.beams, links) if isinstance(links, int) else links
+    m = mechanism_of(scene, counts, "bending", corrected=False)
+    add_rows(m)
+    every = contact_geometry(m)
+    system = system_of(m, None if every is None else paper_geometry(m, every, 4))
+    target = np.zeros(len(m.rows))
+    for stage in scene.stages:
+        row = m.row(stage.steps)
+        target[row] = stage.stations[-1] * m.rows[row].unit
+    return system, target
+
+
+def unknowns(system, formulas, z):
+    """The system's unknowns for the peers' unknowns."""
+    m, here = system.mechanism, formulas.at(z)
+    found = np.concatenate([m.rest, np.zeros(len(m.rows))])
+    found[system.angles] = here.theta
+    for beam, x, y in zip(m.chains, here.x, here.y, strict=True):
+        nodes = m.beam_nodes(beam)
+        found[nodes], found[nodes + 1] = x, y
+    for name, number in formulas.problem.bodies.items():
+        found[m.bodies[name] : m.bodies[name] + 3] = here.bodies[number]
+    return found
+
+
 @pytest.mark.parametrize("case", OFFERED)
 @pytest.mark.parametrize("seed", [0, 1])
-def test_values_and_slopes_are_those_of_the_cprbm(case, seed):
+def test_values_are_those_of_the_cprbm_and_slopes_their_differences(case, seed):
     """The two writings meet in nothing but the record."""
-    scene, formulas = cases.opened(case), Formulas(problem(case))
-    links = count_of(case)
-    settings = cprbm.Settings(links=links if isinstance(links, int) else dict(links), formulation="paper")
-    ours = mechanism_of(scene, settings).problem
-    model, z = ours.model, bent(formulas, seed)
-    values = {stage.steps: stage.stations[-1] for stage in scene.stages}
-    here = formulas.at(z)
-    state = State(here.theta, here.bodies)
-    at = positions(model, state)
-    work = load_work(model, ours.loads, values, state, at)
-    free = np.append(formulas.turning, model.n_links + np.arange(here.bodies.size))
-    assert formulas.energy(z) == pytest.approx(strain_energy(model, state) - work.value, rel=1e-12, abs=1e-13)
-    slope = np.append(strain_gradient(spring_moments(model, state)), np.zeros(here.bodies.size)) - work.gradient
-    np.testing.assert_allclose(formulas.energy_slope(z), slope[free], atol=1e-11)
-    np.testing.assert_allclose(formulas.closure(z), closure_values(model, ours.closure, state, at, values), atol=1e-14)
-    np.testing.assert_allclose(
-        formulas.closure_slope(z), closure_rows(model, ours.closure, state, at)[:, free], atol=1e-14
-    )
-    rows = ours.formulation(state, at, NO_ROWS)
-    # in the record fitted curves come first
-    order = np.argsort(
-        [name not in {one.name for one in formulas.problem.fitted} for name in rows.contact], kind="stable"
-    )
-    assert formulas.contact(z) == pytest.approx(rows.values[order], abs=1e-12)
-    closed = np.zeros(ours.closure.rows)
-    slopes = np.array(
-        [contact_gradient(model, point_at(ours, values, state, closed, pull, rows))[free] for pull in np.eye(rows.size)]
-    ).reshape(-1, formulas.size)
-    np.testing.assert_allclose(formulas.contact_slope(z), slopes[order], atol=1e-10)
+    (system, target), formulas = system_of_case(case), Formulas(problem(case))
+    z = bent(formulas, seed)
+    ours = unknowns(system, formulas, z)
+    state = rest_state(system)
+    mu = np.where(state.driven, 0.0, target)
+    ours[system.rows.first :] = mu
+    energy = strain_energy(ours, system.links, system.joints) + mu @ row_values(ours, system.rows)
+    assert formulas.energy(z) == pytest.approx(energy, rel=1e-12, abs=1e-13)
+    # the joints of the peers hang on the beams' starts and on links of fixed lengths
+    assert np.abs(gradient(system, replace(state, z=ours))[system.links.first[:, None] + [2, 3]]).max() < 1e-14
+    held = np.sort(np.abs((row_values(ours, system.rows) - target)[state.driven]))
+    mine = np.abs(formulas.closure(z))
+    # rows of the starts and of fixed links are no equalities of the peers
+    assert np.sort(mine[mine > 1e-14]) == pytest.approx(held[held > 1e-14], abs=1e-14)
+    if system.geometry is not None:
+        places = fixed_places(system.geometry, ours, state.contacts.sides, np.ones(9, bool), new_counters())
+        gaps = replace(state.contacts, places=places, closed=np.zeros(len(places.pair), bool)).gaps(
+            system.geometry, ours
+        )
+        if formulas.problem.fitted or formulas.problem.circles:
+            order = np.argsort(
+                ~np.isin(places.pair, system.geometry.law.pairs) if system.geometry.law else places.pair, kind="stable"
+            )
+            assert formulas.contact(z) == pytest.approx(-gaps[order], abs=1e-12)
+    step, directions = 1e-6, np.random.default_rng(seed).standard_normal((4, formulas.size))
+    for value, slope in (
+        (lambda at: np.array([formulas.energy(at)]), formulas.energy_slope(z)[None]),
+        (formulas.closure, formulas.closure_slope(z)),
+        (formulas.contact, formulas.contact_slope(z)),
+    ):
+        for d in directions:
+            change = (value(z + step * d) - value(z - step * d)) / (2.0 * step)
+            np.testing.assert_allclose(slope @ d, change, atol=1e-6 * max(1.0, np.abs(change).max(initial=0.0)))
 
 
 @pytest.mark.parametrize("case", OFFERED)

@@ -4,10 +4,7 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm import Settings, newton
-from cprbm.closure import closure_forces, closure_rows, closure_second, closure_values
-from cprbm.kinematics import State, positions, pulled_back, rest_state
-from cprbm.mechanism import mechanism_of
+from cprbm import Settings
 from cprbm_scene import Ending, scene_from
 from tests.cprbm.driven import TURN, UNIT_FORCE, UNIT_MOMENT, driven_cantilever, driven_hinge, guided, push
 from tests.cprbm.scenes import LENGTH, MODULUS, THICKNESS, cantilever, force, hinge
@@ -176,50 +173,3 @@ def off_centre():
     }
     data["probes"] = [{"of": "E", "quantity": "reaction"}]
     return scene_from(data)
-
-
-def test_derivatives_of_slides_and_drives():
-    """First derivatives of all equalities and second ones over φ, by differences, with the drives' values in them."""
-    problem = mechanism_of(off_centre(), Settings(links=5)).problem
-    model, closure = problem.model, problem.closure
-    assert len(closure.holds) == 4
-    random = np.random.default_rng(23)
-    rest = rest_state(model)
-    state = State(
-        rest.theta + 0.2 * random.standard_normal(model.n_links), 0.3 * random.standard_normal(rest.bodies.shape)
-    )
-    drives = {"P": 0.01, "Q": 0.2}
-
-    def value(state):
-        return closure_values(model, closure, state, positions(model, state), drives)
-
-    rows = closure_rows(model, closure, state, positions(model, state))
-    for _ in range(4):
-        d = random.standard_normal(rows.shape[1])
-        ahead, behind = (value(state.moved(sign * STEP * d, model.n_links)) for sign in (1.0, -1.0))
-        assert rows @ d == pytest.approx((ahead - behind) / (2 * STEP), abs=1e-8)
-    mu = random.standard_normal(closure.rows)
-    for body in range(2):
-        d = np.zeros(rows.shape[1])
-        d[model.n_links + 3 * body + 2] = 1e-4
-        ahead, behind = (value(state.moved(sign * d, model.n_links)) @ mu for sign in (1.0, -1.0))
-        # joints that begin at a body turn with it as well; they are no part of closure_second
-        moved = positions_second(model, closure, mu, state, body)
-        second = (ahead - 2 * value(state) @ mu + behind) / 1e-8
-        assert closure_second(model, closure, state, mu)[body] + moved == pytest.approx(second, abs=1e-5)
-
-
-def positions_second(model, closure, mu, state, body):
-    """What the joints' own positions add to the second derivative over φ."""
-    fx, fy = closure_forces(model, closure, mu)
-    return pulled_back(model, state, positions(model, state), fx, fy)[3][body]
-
-
-def test_both_forms_of_newtons_system_give_one_answer(monkeypatch):
-    """The hinge, closed, has many contact rows: both forms carry the drive's row."""
-    few = last(driven_hinge(0.6))
-    monkeypatch.setattr(newton, "MANY", 0)
-    many = last(driven_hinge(0.6))
-    for name, value in few.values.items():
-        assert many.values[name] == pytest.approx(value, rel=1e-8, abs=1e-8 * np.max(np.abs(value))), name
-    assert many.certificate.smallest_curvature == pytest.approx(few.certificate.smallest_curvature, rel=1e-6)

@@ -4,16 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from pydantic import TypeAdapter
 
 import cprbm
-from cprbm import newton
-from cprbm.first_contact import NO_ROWS, Local, over_unknowns
-from cprbm.kinematics import State, positions, pulled_back, rest_state
-from cprbm.mechanism import mechanism_of
-from cprbm.point import contact_gradient, contact_rows, point_at
 from cprbm_scene import Ending, scene_from
-from cprbm_scene.statement import Contact, PaperRigid, Related
+from cprbm_scene.statement import PaperRigid, Related
 from tests.references.flattened import Flattened
 from tests.together.pivots import LENGTH, MATERIALS, RIGIDITY, STRIP, THICKNESS, weld
 
@@ -117,13 +111,15 @@ def errors_of(links, formulation="auto", **changes):
 
 
 @pytest.mark.parametrize("changes", [{}, {"edge": "line", "end": "end"}])
-def test_an_arc_pressed_flat_from_its_own_pin_on_converges_with_order_two(changes):
+def test_an_arc_pressed_flat_from_its_own_pin_on_converges_with_order_four(changes):
     # reference: tests.references.flattened, c/L = 0.6
-    errors = {n: errors_of(n, **changes) for n in (20, 40, 80, 160)}
-    for coarse, fine in ((20, 40), (40, 80), (80, 160)):
-        assert np.all(errors[coarse][:2] / errors[fine][:2] > 3.3)
-    for n, found in errors.items():  # where borders are within a fiftieth of an element leaves these uneven
-        assert np.all(found < 2.0 / n**2)
+    errors = {n: errors_of(n, **changes) for n in (20, 40, 80)}
+    for n, found in errors.items():
+        assert found[0] < 0.02 / n**4
+        # the places of joints beside the end of the zone leave these uneven; the reference has nine digits
+        assert np.all(found[1:4] < np.maximum(0.05 / n**4, 1e-8))
+        # pin and contact share the force beside the pin
+        assert np.all(found[4:] < 2.0 / n**2)
 
 
 @pytest.mark.parametrize("thick", [False, True])
@@ -133,51 +129,15 @@ def test_every_kind_of_edge_is_the_same_straight_one(edge, thick):
     assert np.all(errors_of(40, edge=edge, thick=thick) < 2.0 / 40**2)
 
 
-def test_an_edge_and_a_pin_on_a_body_that_turns(monkeypatch):
-    # reference: tests.references.flattened, seen from the wheel; and both forms of Newton's system give one answer
-    values = solved(arch(turn=0.7, edge="line"), 40)
-    assert values["edge.moment"][0] == pytest.approx(CURVED.about_start, rel=2.0 / 40**2)
-    assert values["edge.force"][0] == pytest.approx(CURVED.force, rel=2.0 / 40**2)
-    assert values["edge.ends"][1] == pytest.approx(CURVED.flat, abs=2.0 / 40**2 * LENGTH)
-    assert values["scene.potential_energy"][0] == pytest.approx(CURVED.energy, rel=2.0 / 40**2)
-    monkeypatch.setattr(newton, "MANY", 0)
-    other = solved(arch(turn=0.7, edge="line"), 40)
-    for name, value in values.items():
-        assert other[name] == pytest.approx(value, rel=1e-7, abs=1e-9 * np.max(np.abs(value)))
-
-
 def test_an_edge_that_is_drawn_beyond_its_beam_by_rounding_holds_it_along_itself():
     # what is held at an angle to the edge needs a force beside the pin that grows with the square of N
     told = []
     for beyond in (0.0, 1.6e-6):
         scene = arch()
         edge = scene.contacts["edge"].model_copy(update={"normal": (-beyond, 1.0), "point": (0.0, 0.0)})
-        told.append(solved(scene.model_copy(update={"contacts": {"edge": edge}}), 80))
+        told.append(solved(scene.model_copy(update={"contacts": {"edge": edge}}), 40))
     for probe, values in told[0].items():
         assert told[1][probe] == pytest.approx(values, rel=1e-4, abs=1e-5 * np.max(np.abs(values)))
-
-
-@pytest.mark.parametrize("bent", [-0.31, 0.0, 0.43], ids=["jutting", "straight", "hollow"])
-def test_no_place_is_deeper_behind_an_edge_than_it_is_far_from_it(bent):
-    # reference: the distance to the edge's own segments.  Beside a tip, above all where the beam is pinned, round-off
-    # says which piece a place is beside: it is not as deep then as the other end's side is far away
-    scene, turn = arch(edge="line"), 0.37
-    corners = np.array(
-        [turned(place, turn) for place in ([0.0, 0.0], [0.7 * LENGTH, 0.0], [1.3 * LENGTH, bent * LENGTH])]
-    )
-    line = scene.contacts["edge"].model_copy(update={"points": tuple(map(tuple, corners.tolist()))})
-    edge = mechanism_of(scene.model_copy(update={"contacts": {"edge": line}}), cprbm.Settings(links=13)).pairs["edge"]
-    assert edge.pins[0] is not None
-    corners /= edge.unit_length
-    begin, along = corners[:-1], np.diff(corners, axis=0)
-    rng = np.random.default_rng(5)
-    for far in (0.0, 1e-17, 3e-16, 1e-13, 1e-4, 0.07):
-        q = np.repeat(corners, 70, axis=0)
-        q += far * rng.standard_normal(q.shape)
-        share = np.clip(np.sum((q[:, None] - begin) * along, axis=2) / np.sum(along**2, axis=1), 0.0, 1.0)
-        away = np.min(np.linalg.norm(q[:, None] - begin - share[:, :, None] * along, axis=2), axis=1)
-        for face, facing in zip(edge.faces, edge.whole.facing(q, edge.whole.seen(q)), strict=True):
-            assert np.all(-face.seen(q).distance[facing] <= away[facing] + 2e-9)
 
 
 def test_before_it_lies_flat_the_moment_at_the_pin_is_the_forces():
@@ -229,78 +189,6 @@ BENT = {
 }
 
 
-# the paper's form refuses corners that stand out
-@pytest.mark.parametrize(
-    ("kind", "formulation"),
-    [*((kind, "auto") for kind in BENT), *((k, "paper") for k in BENT if k not in {"line", "corner", "bump"})],
-)
-@pytest.mark.parametrize("moves", [False, True])
-def test_rows_and_blocks_are_derivatives(kind, moves, formulation):
-    # reference: central differences, at random states and with a pair whose places are where they happen to be
-    scene = arch(turn=0.7 if moves else 0.0)
-    contact = {**BENT[kind], "beam": "beam", "body": "wheel" if moves else "wall", "thick": True}
-    edge = TypeAdapter(Contact).validate_python(contact, strict=False)
-    scene = scene.model_copy(update={"contacts": {"edge": edge}})
-    problem = mechanism_of(scene, cprbm.Settings(links=13, formulation=formulation)).problem
-    model = problem.model
-    n = model.n_links
-    random = np.random.default_rng(5)
-    rest = rest_state(model)
-    base = np.concatenate((rest.theta, rest.bodies.ravel()))
-    base[:n] = -0.9 * np.cos(np.linspace(0.0, 2.5, n)) + 0.02 * random.standard_normal(n)
-    base[n:] += 0.01 * random.standard_normal(len(base) - n)
-    mu = random.standard_normal(problem.closure.rows)
-
-    def at(q, lam, rows):
-        state = State(q[:n], q[n:].reshape(-1, 3))
-        return point_at(problem, {}, state, mu, lam, rows)
-
-    start = at(base, np.zeros(0), NO_ROWS)
-    lam = 0.5 + random.random(start.rows.size)
-    point = at(base, lam, start.rows)
-    assert point.rows.size >= (1 if kind in {"corner", "bump"} else 4)
-    keys = {key for _, key in point.rows.keys}
-    # a place of its own: the second corner's
-    assert formulation == "paper" or (4 * (13 + 2) + 1 if kind == "corner" else -1) in keys
-    second = np.zeros((len(base), len(base)))
-    for group, share in point.rows.shares(lam):
-        blocks = group.curvature(share)
-        for joints, angles, matrix in zip(blocks.joints, blocks.angles, blocks.matrices, strict=True):
-            k = len(matrix)
-            J = over_unknowns(model, point.state, point.at, [Local(joints[None], angles[None], np.eye(k))])
-            second += J.T @ matrix @ J
-    fx, fy, _ = point.rows.forces(lam, model.n_joints, model.n_unknowns)
-    _, _, over_theta, over_phi = pulled_back(model, point.state, point.at, fx, fy)
-    exact = contact_rows(model, point)
-    for _ in range(4):
-        d = random.standard_normal(len(base))
-        ahead, behind = at(base + 1e-6 * d, lam, point.rows), at(base - 1e-6 * d, lam, point.rows)
-        assert ahead.rows.keys == behind.rows.keys == point.rows.keys
-        assert exact @ d == pytest.approx((ahead.rows.values - behind.rows.values) / 2e-6, rel=1e-6, abs=1e-7)
-        product = second @ d
-        product[:n] += over_theta * d[:n]
-        product[n + 2 :: 3] += over_phi * d[n + 2 :: 3]
-        bent = (contact_gradient(model, ahead) - contact_gradient(model, behind)) / 2e-6
-        assert product == pytest.approx(bent, rel=1e-5, abs=1e-5 * np.max(np.abs(bent)))
-
-
-@pytest.mark.parametrize("kind", BENT)
-def test_the_samples_alone_never_take_a_beam_for_farther_than_it_is(kind):
-    contact = TypeAdapter(Contact).validate_python({**BENT[kind], "beam": "beam", "body": "wall"}, strict=False)
-    mechanism = mechanism_of(arch().model_copy(update={"contacts": {"edge": contact}}), cprbm.Settings(links=13))
-    model, edge = mechanism.problem.model, mechanism.pairs["edge"]
-    random, rest = np.random.default_rng(11), rest_state(mechanism.problem.model)
-    found = []
-    for _ in range(40):
-        theta = rest.theta * random.uniform(-1.0, 1.5) + random.uniform(-1.0, 1.0)
-        state = State(theta + 0.1 * random.standard_normal(model.n_links), rest.bodies)
-        at = positions(model, state)
-        found.append((edge.no_closer(state, at), edge.least_gap(state, at)))
-    bound, least = np.array(found).T
-    assert np.all(bound <= least)
-    assert edge.corners or np.median(least - bound) < 4.0 / 13 / 2  # so that it is worth asking
-
-
 def test_a_line_in_pieces_that_go_on_straight_is_one_line():
     scene = arch(edge="line")
     pieces = tuple((x * LENGTH, 0.0) for x in (-0.1, 0.2, 0.61, 0.7, 3.0))
@@ -311,7 +199,7 @@ def test_a_line_in_pieces_that_go_on_straight_is_one_line():
 
 
 @pytest.mark.parametrize("changes", [{}, {"edge": "line", "end": "end", "thick": True}])
-def test_the_papers_form_is_of_first_order_beside_an_own_pin_where_auto_is_of_second(changes):
+def test_the_papers_form_is_of_first_order_beside_an_own_pin(changes):
     # reference: tests.references.flattened. Of the first element only 3/4 of the arc is taken out: the chord from the
     # pin to the first spring is half as long as the next. Its energy (3/4)², and its moment from the pin's joint
     lacks, force = {}, {}
@@ -323,10 +211,8 @@ def test_the_papers_form_is_of_first_order_beside_an_own_pin_where_auto_is_of_se
         assert lacks[n] == pytest.approx((1.0 - 0.75**2) * flat, rel=1.0 / n)
         assert force[n] == pytest.approx(0.75 * RIGIDITY / RADIUS / (0.5 * LENGTH / n), rel=2.0 / n**1.5)
         assert values["edge.moment"][0] == pytest.approx(CURVED.about_start, rel=0.1 / n)
-    auto = {n: errors_of(n, **changes)[1] for n in (20, 40, 80)}
     for n in (20, 40):
         assert 1.9 < lacks[n] / lacks[2 * n] < 2.1
-        assert auto[n] / auto[2 * n] > 3.3
 
 
 def test_the_papers_form_is_of_second_order_away_from_own_pins():
@@ -364,18 +250,6 @@ def test_related_joints_are_all_that_the_papers_form_holds():
     answer = cprbm.answer(few, cprbm.Settings(links=20, formulation="paper"))
     assert answer.ending is Ending.BEAMS_CROSSED
     assert "in contact 'edge'" in answer.sentence
-
-
-@pytest.mark.parametrize(
-    ("joint", "end", "held"),
-    [("pin", "start", (1, 20)), ("pin", "end", (1, 20)), ("weld", "start", (2, 20)), ("weld", "end", (1, 19))],
-)
-@pytest.mark.parametrize("turn", [0.0, 0.7])
-def test_the_papers_form_holds_every_joint_that_can_move_against_the_edge(joint, end, held, turn):
-    # neither the beam's ends nor the joint on a link that is welded to the edge's own body, which stays where it is
-    scene = arch(joint=joint, end=end, turn=turn)
-    boundary = mechanism_of(scene, cprbm.Settings(links=20, formulation="paper")).boundaries["edge"]
-    assert (boundary.joints[0], boundary.joints[-1]) == held
 
 
 def beside(contact):

@@ -4,14 +4,6 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm.closure import closure_rows, closure_second, closure_values
-from cprbm.first_contact import NO_ROWS
-from cprbm.first_equilibrium import equilibrium
-from cprbm.kinematics import State, positions, rest_state
-from cprbm.local import local_step
-from cprbm.mechanism import mechanism_of
-from cprbm.newton import local_system_at, newton_step
-from cprbm.point import point_at
 from cprbm_scene import scene_from
 from tests.together.pivots import FORCE, LENGTH, MATERIALS, MOMENT, STRIP, line, pin, weld
 
@@ -125,59 +117,3 @@ def test_forces_in_a_linkage_that_a_drive_holds(pinned):
     assert values["O_ground.reaction" if pinned else "O.reaction"] == pytest.approx(at_o, abs=1e-9 * FORCE)
     assert values["crank.reaction_moment"] == pytest.approx([cross(a, at_o) * LENGTH], abs=1e-9 * MOMENT)
     assert max(certificate.force_balance, certificate.moment_balance) < 1e-9
-
-
-def problem_of():
-    scene = scene_from(
-        {
-            **four_bar(pinned=True, spring=True),
-            "stops": {"far": {"beam": "drag", "end": "start", "towards": "D", "most": 100.0}},
-            "loads": {"M": {"kind": "moment", "body": "crank"}},
-            "stages": [{"name": "turn", "steps": "M", "stations": [MOMENT]}],
-            "probes": [{"of": "B", "quantity": "displacement"}],
-        }
-    )
-    return mechanism_of(scene, cprbm.Settings(links=5)).problem
-
-
-def test_rows_of_pins_are_derivatives():
-    # reference: central differences
-    problem = problem_of()
-    model, closure = problem.model, problem.closure
-    random = np.random.default_rng(71)
-    rest = rest_state(model)
-    base = np.concatenate((rest.theta, rest.bodies.ravel())) + 0.3 * random.standard_normal(model.n_unknowns)
-
-    def state(q):
-        return State(q[: model.n_links], q[model.n_links :].reshape(-1, 3))
-
-    def values(q):
-        return closure_values(model, closure, state(q), positions(model, state(q)), {})
-
-    exact = closure_rows(model, closure, state(base), positions(model, state(base)))
-    for i, unit in enumerate(np.eye(model.n_unknowns)):
-        slope = (values(base + 1e-6 * unit) - values(base - 1e-6 * unit)) / 2e-6
-        assert exact[:, i] == pytest.approx(slope, abs=1e-8)
-    # of pins alone: forces at beams' ends have the rest of their second derivatives elsewhere
-    mu = np.zeros(closure.rows)
-    mu[closure.first_hinge : closure.first_hold] = random.standard_normal(2 * len(closure.hinges))
-    second = closure_second(model, closure, state(base), mu)
-    for b in range(len(model.free_bodies)):
-        unit = np.zeros(model.n_unknowns)
-        unit[model.n_links + 3 * b + 2] = 1e-4
-        bent = (values(base + unit) - 2.0 * values(base) + values(base - unit)) @ mu / 1e-8
-        assert second[b] == pytest.approx(bent, abs=1e-6)
-
-
-def test_both_forms_of_newtons_system_make_one_step():
-    problem = problem_of()
-    values = {"M": 0.3 * MOMENT}
-    state = rest_state(problem.model)
-    rows = problem.formulation(state, positions(problem.model, state), NO_ROWS)
-    start = point_at(problem, values, state, np.zeros(problem.closure.rows), np.zeros(1), rows)
-    found = equilibrium(problem, values, start, 1e-11, 40)
-    assert found.converged
-    away = point_at(problem, {"M": 0.4 * MOMENT}, found.point.state, found.point.mu, found.point.lam, rows)
-    one, other = newton_step(problem, away), local_step(local_system_at(problem, away), np.zeros(1, dtype=bool))
-    for dense, local in zip(one, other, strict=True):
-        assert local == pytest.approx(dense, rel=1e-8, abs=1e-9)

@@ -4,10 +4,6 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm.first_contact import NO_ROWS
-from cprbm.kinematics import State, rest_state
-from cprbm.mechanism import mechanism_of
-from cprbm.point import contact_rows, point_at
 from cprbm_scene import Ending, Probe, SceneError
 from tests.cprbm.scenes import MODULUS, THICKNESS
 from tests.fea_reference.cantilever import elastica
@@ -60,26 +56,6 @@ def test_a_stop_bends_its_beam_and_does_not_pull_it():
     stress = solved(scene).stations[0].values["beam.combined_stress"]
     largest = 4.0 * turn * MODULUS * (0.5 * THICKNESS) / LENGTH
     assert stress == pytest.approx(largest * np.abs([-0.5, -0.125, 0.25, 0.625, 1.0]), abs=3e-3 * largest)
-
-
-@pytest.mark.parametrize("end", ["start", "end"])
-def test_rows_of_stops_are_derivatives(end):
-    # reference: central differences; θ of the end's link and φ of the wheel are the only unknowns in them
-    scene = wheel(2.0, end, {"least": -2.3, "most": -1.0}, [[0.1]])
-    problem = mechanism_of(scene, cprbm.Settings(links=4)).problem
-    model, closed = problem.model, np.zeros(problem.closure.rows)
-    rest = rest_state(model)
-    base = np.concatenate((rest.theta, rest.bodies.ravel())) + 0.1 * np.arange(model.n_unknowns)
-
-    def at(q):
-        state = State(q[: model.n_links], q[model.n_links :].reshape(-1, 3))
-        return point_at(problem, {}, state, closed, np.zeros(2), problem.formulation(state, None, NO_ROWS))
-
-    exact, step = contact_rows(model, at(base)), 1e-6
-    assert exact.shape == (2, model.n_unknowns)
-    for i in range(model.n_unknowns):
-        one, other = (at(base + sign * step * np.eye(model.n_unknowns)[i]).rows.values for sign in (1.0, -1.0))
-        assert exact[:, i] == pytest.approx((one - other) / (2.0 * step), abs=1e-8)
 
 
 @pytest.mark.parametrize("moment", [0.5 * MOMENT, 2.5 * MOMENT])

@@ -4,10 +4,6 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm.kinematics import positions, rest_state
-from cprbm.mechanism import mechanism_of
-from cprbm.model import Fit
-from cprbm.rigid_edge import rigid_edge
 from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, drives_of
 
@@ -59,33 +55,6 @@ def test_the_force_goes_straight_through(clamped, at, links, block):
     assert values["R.reaction_moment"][0] == pytest.approx(0.0, abs=error * at * FORCE * LENGTH)
 
 
-@pytest.mark.parametrize("shares", [[0.31, 0.83], [0.83, 0.31]])
-def test_every_row_is_known_by_a_key_of_its_own(shares):
-    # as the contact's zones end: rows at joints and at both ends, by which Newton's steps tell them from each other
-    mechanism = mechanism_of(pressed("start", 0.37), cprbm.Settings(links=9), Fit({}, {"edge": np.array(shares)}))
-    model, edge = mechanism.problem.model, mechanism.pairs["edge"]
-    state = rest_state(model)
-    rows = [
-        (key, arc)
-        for group in edge.groups(state, positions(model, state))
-        for key, arc in zip(group.keys, group.arc, strict=True)
-    ]
-    assert {round(float(arc), 9) for _, arc in rows} >= {0.31, 0.83}
-    keys = [key for key, _ in rows if key >= 0]
-    assert len(keys) > 9
-    assert len(set(keys)) == len(keys)
-
-
-@pytest.mark.parametrize("end", ["start", "end"])
-def test_an_end_is_clamped_in_touch_where_it_lies_on_the_edge_and_along_it(end):
-    def found(**changes):
-        return mechanism_of(pressed(end, 0.37, **changes), cprbm.Settings(links=9)).pairs["edge"].clamped
-
-    assert found() == (end == "start", end == "end")
-    assert found(gap=1e-6 * LENGTH) == (False, False)
-    assert found(lean=1e-6) == (False, False)
-
-
 @pytest.mark.parametrize("gap", [0.0, 0.02 * LENGTH])
 def test_a_pull_along_it_moves_nothing(gap):
     # neither a link nor the rate at which one would turn
@@ -95,14 +64,3 @@ def test_a_pull_along_it_moves_nothing(gap):
     assert values["R.reaction"] == pytest.approx(turned(-FORCE, 0.0), rel=1e-12)
     assert values["R.reaction_moment"][0] == pytest.approx(0.0, abs=1e-9 * FORCE * LENGTH)
     assert values["edge.force"][0] == pytest.approx(0.0, abs=1e-9 * FORCE)
-
-
-@pytest.mark.parametrize("block", [False, True])
-@pytest.mark.parametrize(("clamped", "fixed"), [("start", 1), ("end", 9)])
-def test_in_the_papers_form_the_joint_beside_the_clamp_is_none_of_the_contacts(clamped, fixed, block):
-    # reference: the spring next to a clamp stands still, on a rigid link, against what is of the clamp's body
-    scene = pressed(clamped, 0.37, block=block)
-    mechanism = mechanism_of(scene, cprbm.Settings(links=9, formulation="paper"))
-    joints = set(rigid_edge(scene, mechanism.problem.model, mechanism.pairs["edge"]).joints.tolist())
-    assert fixed not in joints
-    assert 10 - fixed in joints

@@ -4,10 +4,6 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm.first_contact import NO_ROWS, Local, over_unknowns
-from cprbm.kinematics import State, pulled_back, rest_state
-from cprbm.mechanism import mechanism_of
-from cprbm.point import contact_gradient, contact_rows, point_at
 from cprbm_scene import Scene
 from tests.fea_reference.on_an_edge import WIDTH, T
 from tests.references.pressed import Pressed
@@ -129,39 +125,3 @@ def test_the_round_end_of_a_beam_presses_a_corner_beyond_it(beyond, links):
     (force,), tip = load.onto(np.array([min(x, 1.0)]), np.array([gap]), np.ones(1))
     assert values["knife.force"][0] == pytest.approx(force * 0.5 * T / upright, rel=0.03)
     assert values["tip.displacement"][1] == pytest.approx(tip, rel=0.03)
-
-
-def test_rows_of_a_round_end_are_derivatives():
-    # reference: central differences, of the gap and of its gradient, at a random state
-    points = ((0.9985, -0.303), (1.0025, -0.0035), (1.003, -0.3))
-    knife = {"knife": {"kind": "beam-line", "points": points, "side": "left"}}
-    problem = mechanism_of(beam_onto(knife, Pressed(force=1.0), thick=True), cprbm.Settings(links=9)).problem
-    model, random = problem.model, np.random.default_rng(3)
-    rest = rest_state(model)
-    theta = rest.theta + 1e-4 * random.standard_normal(model.n_links)
-
-    def at(turned, lam, rows):
-        return point_at(problem, {}, State(theta + turned, rest.bodies), np.zeros(problem.closure.rows), lam, rows)
-
-    start = at(0.0 * theta, np.zeros(0), NO_ROWS)
-    (row,) = np.flatnonzero(start.rows.arc == 1.0)
-    lam = np.zeros(start.rows.size)
-    lam[row] = 1.0
-    group, share = next((group, share) for group, share in start.rows.shares(lam) if share.any())
-    blocks = group.curvature(share)
-    second = np.zeros((model.n_unknowns, model.n_unknowns))
-    for joints, angles, matrix in zip(blocks.joints, blocks.angles, blocks.matrices, strict=True):
-        parts = [Local(joints[None], angles[None], np.eye(len(matrix)))]
-        J = over_unknowns(model, start.state, start.at, parts)
-        second += J.T @ matrix @ J
-    fx, fy, _ = start.rows.forces(lam, model.n_joints, model.n_unknowns)
-    _, _, over_theta, _ = pulled_back(model, start.state, start.at, fx, fy)
-    for _ in range(3):
-        d = random.standard_normal(model.n_links)
-        ahead, behind = at(1e-6 * d, lam, start.rows), at(-1e-6 * d, lam, start.rows)
-        whole = np.concatenate((d, np.zeros(model.n_unknowns - model.n_links)))
-        change = (ahead.rows.values[row] - behind.rows.values[row]) / 2e-6
-        assert contact_rows(model, start)[row] @ whole == pytest.approx(change, rel=1e-6)
-        bent = (contact_gradient(model, ahead) - contact_gradient(model, behind)) / 2e-6
-        product = (second @ whole)[: model.n_links] + over_theta * d
-        assert product == pytest.approx(bent[: model.n_links], rel=1e-5, abs=1e-5 * np.abs(bent).max())

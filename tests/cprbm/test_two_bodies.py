@@ -4,10 +4,6 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm.first_contact import NO_ROWS
-from cprbm.kinematics import State
-from cprbm.mechanism import mechanism_of
-from cprbm.point import point_at, potential_energy
 from cprbm_scene import scene_from
 from tests.cprbm.scenes import MODULUS, THICKNESS, WIDTH
 
@@ -63,29 +59,6 @@ def frame(order):
             ],
         }
     )
-
-
-def test_the_gradient_is_that_of_the_energy_and_the_closures():
-    # reference: central differences of the scalar PE + μ·Z at a state away from any symmetry
-    problem = mechanism_of(frame(("left", "right")), cprbm.Settings(links=7)).problem
-    model = problem.model
-    random = np.random.default_rng(29)
-    mu = random.standard_normal(problem.closure.rows)
-    q = np.concatenate((model.rest, np.zeros(6))) + 0.1 * random.standard_normal(model.n_links + 6)
-
-    def at(q):
-        state = State(q[: model.n_links], q[model.n_links :].reshape(-1, 3))
-        return point_at(problem, LOADS, state, mu, np.zeros(0), NO_ROWS)
-
-    here = at(q)
-    gradient = here.gradient + here.A_E.T @ mu
-    for i in range(len(q)):
-        step = np.zeros(len(q))
-        step[i] = STEP
-        plus, minus = at(q + step), at(q - step)
-        assert here.A_E[:, i] == pytest.approx((plus.Z - minus.Z) / (2 * STEP), abs=1e-8)
-        slope = potential_energy(problem, plus) - potential_energy(problem, minus) + mu @ (plus.Z - minus.Z)
-        assert gradient[i] == pytest.approx(slope / (2 * STEP), abs=1e-7 * np.max(np.abs(gradient)))
 
 
 def test_the_order_of_the_bodies_does_not_matter():

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm.mechanism import mechanism_of
 from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, MOMENT, RIGIDITY, THICKNESS, cantilever_data
 
@@ -33,18 +32,3 @@ def test_what_is_before_a_sharp_wedge_is_not_behind_its_sides(other_way_round):
     (station,) = answer.stations
     assert station.values["tip.rotation"] == pytest.approx([turn], rel=1e-10)
     assert station.values["wedge.force"] == pytest.approx([0.0], abs=0.0)
-
-
-@pytest.mark.parametrize("other_way_round", [False, True])
-def test_what_lies_behind_a_wedges_side_lies_behind_both_of_its_faces(other_way_round):
-    # reference: what is rigid behind a corner that stands out is what is behind both of its lines
-    scene = under_a_wedge([1.0], other_way_round=other_way_round)
-    edge = mechanism_of(scene, cprbm.Settings(links=5)).pairs["wedge"]
-    begin, along = WEDGE[:-1] / edge.unit_length, np.diff(WEDGE, axis=0)
-    q = np.random.default_rng(5).uniform(-2.0, 2.0, (20000, 2))
-    away = q[:, None] - begin
-    in_front = np.any(along[:, 1] * away[:, :, 0] - along[:, 0] * away[:, :, 1] > 0.0, axis=1)
-    seen = edge.whole.seen(q)
-    sunk = (edge.whole.facing(q, seen) & (seen.distance < 0.0))[len(edge.pieces) :]
-    assert np.any(sunk)
-    assert not np.any(sunk & in_front)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from cprbm_scene import Arc, FunctionContact, HalfPlaneContact, Line, LineContact, Polynomial, SceneError, scene_from
-from cprbm_scene.edges import distance_from
+from cprbm_scene.clearance import distance_from
 from cprbm_scene.geometry import arc_length, largest_curvature, points_on
 from cprbm_scene.statement import CircleContact, EllipseContact, SplineContact
 from tests.cprbm_scene.editing import HINGE, REMOVED, distance_to, edited, line_distance, mistakes, two_lines

@@ -5,8 +5,8 @@ import pytest
 import cprbm
 import fea_reference
 from comparisons import cases
-from cprbm.model import build
-from cprbm.related import related_joints
+from cprbm.chain import mechanism_of
+from cprbm.paper.related import related_joints
 from cprbm_scene import Ending, Probe
 
 JOINTS = {"contact": {"beam1": (8, 26), "beam2": (11, 28)}, "link1": {"beam1": (31, 40)}, "link2": {"beam2": (31, 40)}}
@@ -26,10 +26,10 @@ def in_paper(scene, links):
 
 def test_the_ranges_name_the_papers_joints(scene):
     # section 3.5: the joints in the paper's words, at its 40 elements
-    model = build(scene, cprbm.Settings(formulation="paper"))
+    m = mechanism_of(scene, {"beam1": 40, "beam2": 40}, scene.theory, corrected=False)
     for contact, beams in JOINTS.items():
         for beam, (first, last) in beams.items():
-            found = related_joints(scene, contact, model.chain(beam), fewest=1)
+            found = related_joints(m, contact, beam, fewest=1)
             assert (found[0], found[-1], len(found)) == (first, last, last - first + 1)
 
 

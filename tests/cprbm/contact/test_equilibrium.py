@@ -10,10 +10,9 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from cprbm.contact import new_counters, settle, sides_at_rest, taken
+from cprbm.contact import new_counters, open_contacts, settle, taken
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.contact_points import touched_equilibrium
-from cprbm.equilibrium.contact_set import Contacts
 from cprbm.equilibrium.factors import factorise
 from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.system import rest_state, system_of
@@ -30,9 +29,8 @@ def stepped(name: str, links: int, stations=None):
     """Solutions at the stations of a built-in case's first stage, and the mechanism."""
     m, geometry, _ = geometry_of(read(CASES / f"{name}.toml"), links)
     system, stage = system_of(m), m.scene.stages[0]
-    state, counters = rest_state(system), new_counters()
-    nothing = taken(geometry.possible, np.zeros(0, dtype=int))
-    contacts = Contacts(nothing, np.zeros(0, dtype=bool), sides_at_rest(geometry, state.z, counters), counters)
+    state = rest_state(system)
+    contacts = open_contacts(geometry, state.z)
     row, solutions = m.row(stage.steps), []
     for station in stage.stations if stations is None else stations:
         target = state.target.copy()

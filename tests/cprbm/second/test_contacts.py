@@ -60,6 +60,25 @@ def test_an_opening_is_located_between_stations():
     assert -0.06 < opens.value < -0.03
 
 
+@pytest.mark.parametrize("links", [20, 30, 40])
+def test_beside_a_clamp_the_way_decides_nothing(links):
+    # reference: one equilibrium at 6.4 N, 2.1535 N on the circle (docs/contact-rules.md, 2, and 80 links).  A pair of
+    # joints with a shared force beside the clamp was a second one, 3.98 N, after unloading from 16 N with 30 links
+    data = cases.data("gripper")
+    (stage,) = data["stages"]
+
+    def circle_force(*stages):
+        named = [{**stage, "name": f"s{k}", "stations": list(stations)} for k, stations in enumerate(stages)]
+        found = solved(scene_from({**data, "claims": [], "stages": named}), links)
+        assert found.completed, found.sentence
+        return found.stations[-1].values["circle.force"]
+
+    once = circle_force([6.4])
+    assert circle_force([16.0], [6.4]) == pytest.approx(once, rel=1e-7)
+    assert circle_force([16.0], [12.3, 7.1, 6.4]) == pytest.approx(once, rel=1e-7)
+    assert once == pytest.approx([2.1535], rel=32.0 / links**2)
+
+
 @pytest.mark.parametrize("angle", [0.0, np.radians(37.0)])
 def test_a_cantilever_pressed_on_a_round_pin_is_a_propped_beam(angle):
     # reference: small deflections, statically indeterminate: the prop at a = L/2 takes F (3L − a)/(2a) = 2.5 F

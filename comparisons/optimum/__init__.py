@@ -1,0 +1,1 @@
+"""Optimum: parameters for a goal within limits, and the check of the result."""

@@ -1,0 +1,1 @@
+"""Scatter: the numbers of a scene whose parameters scatter within their tolerances."""

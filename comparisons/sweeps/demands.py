@@ -1,0 +1,221 @@
+"""Demands on a mechanism in a TOML file: a goal and limits, on numbers of probes.
+
+    [goal]
+    probe = "contact.force"
+    aim = "maximise"            # or "minimise", or "reach" with a value
+
+    [[limits]]
+    probe = "beam1.bending_stress"
+    most = 30.0
+    at = "every"                # of the stage's stations; otherwise the last station
+
+All numbers have the units of the scene's file.  Of a stress along a beam the largest magnitude counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import inf, isfinite
+from pathlib import Path
+from typing import Literal
+
+from pydantic import ValidationError
+
+from comparisons.display_units import file_unit
+from comparisons.quantities import COMPONENTS, unit_of
+from comparisons.sweeps.outcome import Outcome
+from cprbm_scene import Mistake, Scene, SceneError
+from cprbm_scene.mistakes import first_of
+from cprbm_scene.reading import toml_data
+from cprbm_scene.statement import Record
+
+
+class Goal(Record):
+    """Number of a probe to minimise, to maximise or to bring to a ``value``.
+
+    ``component`` belongs to a probe with two components, ``stage`` is the last stage of the probe unless stated, and
+    ``at`` selects the last or every station of the stage.
+    """
+
+    probe: str
+    component: str = ""
+    stage: str = ""
+    at: Literal["last", "every"] = "last"
+    aim: Literal["minimise", "maximise", "reach"] = "minimise"
+    value: float | None = None
+
+    def rules(self) -> Iterator[Mistake]:
+        """The value belongs to the aim ``reach``."""
+        if (self.value is None) == (self.aim == "reach"):
+            yield Mistake("value", str(self.value), "a value with aim = 'reach' only")
+
+
+class Limit(Record):
+    """The ``least`` and the ``most`` of a number of a probe; further keys as of :class:`Goal`."""
+
+    probe: str
+    component: str = ""
+    stage: str = ""
+    at: Literal["last", "every"] = "last"
+    least: float | None = None
+    most: float | None = None
+
+    def rules(self) -> Iterator[Mistake]:
+        """A limit has a bound."""
+        if self.least is None and self.most is None:
+            yield Mistake("", "neither least nor most", "least, most, or both")
+
+
+class Demands(Record):
+    """Content of a file of demands."""
+
+    goal: Goal | None = None
+    limits: tuple[Limit, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """A number of an outcome.
+
+    Attributes:
+        stage, probe, component: of the number.
+        every: whether every station counts, or the last alone.
+        stations: number of stations of the stage.
+        size, unit: unit in the scene's file, and its size in SI.
+    """
+
+    stage: str
+    probe: str
+    component: str
+    every: bool
+    stations: int
+    size: float
+    unit: str
+
+    def __str__(self) -> str:
+        return f"{self.stage} {'.'.join(filter(None, (self.probe, self.component)))}"
+
+    def values(self, outcome: Outcome) -> list[float]:
+        """Values at the stations in the unit of the file; none where a station of the stage has no value."""
+        found: dict[float, float] = {}
+        for number in outcome.numbers:
+            if (number["stage"], number["probe"], number["component"]) == (self.stage, self.probe, self.component):
+                value, at = number["value"] / self.size, number["station"]
+                found[at] = value if number["arc_length"] is None else max(abs(value), found.get(at, 0.0))
+        values = list(found.values()) if len(found) == self.stations else []
+        return values if self.every else values[-1:]
+
+    def text(self, value: float) -> str:
+        """A value with its unit."""
+        return f"{value:.6g} {self.unit}".rstrip()
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """A limit of a scene: a measure, and the least and the most."""
+
+    measure: Measure
+    least: float
+    most: float
+
+    @property
+    def scale(self) -> float:
+        """Largest magnitude of the finite ends, 1 without such a magnitude."""
+        return max(abs(end) for end in (self.least, self.most) if isfinite(end)) or 1.0
+
+    def excess(self, outcome: Outcome) -> float:
+        """Largest distance beyond the limit over the scale, negative within the limit; infinite without a value."""
+        values = self.measure.values(outcome) if outcome.completed else []
+        return max((max(self.least - each, each - self.most) / self.scale for each in values), default=inf)
+
+    def __str__(self) -> str:
+        parts = [f"at least {self.measure.text(self.least)}"] if self.least > -inf else []
+        parts += [f"at most {self.measure.text(self.most)}"] if self.most < inf else []
+        return f"{self.measure} {' and '.join(parts)}"
+
+
+def meets(outcome: Outcome, bounds: Sequence[Bound]) -> bool:
+    """Whether a complete outcome is within all ``bounds``."""
+    return outcome.completed and all(bound.excess(outcome) <= 0.0 for bound in bounds)
+
+
+def read_demands(path: Path) -> Demands:
+    """The demands in a file.
+
+    Raises:
+        SceneError: the file cannot be read, or a key or a value is wrong.
+    """
+    data = toml_data(path)
+    if isinstance(data.get("limits"), list):
+        data["limits"] = tuple(data["limits"])
+    try:
+        demands = Demands.model_validate(data)
+    except ValidationError as error:
+        mistakes = first_of(each for details in error.errors() for each in details["ctx"]["error"].mistakes)
+    else:
+        records: dict[str, Goal | Limit] = {f"limits[{place}]": each for place, each in enumerate(demands.limits)}
+        records |= {} if demands.goal is None else {"goal": demands.goal}
+        mistakes = [
+            replace(mistake, key=f"{key}.{mistake.key}".rstrip("."))
+            for key, record in records.items()
+            for mistake in record.rules()
+        ]
+    if mistakes:
+        raise SceneError([replace(mistake, file=str(path)) for mistake in mistakes])
+    return demands
+
+
+def bounds_of(scene: Scene, demands: Demands, file: str) -> tuple[Bound, ...]:
+    """Limits of a scene.
+
+    Raises:
+        SceneError: the scene has no such number.
+    """
+    return tuple(
+        Bound(
+            measure_of(scene, limit, f"limits[{place}]", file),
+            -inf if limit.least is None else limit.least,
+            inf if limit.most is None else limit.most,
+        )
+        for place, limit in enumerate(demands.limits)
+    )
+
+
+def measure_of(scene: Scene, wanted: Goal | Limit, key: str, file: str) -> Measure:
+    """The number of a goal or of a limit in a ``file``.
+
+    Raises:
+        SceneError: the scene has no such number.
+    """
+
+    def see(part: str, found: str, allowed: Iterable[str]) -> None:
+        names = list(dict.fromkeys(allowed))
+        if found not in names:
+            listed = ", ".join(repr(name) if name else "no value" for name in names)
+            raise SceneError([Mistake(f"{key}.{part}", repr(found), listed, file)])
+
+    found = [each for each in measures(scene, every=wanted.at == "every") if each.probe == wanted.probe]
+    see("probe", wanted.probe, (each.name for each in scene.probes))
+    see("component", wanted.component, (each.component for each in found))
+    see("stage", wanted.stage or found[-1].stage, (each.stage for each in found))
+    return next(
+        each for each in reversed(found) if each.component == wanted.component and wanted.stage in ("", each.stage)
+    )
+
+
+def measures(scene: Scene, *, every: bool = False) -> tuple[Measure, ...]:
+    """All numbers of the last, or of ``every``, station of all stages."""
+    return tuple(
+        Measure(
+            stage.name,
+            probe.name,
+            component,
+            every,
+            len(set(stage.stations)),
+            *file_unit(scene, unit_of(scene, probe, stage)),
+        )
+        for stage in scene.stages
+        for probe in scene.probes_in(stage.name)
+        for component in COMPONENTS.get(probe.quantity, ("",))
+    )

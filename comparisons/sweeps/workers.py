@@ -1,0 +1,142 @@
+"""Workers of a sweep: processes of this machine, or the workers of a Dask cluster (extra ``cluster``).
+
+A Dask worker solves a point in a child process, since only a process can be ended at its time limit.  The child keeps
+modules and compiled kernels from point to point, and computes with one thread.  The scheduler holds a few points per
+worker.  The client releases every result at once: the loss of a worker repeats only the points of the worker.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import re
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, ParamSpec, TypeVar
+
+from comparisons.executor import permit_children, threads
+from comparisons.provenance import program
+from comparisons.threads import ONE_THREAD
+from cprbm_scene import Mistake, SceneError
+
+T = TypeVar("T")
+P = ParamSpec("P")
+
+WINDOW = 16
+"""Number of points that an executor has at a time, so that a result is kept as soon as the result is there."""
+
+PER_THREAD = 3
+"""Number of points per thread of a cluster: one is solved, and two wait at the worker."""
+
+CONNECT = 10.0
+"""Longest wait for a scheduler, s."""
+
+ARRIVE = 60.0
+"""Longest wait for the first worker of a scheduler, s."""
+
+PLACES = "local:N with N processes, as local:2, or dask://HOST:PORT with the address of a scheduler"
+"""Allowed places of workers."""
+
+_PLACE = re.compile(r"(?:local:(?P<count>[1-9]\d{0,2})|dask://(?P<scheduler>[^\s/:]+:\d{1,5}))")
+
+
+class OtherVersionError(RuntimeError):
+    """A worker has another version of the program, of Python or of a library."""
+
+
+@dataclass(frozen=True, slots=True)
+class Workers:
+    """Workers of a sweep.
+
+    Attributes:
+        executor: solves the points.
+        window: function that returns the number of points that the executor has at a time.
+        lost: errors of a point whose workers died.
+    """
+
+    executor: Executor
+    window: Callable[[], int] = lambda: WINDOW
+    lost: tuple[type[Exception], ...] = ()
+
+
+def place_of(text: str) -> tuple[int, str] | None:
+    """Number of local processes and address of a scheduler in ``local:N`` or ``dask://HOST:PORT``; None otherwise."""
+    found = _PLACE.fullmatch(text)
+    return None if found is None else (int(found["count"] or 0), found["scheduler"] or "")
+
+
+@contextmanager
+def workers_on(place: str) -> Iterator[Workers]:
+    """Workers at ``local:N`` or ``dask://HOST:PORT``; local processes end with the context.
+
+    Raises:
+        SceneError: the text is no place, no scheduler or no worker answers, or a worker has another version.
+        BrokenExecutor: the scheduler ended during the sweep.
+        ImportError: Dask is not installed.
+    """
+    found = place_of(place)
+    if found is None:
+        raise SceneError([Mistake("--on", repr(place), PLACES)])
+    count, scheduler = found
+    if count:
+        with threads(count) as pool:
+            yield Workers(pool)
+    else:
+        with _cluster(scheduler) as workers:
+            yield workers
+
+
+@contextmanager
+def _cluster(scheduler: str) -> Iterator[Workers]:
+    from distributed import Client, KilledWorker
+
+    def refused(found: object, allowed: str) -> SceneError:
+        return SceneError([Mistake("--on", f"dask://{scheduler}: {found}", allowed)])
+
+    try:
+        client = Client(f"tcp://{scheduler}", timeout=CONNECT, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise refused(error, "the address of a running scheduler") from None
+    with client, client.get_executor(pure=False) as pool:
+        try:
+            client.wait_for_workers(1, timeout=ARRIVE)
+            client.run(_see_version, program())
+            yield Workers(_OnCluster(pool), lambda: PER_THREAD * sum(client.nthreads().values()), (KilledWorker,))
+        except TimeoutError:
+            raise refused(f"no worker after {ARRIVE:g} s", "a scheduler with workers") from None
+        except OtherVersionError as error:
+            raise refused(error, "the versions of the client at all workers") from None
+        except CancelledError:
+            raise BrokenExecutor(f"The scheduler at {scheduler} ended.") from None
+        finally:
+            pool.shutdown(wait=False)
+
+
+class _OnCluster(Executor):
+    """Executor of a Dask cluster: every call is a call of :func:`_call`."""
+
+    def __init__(self, pool: Executor) -> None:
+        self._pool = pool
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:  # noqa: ANN401 - as its base
+        """Future of a call on a worker."""
+        return self._pool.submit(_call, program(), fn, *args, **kwargs)
+
+
+def _call(version: str, function: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
+    """Value of a call on a worker of the cluster that has the ``version`` of the client.
+
+    Raises:
+        OtherVersionError: the worker has another version; a worker may join after the first check.
+    """
+    _see_version(version)
+    os.environ.update(ONE_THREAD)  # the child takes the variables over
+    permit_children()
+    return function(*arguments, **named)
+
+
+def _see_version(version: str) -> None:
+    if program() != version:
+        raise OtherVersionError(f"another version of cprbm, Python or a library on {platform.node()}")

@@ -1,0 +1,1 @@
+"""The paper's own formulation: related joints, offset points, fitted boundary."""

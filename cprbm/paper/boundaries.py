@@ -1,0 +1,65 @@
+"""Fitted boundaries of a scene's contacts of two beams.
+
+The paper draws the boundary's beam with an offset towards the other beam.  Which side that is, and on which side of the
+boundary the joints stay, follows from the nearest related joints at rest.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cprbm.chain import Mechanism
+from cprbm.paper.fit import Boundary
+from cprbm.paper.related import related_joints
+from cprbm_scene import BeamContact, Mistake, SceneError
+from cprbm_scene.clearance import overlap_at_rest
+
+FEWEST_POINTS = 3
+"""Related joints of either beam."""
+
+
+def fitted_boundary(m: Mechanism, name: str, degree: int) -> tuple[Boundary, str]:
+    """Boundary of a contact of two beams, and the name of the other beam, whose joints are constrained.
+
+    Args:
+        m: the mechanism, of the plain chain.
+        name: of the contact.
+        degree: of the polynomial; lowered to the number of points less one.
+
+    Raises:
+        SceneError: the scene lacks the boundary's beam, has too few related joints, or a needed thickness varies.
+    """
+    contact, scene = m.scene.contacts[name], m.scene
+    assert isinstance(contact, BeamContact)
+    hints = contact.paper
+    if hints is None:
+        allowed = "the boundary's beam and the axis, which the formulation 'paper' needs"
+        raise SceneError([Mistake(f"contacts.{name}.paper", "nothing", allowed, scene.file)])
+    for beam in contact.between:
+        if contact.thick and scene.beams[beam].tapered:
+            found = f"contact of two beams by the edges of {beam!r}, whose thickness varies"
+            allowed = "thick = false, a beam of one thickness, or the formulation 'auto'"
+            raise SceneError([Mistake(f"contacts.{name}.thick", found, allowed, scene.file)])
+    other = next(beam for beam in contact.between if beam != hints.boundary)
+    points = related_joints(m, name, hints.boundary, FEWEST_POINTS)
+    joints = related_joints(m, name, other, FEWEST_POINTS)
+    carrier, held = m.chains[hints.boundary], m.chains[other]
+    apart = held.nodes[joints][:, None] - carrier.nodes[points]
+    nearest = divmod(int(np.argmin((apart**2).sum(axis=2))), len(points))
+    gap, point = apart[nearest], int(points[nearest[1]])
+    tangent = 0.5 * (carrier.link_angle[point - 1] + carrier.link_angle[point])
+    along = "yx".index(hints.axis)
+    left = np.cos(tangent) * gap[1] - np.sin(tangent) * gap[0] > 0.0
+    thickness = [float(chain.section.thickness(chain.arcs[:1])[0]) for chain in (carrier, held)]
+    offset = 0.5 * sum(thickness) if contact.thick else 0.0
+    offset -= overlap_at_rest(scene, contact) / m.units.length
+    boundary = Boundary(
+        along=along,
+        sense=1.0 if gap[1 - along] > 0.0 else -1.0,
+        offset=offset if left else -offset,
+        degree=min(degree, len(points) - 1),
+        joints=m.beam_nodes(other)[joints],
+        points=m.beam_nodes(hints.boundary)[points],
+        angles=m.beam_angles(hints.boundary)[points[0] - 1 : points[-1] + 1],
+    )
+    return boundary, other

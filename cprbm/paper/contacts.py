@@ -1,0 +1,189 @@
+"""Contacts of the formulation ``paper``: related joints as places, and the law of fitted boundaries.
+
+Contact with a rigid shape has rows at the related joints, with the distance from the shape as the gap.  The paper's
+eq. (11) measures along an axis; both say that the joint is outside, and give the same force.  The distance is defined
+beside the shape too.  A joint beside an own pin holds the chord of the half link and replaces the angle stop.
+
+Contact of two beams has rows at the related joints of one beam against the boundary fitted to the other beam.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cprbm.chain import Mechanism
+from cprbm.contact import Columns, CurveArrays, Geometry, Places, places_at
+from cprbm.equilibrium.columns import contact_columns
+from cprbm.paper.boundaries import fitted_boundary
+from cprbm.paper.fit import Boundary, fitted, fitted_columns, write_basis, write_fitted_gaps
+from cprbm.paper.related import related_joints
+from cprbm_scene import BeamContact, LineContact, Mistake, Scene, SceneError, SelfContact
+from cprbm_scene.answer import Array, Flags
+
+BEYOND = 0.5
+"""Elements beyond the ends of a boundary, which is continued there, within which a joint may press."""
+
+
+@dataclass(frozen=True, eq=False)
+class FittedLaw:
+    """Law of the fitted boundaries.
+
+    Attributes:
+        boundaries, pairs, names, beams: boundaries, numbers of the pairs, names of the contacts and of the beams with
+            constrained joints.
+        fitted: whether the law measures a pair (pairs,).
+        arrays: of the geometry's curves.
+        beyond: distance beyond the ends of a boundary within which a joint may press, in units.
+        unit: of length, m.
+    """
+
+    boundaries: Sequence[Boundary]
+    pairs: Sequence[int]
+    names: Sequence[str]
+    beams: Sequence[str]
+    fitted: Flags
+    arrays: CurveArrays
+    beyond: float
+    unit: float
+
+    def measures(self, places: Places) -> Flags:
+        """Places of the law's pairs."""
+        return np.asarray(self.fitted[places.pair])
+
+    def write_gaps(self, z: Array, places: Places, gaps: Array) -> None:
+        """Write the gaps of the law's places at a state; a foot on a fitted boundary is no point."""
+        for boundary, pair in zip(self.boundaries, self.pairs, strict=True):
+            mine = places.pair == pair
+            if mine.any():
+                found = np.empty(len(boundary.joints))
+                write_fitted_gaps(z, boundary, found)
+                gaps[mine] = found
+                places.at_point[mine] = False
+
+    def columns(self, z: Array, places: Places, closed: Flags, gradient: Array) -> Columns:
+        """Columns of all places marked ``closed``; adds the gradient of all −F λ to ``gradient``."""
+        found = contact_columns(z, self.arrays, places, closed & ~self.measures(places), gradient)
+        for boundary, pair in zip(self.boundaries, self.pairs, strict=True):
+            mine = places.pair == pair
+            if closed[mine].any():
+                found = _joined(found, fitted_columns(z, boundary, places.force[mine], closed[mine], gradient))
+        return found
+
+    def force(self, z: Array, places: Places, k: int) -> Array:
+        """Force (2,) on a constrained joint, normal to the boundary."""
+        boundary = self.boundaries[self.pairs.index(int(places.pair[k]))]
+        j = int(np.count_nonzero(places.pair[:k] == places.pair[k]))
+        fit, basis = fitted(z, boundary), np.empty((3, boundary.degree + 1))
+        write_basis(z[boundary.joints[j] + boundary.along], fit.middle, fit.width, basis)
+        force = np.ones(2)
+        force[boundary.along] = -basis[1] @ fit.q
+        return np.asarray(boundary.sense * places.force[k] * force)
+
+    def invalid(self, z: Array, places: Places, closed: Flags) -> str:
+        """Sentence on a joint that presses beyond the ends of the boundary; empty without such a joint."""
+        for boundary, pair, name, beam in zip(self.boundaries, self.pairs, self.names, self.beams, strict=True):
+            pressing = (closed & (places.force > 0.0))[places.pair == pair]
+            if not pressing.any():
+                continue
+            joints = np.flatnonzero(pressing)
+            A, a = fitted(z, boundary).points[0], z[boundary.joints[joints] + boundary.along]
+            beyond = np.maximum(a - A.max(), A.min() - a)
+            worst = int(np.argmax(beyond))
+            if beyond[worst] > self.beyond:
+                piece = int(places.piece[places.pair == pair][joints[worst]])
+                curve = int(places.curve[places.pair == pair][0])
+                number = piece - int(self.arrays.first[curve])
+                return (
+                    f"in contact '{name}' joint {number} of {beam} presses {beyond[worst] * self.unit:.2g} m beyond "
+                    "the end of the range of the fitted polynomial"
+                )
+        return ""
+
+
+def paper_geometry(m: Mechanism, every: Geometry, degree: int) -> Geometry:
+    """Geometry of a mechanism's contacts in the formulation ``paper``, from the geometry of all joints.
+
+    Removes the angle stops at own pins from the mechanism's rows.
+
+    Raises:
+        SceneError: the formulation has no form for a contact, or lacks data.
+    """
+    pins = {f"{contact}.pin" for contact in m.scene.contacts}
+    m.rows[:] = [row for row in m.rows if row.name not in pins]
+    law, pairs, rows, fitted_rows = list[tuple[Boundary, int, str, str]](), list(every.pairs), [], []
+    for number, pair in enumerate(every.pairs):
+        contact = m.scene.contacts[pair.name]
+        if isinstance(contact, BeamContact):
+            boundary, beam = fitted_boundary(m, pair.name, degree)
+            law.append((boundary, number, pair.name, beam))
+            joints = np.searchsorted(m.beam_nodes(beam), boundary.joints)
+            own, other = (pair.first, pair.second) if beam == contact.between[0] else (pair.second, pair.first)
+            fitted_rows += [(number, own, other, joint, m.chains[beam].links) for joint in joints.tolist()]
+            pairs[number] = replace(pair, side=1)
+        else:
+            (beam,) = contact.beams
+            joints = related_joints(m, pair.name, beam, fewest=1)
+            rows += [(number, pair.first, pair.second, joint, m.chains[beam].links) for joint in joints.tolist()]
+    possible, node = places_at(every.arrays, np.array(rows + fitted_rows, dtype=np.int64))
+    return replace(
+        every,
+        pairs=pairs,
+        possible=possible,
+        node=node,
+        law=_law(m, every, law) if law else None,
+        joints_alone=True,
+    )
+
+
+def _law(m: Mechanism, geometry: Geometry, law: Sequence[tuple[Boundary, int, str, str]]) -> FittedLaw:
+    longest = max(float(np.max(np.diff(chain.borders))) for chain in m.chains.values())
+    boundaries, pairs, names, beams = zip(*law, strict=True)
+    fitted = np.zeros(len(geometry.pairs), dtype=bool)
+    fitted[list(pairs)] = True
+    return FittedLaw(boundaries, pairs, names, beams, fitted, geometry.arrays, BEYOND * longest, m.units.length)
+
+
+def refuse_contacts(scene: Scene) -> None:
+    """Refuse contacts for which the paper has no form.
+
+    Raises:
+        SceneError: a beam touches itself, or a line has a convex corner on the beam's side.
+    """
+    for name, contact in scene.contacts.items():
+        if isinstance(contact, SelfContact):
+            allowed = "a kind that the formulation 'paper' offers, or the formulation 'auto'"
+            raise SceneError([Mistake(f"contacts.{name}.kind", repr(contact.kind), allowed, scene.file)])
+        if isinstance(contact, LineContact) and _has_convex_corner(contact):
+            found = "a line with a corner that stands out, which presses a beam between its joints"
+            allowed = "a line without such a corner, or the formulation 'auto'"
+            raise SceneError([Mistake(f"contacts.{name}.points", found, allowed, scene.file)])
+
+
+def _has_convex_corner(line: LineContact) -> bool:
+    """True if a corner of a line stands out on the side of the beam."""
+    x, y = np.diff(np.array(line.points), axis=0).T
+    turns = x[:-1] * y[1:] - y[:-1] * x[1:]
+    return bool(np.any(turns < 0.0 if line.side == "left" else turns > 0.0))
+
+
+def _joined(one: Columns, other: Columns) -> Columns:
+    """Columns of both, forces first."""
+    forces, more = len(one.values), len(other.values)
+    first = np.where(one.entry_column < forces, one.entry_column, one.entry_column + more)
+    second = other.entry_column + np.where(other.entry_column < more, forces, len(one.diagonal))
+
+    def both(own: Array, others: Array) -> Array:
+        return np.concatenate([own[:forces], others[:more], own[forces:], others[more:]])
+
+    return Columns(
+        values=np.concatenate([one.values, other.values]),
+        negative=one.negative + other.negative,
+        diagonal=both(one.diagonal, other.diagonal),
+        beside=both(one.beside, other.beside),
+        entry_column=np.concatenate([first, second]),
+        entry_index=np.concatenate([one.entry_index, other.entry_index]),
+        entry_value=np.concatenate([one.entry_value, other.entry_value]),
+    )

@@ -1,0 +1,118 @@
+"""Notes on an answer of the formulation ``paper``: errors that the form itself leaves.
+
+* A joint beside the beam's own pin holds the chord of the half link: first order in 1/N.  The force of the last joint
+  flattens the beam over half an element, and grows with N without limit.
+* A polynomial of one degree misses the points: an error that stays as N grows.
+* The fit along an axis has no rotational invariance: the forces of a contact leave a moment.
+* The boundary is continued beyond the ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from cprbm.chain.rows import ends_of
+from cprbm.equilibrium.columns import contact_terms
+from cprbm.equilibrium.newton import Solved
+from cprbm.paper.contacts import FittedLaw
+from cprbm.paper.fit import Boundary, fitted
+from cprbm_scene.answer import Array, Flags
+from cprbm_scene.statement import EdgeContact, PinnedEnd
+
+
+class Misfit(NamedTuple):
+    """Largest distance of a polynomial from the points, m, and the station."""
+
+    distance: float
+    where: str
+
+
+@dataclass
+class Remarks:
+    """Stations at which a joint beside an own pin first pressed, and largest misfits, by contact."""
+
+    beside_pins: dict[str, str] = field(default_factory=dict)
+    misfits: dict[str, Misfit] = field(default_factory=dict)
+
+    def look(self, solved: Solved, where: str) -> None:
+        """Look at a station, called ``where``."""
+        unit = solved.system.mechanism.units.length
+        for name in _beside_pins(solved):
+            self.beside_pins.setdefault(name, where)
+        for boundary, name, _ in _pressed_boundaries(solved):
+            if boundary.degree + 1 < len(boundary.points):
+                fit = fitted(solved.state.z, boundary)
+                misfit = Misfit(float(np.abs(fit.V[:, 0] @ fit.q - fit.points[1]).max()) * unit, where)
+                self.misfits[name] = max(misfit, self.misfits.get(name, misfit))
+
+    def told(self, solved: Solved) -> list[str]:
+        """Sentences on all stations, and on the boundaries at the last state."""
+        said = [
+            f"in contact '{name}', from {first} on, the joint next to the beam's own pin presses: it holds the chord "
+            "there and not the tangent, so that energy and moments are of first order in 1/N and its force grows with N"
+            for name, first in self.beside_pins.items()
+        ]
+        said += [
+            f"in contact '{name}' the polynomial misses the points that it is fitted to by up to {misfit.distance:.1e} "
+            f"m, at {misfit.where}: more links do not take that away"
+            for name, misfit in self.misfits.items()
+        ]
+        z, unit = solved.state.z, solved.system.mechanism.units.length
+        for boundary, name, closed in _pressed_boundaries(solved):
+            said.append(
+                f"in contact '{name}' forces on the fitted boundary's points and on the joints that press it leave a "
+                f"moment of {_left_moment(solved, closed):.1e} of the largest; the formulation has no rotational "
+                "invariance"
+            )
+            A, a = fitted(z, boundary).points[0], z[boundary.joints + boundary.along]
+            beyond = np.maximum(a - A.max(), A.min() - a)
+            if np.any(beyond > 0.0):
+                said.append(
+                    f"in contact '{name}' {np.sum(beyond > 0.0)} of {len(beyond)} related joints lie beyond the fitted "
+                    f"boundary's ends, by up to {float(beyond.max()) * unit:.2g} m, where it is continued; none of "
+                    "them presses"
+                )
+        return said
+
+
+def _beside_pins(solved: Solved) -> list[str]:
+    """Contacts with a rigid edge whose joint beside the beam's own pin presses."""
+    geometry, contacts, m = solved.system.geometry, solved.state.contacts, solved.system.mechanism
+    found: list[str] = []
+    if geometry is None or contacts is None:
+        return found
+    for number, pair in enumerate(geometry.pairs):
+        record = m.scene.contacts[pair.name]
+        if isinstance(record, EdgeContact):
+            ends = zip((1, m.chains[record.beam].links - 1), ends_of(m.scene, record.beam), strict=True)
+            pinned = [(joint, end.point) for joint, end in ends if isinstance(end, PinnedEnd)]
+            beside = [joint for joint, point in pinned if m.scene.body_of(point) == record.body]
+            joints = contacts.places.piece[contacts.pressing(number)] - geometry.arrays.first[pair.first]
+            found += [pair.name] if np.isin(joints, beside).any() else []
+    return found
+
+
+def _pressed_boundaries(solved: Solved) -> list[tuple[Boundary, str, Flags]]:
+    """Boundaries with closed joints, names of the contacts, and marks of the closed places."""
+    geometry, contacts = solved.system.geometry, solved.state.contacts
+    if geometry is None or contacts is None or not isinstance(geometry.law, FittedLaw):
+        return []
+    law = geometry.law
+    every = zip(law.boundaries, law.pairs, law.names, strict=True)
+    found = [(boundary, name, contacts.pressing(pair)) for boundary, pair, name in every]
+    return [each for each in found if each[2].any()]
+
+
+def _left_moment(solved: Solved, closed: Flags) -> float:
+    """Moment of all forces of some places together, over the largest multiplier or the places' own force."""
+    system, contacts, z = solved.system, solved.state.contacts, solved.state.z
+    assert system.geometry is not None
+    assert contacts is not None
+    pull: Array = contact_terms(system.geometry, z, contacts.places, closed)[1]
+    x, y = system.nodes.T
+    moment = float(z[x] @ pull[y] - z[y] @ pull[x] + pull[system.angles].sum())
+    largest = max(float(np.abs(solved.state.multipliers(system)).max()), float(contacts.places.force[closed].max()))
+    return abs(moment) / largest if largest > 0.0 else 0.0
