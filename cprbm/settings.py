@@ -7,9 +7,10 @@ from typing import Annotated, Literal, cast
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+from cprbm.loose import contacts_may_hold
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.requirements import refuse
+from cprbm_scene.requirements import Requirement, refuse
 
 FEWEST_LINKS = 2
 
@@ -73,7 +74,8 @@ class Settings(BaseModel):
             raise SceneError(
                 [Mistake(f"settings.links.{beam}", found, allowed, scene.file) for beam, found, allowed in wrong]
             )
-        refuse(scene, "the CPRBM", "overlap at rest", "theory", "edge")
+        met: tuple[Requirement, ...] = ("support",) if scene.contacts and contacts_may_hold(scene) else ()
+        refuse(scene, "the CPRBM", "overlap at rest", "theory", "edge", *met)
 
 
 def _doubled(links: int | Mapping[str, int]) -> int | Mapping[str, int]:

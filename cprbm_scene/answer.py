@@ -1,4 +1,4 @@
-"""The answer sheet that every solver hands back, at the scene's own stations.
+"""The answer sheet of every solver, at the scene's own stations.
 
 Values are NumPy arrays in SI units, made read-only.  Meaning of the quantities:
 
@@ -7,27 +7,27 @@ quantity           shape   meaning
 =================  ======  ====================================================================
 displacement       (2,)    of a body's point, m
 rotation           (1,)    of a body, counter-clockwise, rad, counted through full turns
-force              (1,)    magnitude of a contact's resultant, N; 0 where it is open
-centre             (1,)    arc length on the contact's first beam of the resultant, m; empty if open; of a beam that
-                           touches itself the smaller of both places', here and for the ends
-ends               (2,)    arc lengths on the contact's first beam where its zone begins and ends, m,
+force              (1,)    magnitude of a contact's resultant, N; 0 for an open contact
+centre             (1,)    arc length on the contact's first beam of the resultant, m; empty if open; in self-contact
+                           the smaller arc length of both places, here and for the ends
+ends               (2,)    arc lengths on the contact's first beam at the begin and the end of the zone, m,
                            ascending, the same twice for contact in a point; empty if open; of several
-                           zones the first one's beginning and the last one's end
+                           zones the beginning of the first and the end of the last
 closing_load       (1,)    value of the stepped load or drive at which a contact first closes; empty if open
 bending_stress     (P,)    signed: E·t/2 times the change of curvature along the beam, Pa, with t of the place,
                            at P equal arc-length steps from the beam's start to its end;
                            a positive change turns the tangent counter-clockwise
 combined_stress    (P,)    largest magnitude over the section at the same places, Pa: those of the bending stress
                            and of the normal force over the section's area together
-reaction           (2,)    force of the ground on what is joined at a point, N; at a driven point the drive's force,
-                           of a body that slides that of its slide
-reaction_moment    (1,)    moment of the ground there, about that point, N·m; of a body that is turned by a
-                           drive the drive's moment
+reaction           (2,)    force of the ground on the parts joined at a point, N; at a driven point the drive's force,
+                           of a sliding body the force of the slide
+reaction_moment    (1,)    moment of the ground there, about the point, N·m; of a body turned by a drive the
+                           drive's moment
 potential_energy   (1,)    strain energy less the work of the dead loads from the initial state, J
 angle              (1,)    of a stop, from the line between its body's two points to the beam, rad
 moment             (1,)    magnitude of the moment by which a stop holds, N·m; 0 where no limit is reached;
-                           of a contact that of all it exerts on the beam, about the pin that holds the beam on what
-                           it touches (about the first of two)
+                           of a contact the moment of all contact forces on the beam, about the pin of the beam on the
+                           touched body (about the first of two pins)
 =================  ======  ====================================================================
 """
 
@@ -106,7 +106,7 @@ class Shape:
 
 
 @dataclass(frozen=True, slots=True)
-class BeamState:
+class BeamState(Shape):
     """Shape and internal forces of one beam at n ascending places; SI.
 
     At a point force or moment the values are the limit from the side of the beam's end.  At the first and the last
@@ -124,9 +124,6 @@ class BeamState:
         borders: arc lengths at which elements begin and end, (m+1,), m.
     """
 
-    s: Array
-    x: Array
-    y: Array
     angle: Array
     section_angle: Array
     N: Array
@@ -160,7 +157,7 @@ class PointForce(NamedTuple):
 class PointForces:
     """All forces of joints, contacts, stops, slides, pivots, drives and pins on beams and moving bodies, as arrays.
 
-    A force stands once for the beam or body that it acts on; the ground's share and the scene's loads are left out.
+    A force stands once, for the loaded beam or body; the ground's share and the scene's loads are left out.
     The fields are those of :class:`PointForce`, of k forces: (k,), ``place`` and ``force`` (k, 2).
     """
 
@@ -272,7 +269,7 @@ class Loss(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Critical:
-    """Where a branch ends: at ``value`` of the load or drive that ``stage`` steps its equilibria cease to be minima.
+    """End of a branch: at ``value`` of the stepped load or drive the equilibria cease to be minima.
 
     Attributes:
         stage: name of the stage.
@@ -302,10 +299,10 @@ class Critical:
 
 @dataclass(frozen=True, slots=True)
 class GoneOver:
-    """An end of a branch of which nothing was asked, and that was gone on over to a state beside it.
+    """A critical point that the solver passed, without a request, to a state beside the critical point.
 
     Attributes:
-        end: where it is and how stability is lost there; its ``after`` is the energy in the state beside.
+        end: place and kind of the loss of stability; ``after`` is the energy in the state beside.
         turned: the most by which the tangent of a beam, or a body, is turned in that state against the end, rad.
     """
 

@@ -111,12 +111,9 @@ class Profile(Record):
         )
 
 
-def _size_tag(value: object) -> str:
-    return "profile" if isinstance(value, Mapping | Profile) else "number"
-
-
 Size = Annotated[
-    Annotated[PositiveLength, Tag("number")] | Annotated[Profile, Tag("profile")], Discriminator(_size_tag)
+    Annotated[PositiveLength, Tag("number")] | Annotated[Profile, Tag("profile")],
+    Discriminator(lambda value: "profile" if isinstance(value, Mapping | Profile) else "number"),
 ]
 
 

@@ -103,7 +103,19 @@ class BeamContact(Record):
         )
 
 
-class SelfContact(Record):
+class _OneBeam(Record):
+    """Contact of one beam, with the beam's edge if ``thick``."""
+
+    beam: Annotated[Name, Of("beam")]
+    thick: bool = True
+
+    @property
+    def beams(self) -> tuple[str, ...]:
+        """Name of the beam."""
+        return (self.beam,)
+
+
+class SelfContact(_OneBeam):
     """Frictionless contact of a beam with itself, after enough rotation.
 
     A ``thick`` beam touches by the edges, half of the local thickness from the neutral line; another beam as a line.
@@ -111,32 +123,18 @@ class SelfContact(Record):
     """
 
     kind: Literal["beam-self"]
-    beam: Annotated[Name, Of("beam")]
-    thick: bool = True
     paper: ClassVar[None] = None  # the formulation has no form for self-contact
 
-    @property
-    def beams(self) -> tuple[str, ...]:
-        """Name of the beam."""
-        return (self.beam,)
 
-
-class RigidContact(Record):
+class RigidContact(_OneBeam):
     """Fields of all contacts of a beam with a rigid shape, without friction.
 
     The shape is fixed to ``body`` and stated at the initial place, m.  A ``thick`` beam touches by the edge, half of
     the local thickness from the neutral line; another beam as a line.
     """
 
-    beam: Annotated[Name, Of("beam")]
     body: Annotated[Name, Of("body")]
-    thick: bool = True
     paper: PaperRigid | None = None
-
-    @property
-    def beams(self) -> tuple[str, ...]:
-        """Name of the beam."""
-        return (self.beam,)
 
     def rules(self) -> Iterator[Mistake]:
         """Data for ``paper`` of other beams, and shapes without geometry."""

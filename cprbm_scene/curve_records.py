@@ -216,7 +216,7 @@ def _arc_rules(curve: Arc) -> Iterator[Mistake]:
 
 
 def graph_rules(curve: Polynomial) -> Iterator[Mistake]:
-    """Mistakes of a polynomial that leave no graph with a finite slope; each rule needs the earlier ones."""
+    """Mistakes of a polynomial that leave no graph with a finite slope; a rule needs the rules before."""
     (first, last), count = curve.range, len(curve.coefficients)
     most, same = f"at most {HIGHEST_DEGREE + 1} of them", f"a range from {first:g} m to the same {last:g} m"
     yield from broken(

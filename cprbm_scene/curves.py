@@ -158,7 +158,7 @@ class Curve:
             if np.max(np.abs(step), initial=0.0) <= _CLOSE:
                 break
         w.flags.writeable = False
-        return w
+        return np.asarray(w)
 
 
 def straight_line(start: Point, end: Point) -> Curve:

@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from cprbm_scene.curve_records import MEETING
 from cprbm_scene.curves import unit_vector
 from cprbm_scene.mistakes import Mistake, first_broken, written_place
-from cprbm_scene.names import unknown_names
+from cprbm_scene.names import connected, unknown_names
 from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,
@@ -230,7 +230,7 @@ def unsupported(scene: Scene, freedoms: Freedoms | None) -> Iterator[tuple[Mista
     met = {name: {freedoms.owners[str(end.point)] for end in ends} for name, ends in joints.items()}
     met |= {name: {freedoms.owners[point] for point in pin.points} for name, pin in scene.pins.items()}
     for name, body in scene.bodies.items():
-        together, reached = _connected(name, list(met.values())), any(name in bodies for bodies in met.values())
+        together, reached = connected({name}, met.values()), any(name in bodies for bodies in met.values())
         rows = [row for each in together for row in freedoms.guide(each)]
         rows += [freedoms.row(drive) for drive in drives if freedoms.owner(drive) in together]
         if sum(independent(rows)) < FREEDOMS:
@@ -251,14 +251,6 @@ def _acted_on(scene: Scene, names: set[str]) -> bool:
     moved |= {owners.get(getattr(each, "point", "")) for each in acting}
     touching = ({*contact.beams, getattr(contact, "body", contact.beams[0])} for contact in scene.contacts.values())
     return bool(names & moved) or any(parts & names and parts - names for parts in touching)
-
-
-def _connected(body: str, met: Sequence[set[str]]) -> set[str]:
-    """Bodies connected to a ``body`` by beams and pins, including the body."""
-    reached = {body}
-    while more := {other for bodies in met if bodies & reached for other in bodies} - reached:
-        reached |= more
-    return reached
 
 
 def _loose(scene: Scene, freedoms: Freedoms) -> Iterator[Mistake]:

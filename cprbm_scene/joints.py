@@ -8,7 +8,7 @@ from math import atan2, degrees, dist, inf, pi, tau
 import numpy as np
 
 from cprbm_scene.curve_records import MEETING, shape_of
-from cprbm_scene.mistakes import Mistake, broken, written_place
+from cprbm_scene.mistakes import Mistake, broken, first_broken, written_place
 from cprbm_scene.statement import Beam, FreeEnd, PinnedEnd, Scene, Stop, TurningBody, WeldedEnd
 
 TAUT = 1e-6
@@ -116,15 +116,18 @@ def wrong_stops(scene: Scene) -> Iterator[Mistake]:
         if joint is not None and not isinstance(joint, PinnedEnd):
             found = f"the {stop.end} of {stop.beam!r}, whose joint is {joint.joint!r}"
             yield Mistake(f"{key}.end", found, "an end whose joint is 'pin'")
-        elif joint is None or body is None or other is None:
-            continue
-        elif body != other:
-            allowed = f"a point of {body!r}, to which the end is pinned"
-            yield Mistake(f"{key}.towards", f"{stop.towards!r}, a point of {other!r}", allowed)
-        elif scene.place_of(stop.towards) == scene.place_of(joint.point):
-            yield Mistake(f"{key}.towards", f"{stop.towards!r}, which is where the pin is", "a point away from the pin")
-        else:
-            yield from _exceeded_as_drawn(scene, key, stop)
+        elif joint is not None and body is not None and other is not None:
+            mistakes = first_broken(
+                body != other
+                and Mistake(
+                    f"{key}.towards",
+                    f"{stop.towards!r}, a point of {other!r}",
+                    f"a point of {body!r}, to which the end is pinned",
+                ),
+                scene.place_of(stop.towards) == scene.place_of(joint.point)
+                and Mistake(f"{key}.towards", f"{stop.towards!r}, which is where the pin is", "a point away from it"),
+            )
+            yield from list(mistakes) or _exceeded_as_drawn(scene, key, stop)
 
 
 def _exceeded_as_drawn(scene: Scene, key: str, stop: Stop) -> Iterator[Mistake]:

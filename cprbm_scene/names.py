@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 import numpy as np
 
@@ -249,9 +249,9 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
     ends = [end for beam in scene.beams.values() for end in (beam.start, beam.end)]
     supports = [end.point for end in ends if not isinstance(end, FreeEnd) and end.point in fixed]
     supports += [point for pin in scene.pins.values() for point in pin.points if point in fixed]
-    pivots = [body.about for body in scene.bodies.values() if isinstance(body, TurningBody)]
-    slides = [name for name, body in scene.bodies.items() if isinstance(body, SlidingBody)]
-    driven = [drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)]
+    moved = [body.about for body in scene.bodies.values() if isinstance(body, TurningBody)]
+    moved += [drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)]
+    moved += [name for name, body in scene.bodies.items() if isinstance(body, SlidingBody)]
     turned = [drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive)]
     edges = [name for name, each in scene.contacts.items() if isinstance(each, EdgeContact) and _pinned(scene, each)]
     return {
@@ -259,7 +259,7 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
         _OF["rotation"]: list(scene.bodies),
         _OF["force"]: list(scene.contacts),
         _OF["bending_stress"]: list(scene.beams),
-        _OF["reaction"]: list(dict.fromkeys((*supports, *pivots, *driven, *slides))),
+        _OF["reaction"]: list(dict.fromkeys((*supports, *moved))),
         _OF["reaction_moment"]: list(dict.fromkeys((*supports, *turned))),
         _OF["angle"]: list(scene.stops),
         _OF["moment"]: [*scene.stops, *edges],
@@ -267,11 +267,18 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
     }
 
 
+def connected(names: set[str], groups: Collection[set[str]]) -> set[str]:
+    """The ``names`` with all names of the groups that are connected to them by common names."""
+    reached = set(names)
+    while more := {name for group in groups if group & reached for name in group} - reached:
+        reached |= more
+    return reached
+
+
 def _pinned(scene: Scene, contact: EdgeContact) -> bool:
     """True if pins at the same point join the beam and the edge's body; fixed bodies count as the same body."""
     beam, own = scene.beams.get(contact.beam), scene.bodies.get(contact.body)
-    together = {end.point for end in (beam.start, beam.end) if isinstance(end, PinnedEnd)} if beam else set()
-    for _ in scene.pins:
-        together |= {point for pin in scene.pins.values() if together & set(pin.points) for point in pin.points}
+    ends = {end.point for end in (beam.start, beam.end) if isinstance(end, PinnedEnd)} if beam else set[str]()
+    together = connected(ends, [set(pin.points) for pin in scene.pins.values()])
     fixed = [body for body in scene.bodies.values() if body.motion == "fixed"]
     return any(together & set(body.points) for body in (fixed if own in fixed else [own]) if body is not None)

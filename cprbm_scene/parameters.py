@@ -36,6 +36,11 @@ class ExpressionError(ValueError):
     """An expression without a value; the message completes ``found EXPRESSION``."""
 
 
+def _refuse(wrong: object, reason: str) -> None:
+    if wrong:
+        raise ExpressionError(reason)
+
+
 Rule = Callable[[Callable[..., float], Sequence[Value], Units], Value]
 """Value of a function of values, with the file's units for numbers without unit."""
 
@@ -45,8 +50,8 @@ def _numbers(values: Sequence[Value], units: Units) -> tuple[list[float], Unit |
     unit = next((value.unit for value in values if value.unit is not None), None)
     if unit is None:
         return [value.number for value in values], None
-    if any(value.unit is not None and value.unit.dimension != unit.dimension for value in values):
-        raise ExpressionError("different units in one sum or function")
+    different = any(value.unit is not None and value.unit.dimension != unit.dimension for value in values)
+    _refuse(different, "different units in one sum or function")
     return [value.number if value.unit is not None else unit.in_si(value.number, units) for value in values], unit
 
 
@@ -77,15 +82,12 @@ def _product(function: Callable[..., float], values: Sequence[Value], units: Uni
 def _power(function: Callable[..., float], values: Sequence[Value], units: Units) -> Value:
     """Power of a value, with stress as force over the square of length; without an exponent the square root."""
     (number, unit), (exponent, wrong) = values if len(values) > 1 else (values[0], Value(0.5))
-    if wrong is not None:
-        raise ExpressionError("no arithmetic, or an exponent with a unit")
+    _refuse(wrong is not None, "no arithmetic, or an exponent with a unit")
     if unit is not None:
         powers = [power * exponent for power in (*unit.dimension, unit.angle)]
-        if not all(power.is_integer() for power in powers):
-            raise ExpressionError("a root of a unit")
+        _refuse(not all(power.is_integer() for power in powers), "a root of a unit")
         unit = Unit(*map(int, powers))
-    if number < 0.0 and not exponent.is_integer():
-        raise ExpressionError("a power of a negative number")
+    _refuse(number < 0.0 and not exponent.is_integer(), "a power of a negative number")
     return Value(number**exponent, unit)
 
 
@@ -121,8 +123,7 @@ def evaluated(text: str, named: Callable[[str], Value], units: Units) -> Value:
     Raises:
         ExpressionError: the expression is no arithmetic, has no finite value, or combines different units.
     """
-    if len(text) > LONGEST:
-        raise ExpressionError(f"an expression of {len(text)} characters")
+    _refuse(len(text) > LONGEST, f"an expression of {len(text)} characters")
 
     def of(node: ast.expr) -> Value:
         match node:
@@ -140,8 +141,7 @@ def evaluated(text: str, named: Callable[[str], Value], units: Units) -> Value:
             case _:
                 raise ExpressionError(f"{ast.unparse(node)!r}, which is no arithmetic")
         function, rule, count = _RULES[name]
-        if len(nodes) != (count or max(len(nodes), 1)):
-            raise ExpressionError(f"{name} of {len(nodes)} numbers")
+        _refuse(len(nodes) != (count or max(len(nodes), 1)), f"{name} of {len(nodes)} numbers")
         return rule(function, [of(each) for each in nodes], units)
 
     try:
@@ -152,8 +152,7 @@ def evaluated(text: str, named: Callable[[str], Value], units: Units) -> Value:
         value = of(body)
     except ArithmeticError as error:
         raise ExpressionError(f"without a value ({error.args[-1]})") from None
-    if not math.isfinite(value.number):
-        raise ExpressionError("without a finite value")
+    _refuse(not math.isfinite(value.number), "without a finite value")
     return value
 
 
@@ -270,10 +269,10 @@ class _Resolved:
             self._values[name] = None
             self._values[name] = self._computed(name, self._parameters[name])
         value = self._values[name]
-        if value is None:
-            cycle = [*(each for each, value in self._values.items() if value is None), name]
-            raise ExpressionError(f"a cycle: {' -> '.join(cycle)}")
-        return value
+        if value is not None:
+            return value
+        cycle = [*(each for each, value in self._values.items() if value is None), name]
+        raise ExpressionError(f"a cycle: {' -> '.join(cycle)}")
 
     def _computed(self, name: str, given: Parameter) -> Value:
         setting = self._reading.settings.get(name)
@@ -302,8 +301,7 @@ def _unit_of(text: str, key: str) -> tuple[float, Unit]:
     """Size in SI and powers of a unit such as ``mm`` or ``N*mm``; a plain number for an empty text."""
 
     def named(name: str) -> Value:
-        if name not in _NAMED:
-            raise ExpressionError(f"{name!r}, which is no unit")
+        _refuse(name not in _NAMED, f"{name!r}, which is no unit")
         return _NAMED[name]
 
     try:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from bisect import bisect, insort
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from math import isclose
 from typing import Annotated, Any, Literal
 
@@ -131,20 +131,17 @@ class Stage(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """Repeated stations, indistinguishable in an answer, and shown values without a station."""
-        before: list[float] = []  # ascending
+        stations, together = self.stations, self.together
+        ascending = sorted(range(len(stations)), key=stations.__getitem__)
+        again = {max(i, j) for i, j in pairwise(ascending) if isclose(stations[i], stations[j], rel_tol=1e-9)}
         allowed = "each value once in a stage; a further stage may go back to it"
-        for j, value in enumerate(self.stations):
-            insort(before, value)
-            place = bisect(before, value)
-            beside = [*before[max(0, place - 2) : place - 1], *before[place : place + 1]]
-            again = any(isclose(value, other, rel_tol=1e-9) for other in beside)
-            yield from broken(again and Mistake(f"stations[{j}]", f"{value:g} again", allowed))
-        first, once = self.together[:1] in ((), (self.steps,)), len(set(self.together)) == len(self.together)
-        stations = set(self.stations)
-        yield from broken(
-            not (first and once) and Mistake("steps", f"{list(self.together)}", "different loads, each once"),
+        different = together[:1] in ((), (self.steps,)) and len(set(together)) == len(together)
+        known = set(stations)
+        return broken(
+            *(Mistake(f"stations[{j}]", f"{stations[j]:g} again", allowed) for j in sorted(again)),
+            not different and Mistake("steps", f"{list(together)}", "different loads, each once"),
             *(
-                value not in stations and Mistake(f"shown[{j}]", f"{value:g}", "one of the stage's stations")
+                value not in known and Mistake(f"shown[{j}]", f"{value:g}", "one of the stage's stations")
                 for j, value in enumerate(self.shown)
             ),
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from codecs import BOM_UTF8
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from itertools import chain
@@ -31,16 +31,7 @@ from cprbm_scene.names import (
 from cprbm_scene.offset import OffsetQuestion
 from cprbm_scene.parameters import register
 from cprbm_scene.statement import Origin, Scene
-from cprbm_scene.units import Reading, Record, Units
-
-
-def broken_rules(root: Record) -> Iterator[Mistake]:
-    """Mistakes within the records of a scene or another question."""
-    for key, record in records(root):
-        for mistake in record.rules():
-            below = mistake.key if not mistake.key or not key else f".{mistake.key}"
-            yield replace(mistake, key=f"{key}{below}")
-
+from cprbm_scene.units import Reading, Units
 
 _CHECKS = (
     repeated_names,
@@ -64,8 +55,13 @@ def mistakes_in(question: Scene | OffsetQuestion) -> list[Mistake]:
 
     A check is silent on parts with other mistakes: a slip has a single message.
     """
+    rules = (
+        replace(mistake, key=f"{key}.{mistake.key}".strip("."))
+        for key, record in records(question)
+        for mistake in record.rules()
+    )
     between = (check(question) for check in _CHECKS) if isinstance(question, Scene) else ()
-    return [replace(mistake, file=question.file) for mistake in first_of(chain(broken_rules(question), *between))]
+    return [replace(mistake, file=question.file) for mistake in first_of(chain(rules, *between))]
 
 
 Question = Scene | OffsetQuestion

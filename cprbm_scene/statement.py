@@ -307,7 +307,7 @@ class Scene(Record):
 
 
 def _place(contact: Contact) -> Point:
-    """A place of a rigid shape: its center, or a point of its edge, m."""
+    """Place of a rigid shape: the center, or a point of the edge, m."""
     match contact:
         case CircleContact(center=place) | EllipseContact(center=place) | HalfPlaneContact(point=place):
             return place

@@ -12,8 +12,8 @@ u              size of the file's unit over the SI unit: 1/1000 of mm, π/180 of
 A number x of a file is x·u_lengthᵃ·u_forceᵇ·u_angleᶜ·u_stressᵈ in SI, computed from the decimal digits of x and rounded
 once: 9.7 mm is 0.0097 m.  Only a file has units; a :class:`~cprbm_scene.statement.Scene` and every answer are in SI.
 
-A field states the unit as metadata, ``Annotated[float, Measured(Unit(length=1))]``.  The metadata validates the file's number and
-then converts the number by the :class:`Reading` in pydantic's context.  Without a context numbers are in SI.
+A field states the unit as metadata, ``Annotated[float, Measured(Unit(length=1))]``.  The metadata validates the file's
+number and then converts the number by the :class:`Reading` in pydantic's context.  Without a context numbers are in SI.
 """
 
 from __future__ import annotations
@@ -58,11 +58,7 @@ Title = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 """Text of one line without control characters."""
 
 
-def _freeze(value: Mapping[str, T]) -> Mapping[str, T]:
-    return frozendict(value)
-
-
-Named = Annotated[Mapping[Name, T], AfterValidator(_freeze)]
+Named = Annotated[Mapping[Name, T], AfterValidator(frozendict)]
 
 
 @dataclass(frozen=True, slots=True)

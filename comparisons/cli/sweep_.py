@@ -45,6 +45,7 @@ def _shard(ctx: click.Context, param: click.Parameter, value: str) -> tuple[int,
               help="Solve the points I, I + N, ... only.")  # fmt: skip
 @click.option("--merge", multiple=True, type=click.Path(exists=True, file_okay=False, path_type=Path), metavar="DIR",
               help="Take over the outcomes of a folder, such as of a shard; may be repeated.")  # fmt: skip
+@click.option("--netcdf", is_flag=True, help="Write sweep.nc too, through xarray.")
 @solved_often
 @click.pass_obj
 def command(
@@ -62,6 +63,7 @@ def command(
     place: str,
     shard: tuple[int, int],
     merge: tuple[Path, ...],
+    netcdf: bool,  # noqa: FBT001 - click passes a keyword
     at_most: float,
     quiet: bool,  # noqa: FBT001 - click passes a keyword
     out: Path | None,
@@ -75,6 +77,7 @@ def command(
     from comparisons.choices import Choices
     from comparisons.cli import output
     from comparisons.pairing import solvers_of
+    from comparisons.sweeps.netcdf import write_netcdf
     from comparisons.sweeps.page import write_page
     from comparisons.sweeps.points import chosen_for_check
     from comparisons.sweeps.running import Sweep, known_outcomes, run, tasks_of
@@ -92,6 +95,8 @@ def command(
         sweep = run(sweep, workers, choices, solvers_of(planted), at_most, out, moved)
     write_tables(out, sweep)
     write_page(out, sweep)
+    if netcdf:
+        write_netcdf(out / "sweep.nc", sweep)
     click.echo(f"{scene.name}: {sweep.headline}.")
     if not quiet:
         for task, outcome in sweep.points():

@@ -61,6 +61,7 @@ LIBRARIES = (
     Library("jinja2", "jinja2", "pages", ">=3.1"),
     Library("matplotlib", "matplotlib.figure", "figures", ">=3.9"),
     Library("casadi", "casadi", "IPOPT, an optimiser that 'bench' compares with in a checkout", ">=3.6", "peers"),
+    Library("xarray", "xarray", "sweeps as NetCDF", ">=2024.7", "netcdf"),
     Library("distributed", "distributed", "sweeps on many machines", ">=2024.8", "cluster"),
     Library(
         "threadpoolctl",

@@ -14,7 +14,7 @@ from comparisons.choices import Choices
 from comparisons.executor import TimeLimitError, WorkerDiedError, call_limited
 from comparisons.pairing import Solvers, paired
 from comparisons.present.csv_table import comparison_records, numbers
-from comparisons.stages import begins_at
+from comparisons.verdict.station_events import passed_by
 from cprbm_scene import Answer, Scene, SceneError
 
 Asked = Literal["cprbm", "fea", "compare"]
@@ -155,13 +155,9 @@ def _iterations(answers: Iterable[Answer]) -> int:
 
 def _passed(scene: Scene, answer: Answer) -> dict[tuple[str, float], int]:
     """Number of critical points that the answer passed to a state beside, by stage and station."""
-    names, counts = [stage.name for stage in scene.stages], {}
-    for number, stage in enumerate(scene.stages):
-        earlier = sum(names.index(each.end.stage) < number for each in answer.gone_over)
-        here = [each.end.value for each in answer.gone_over if each.end.stage == stage.name]
-        low = high = begins_at(scene, stage)
-        for station in answer.stations:
-            if station.stage == stage.name:
-                low, high = min(low, station.value), max(high, station.value)
-                counts[stage.name, station.value] = earlier + sum(low <= value <= high for value in here)
+    counts, earlier = {}, 0
+    for stage in scene.stages:
+        for place, value in enumerate(stage.stations):
+            counts[stage.name, value] = earlier + passed_by(scene, stage, answer, place)
+        earlier += sum(each.end.stage == stage.name for each in answer.gone_over)
     return counts

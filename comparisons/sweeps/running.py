@@ -6,7 +6,7 @@ import logging
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from comparisons.choices import Choices, check
@@ -29,13 +29,21 @@ _AGAIN = ("CRASHED", "TIME_LIMIT")
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """A point of a sweep: its number from 1, values, scene, solver and key."""
+    """A point of a sweep: its number from 1, values, scene, solver and key, and the key of a comparison."""
 
     number: int
     point: Point
     scene: Scene
     asked: Asked
     key: str
+    compared: str
+
+    def known(self, outcomes: Mapping[str, Outcome]) -> Task:
+        """The task, or the comparison of the point where known ``outcomes`` have the comparison alone."""
+        found = outcomes.get(self.compared)
+        if self.asked != "cprbm" or self.key in outcomes or found is None or not found.completed:
+            return self
+        return replace(self, asked="compare", key=self.compared)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,10 +117,9 @@ def tasks_of(
             refused.append((point, error.mistakes[0]))
             continue
         solver: Asked = "compare" if place in checked else asked
-        names = ("cprbm", "fea") if solver == "compare" else (solver,)
-        parts = (repr(relevant(name, choices)) for name in names)
-        key = digest("sweep", solver, own.model_dump_json(exclude={"file"}), *parts)
-        found.append(Task(place + 1, point, own, solver, key))
+        text = own.model_dump_json(exclude={"file"})
+        keys = [_key(each, text, choices) for each in (solver, "compare")]
+        found.append(Task(place + 1, point, own, solver, *keys))
     if refused:
         point, mistake = refused[0]
         values = ", ".join(f"{name} = {value:g}" for name, value in point.items())
@@ -120,6 +127,11 @@ def tasks_of(
         text = f"{count}, the first at {values} (SI): {mistake.found}"
         raise SceneError([Mistake(mistake.key, text, mistake.allowed, mistake.file)])
     return tuple(found)
+
+
+def _key(asked: Asked, scene: str, choices: Choices) -> str:
+    names = ("cprbm", "fea") if asked == "compare" else (asked,)
+    return digest("sweep", asked, scene, *(repr(relevant(name, choices)) for name in names))
 
 
 def known_outcomes(folders: Sequence[Path]) -> dict[str, Outcome]:
@@ -166,7 +178,8 @@ def run(
     journal = None if out is None else out / JOURNAL
     if journal is not None and journal.is_symlink():  # outcomes belong into the folder
         journal.unlink()
-    wanted = {task.key: task for task in sweep.tasks}
+    tasks = tuple(task.known(sweep.outcomes) for task in sweep.tasks)
+    wanted = {task.key: task for task in tasks}
     known = {key: sweep.outcomes[key] for key in wanted if key in sweep.outcomes}
     outcomes = {key: found for key, found in known.items() if not _again(found, limit)}
     moved(len(outcomes))
@@ -176,7 +189,7 @@ def run(
         if journal is not None:
             append_line(journal, outcome.line(task.key))
         moved(len(outcomes))
-    return Sweep(sweep.scene, sweep.axes, sweep.tasks, outcomes)
+    return replace(sweep, tasks=tasks, outcomes=outcomes)
 
 
 def _solved(

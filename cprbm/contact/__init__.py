@@ -24,7 +24,7 @@ from cprbm.contact.candidates import (
 from cprbm.contact.closest import curve_point, lost_at
 from cprbm.contact.contacts import TOUCHING, Contacts, open_contacts, touching_as_drawn
 from cprbm.contact.curve import BEND, CORNER, STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
-from cprbm.contact.edges import corner_sides, left_corner
+from cprbm.contact.edges import corner_sides, is_left, left_corner
 from cprbm.contact.gap import (
     COUPLING,
     GRADIENT,
@@ -91,6 +91,7 @@ __all__ = [
     "fixed_places",
     "gap_frame",
     "gap_row",
+    "is_left",
     "joined",
     "left_corner",
     "local_indices",

@@ -20,6 +20,7 @@ class Contacts:
     """Possible places of contact, marks of the closed places, sides of the pairs and of corners' curves, counters.
 
     ``given_up`` holds pairs and pieces at which a moving place failed; the pairs ``kept_open`` have no places.
+    ``apart`` holds the open places that these pairs had before, for their sides.
     """
 
     places: Places
@@ -29,6 +30,7 @@ class Contacts:
     counters: Ints
     given_up: frozenset[tuple[int, int]] = frozenset()
     kept_open: frozenset[int] = frozenset()
+    apart: Places | None = None
 
     def pressing(self, pair: int) -> Flags:
         """Closed places of a pair."""

@@ -8,8 +8,8 @@ h        length of a beam's link
 =======  ====================================================================================
 
 The solid behind an open edge ends where the edge ends.  From there the boundary goes back at right angles, until both
-sides meet.  A side that would come to the edge from behind goes on straight beyond the edge's end instead: the solid
-lies behind both end pieces.
+sides meet.  Where a side comes to the edge from behind instead, the side ends, and the other end has no side: the
+solid lies between the edge and the side.
 
 At a convex corner the boundary turns away from the beam.  The corner is a place of contact: a point of the boundary
 before the beam's curve.  The boundary cannot pass the beam between two joints there.  A row of corners with less than h
@@ -21,6 +21,7 @@ is a curve of its own, on which a point of contact moves.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -61,13 +62,12 @@ def sides_behind(points: Array, side: int, reach: float) -> tuple[Array, Array]:
     ends, ways = (points[0], points[-1]), [side * np.array([-first[1], first[0]]), side * np.array([last[1], -last[0]])]
     lengths = [min(_meetings(end, way, points), default=np.inf) for end, way in zip(ends, ways, strict=True)]
     meet = _distances(ends, ways)
-    if not np.all((meet > BEHIND) & (meet < lengths)):
-        ways = [way if length > reach else on for way, length, on in zip(ways, lengths, (first, last), strict=True)]
-        meet = _distances(ends, ways)
-    if np.all((meet > BEHIND) & (meet < reach)):
-        corner = (ends[0] + meet[0] * ways[0])[None]
-        return corner, corner
-    return (ends[0] + reach * ways[0])[None], (ends[1] + reach * ways[1])[None]
+    if np.all((meet > BEHIND) & (meet < np.minimum(lengths, reach))):
+        lengths = list(meet)
+    elif min(lengths) < reach:
+        lengths = [length if length < reach else 0.0 for length in lengths]
+    begin, end = (end + min(length, reach) * way for end, length, way in zip(ends, lengths, ways, strict=True))
+    return begin[None][: int(lengths[0] > 0.0)], end[None][: int(lengths[1] > 0.0)]
 
 
 def _distances(ends: tuple[Array, Array], ways: list[Array]) -> Array:
@@ -81,7 +81,7 @@ def _distances(ends: tuple[Array, Array], ways: list[Array]) -> Array:
 def _meetings(start: Array, way: Array, points: Array) -> list[float]:
     """Distances along a ``way`` at which the way meets the pieces between points."""
     found = []
-    for begin, end in zip(points[:-1], points[1:], strict=True):
+    for begin, end in pairwise(points):
         matrix = np.column_stack([way, begin - end])
         if abs(np.linalg.det(matrix)) > BEHIND * np.hypot(*(end - begin)):
             along, share = np.linalg.solve(matrix, begin - start)

@@ -50,7 +50,8 @@ BESIDE = 1.5
 
 def corner_of(geometry: Geometry, places: Places, k: int) -> Corner:
     """The corner of a place on a rigid curve."""
-    return next(each for each in geometry.pairs[places.pair[k]].corners if each.curve == places.curve[k])
+    corners: tuple[Corner, ...] = geometry.pairs[int(places.pair[k])].corners
+    return next(each for each in corners if each.curve == places.curve[k])
 
 
 def corner_sides(geometry: Geometry, z: Array, known: Array, counters: Ints) -> Array:
@@ -80,8 +81,15 @@ def corner_sides(geometry: Geometry, z: Array, known: Array, counters: Ints) -> 
     return sides
 
 
+def is_left(geometry: Geometry, z: Array, places: Places, k: int) -> bool:
+    """True if the distance falls along a face beside the corner of a place, or the place lies on a bend."""
+    frame = gap_frame(z, geometry.arrays, places, k, np.empty((4, 2, STENCIL)))
+    a, b = (frame.nx * x + frame.ny * y for x, y in _faces(geometry, z, places, k))
+    return bool(max(a, -b) > SLIDING or not geometry.arrays.is_point[places.curve[k]])
+
+
 def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Array, counters: Ints) -> Places | None:
-    """The place of the beam to which the point of contact at a corner or on a bend goes; None where the point stays.
+    """The place of the beam to which a point of contact that has left a corner goes; None without such a place.
 
     Args:
         geometry, z, places: a state in equilibrium.
@@ -93,8 +101,6 @@ def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Arr
     frame = gap_frame(z, arrays, places, k, np.empty((4, 2, STENCIL)))
     a, b = (frame.nx * x + frame.ny * y for x, y in _faces(geometry, z, places, k))
     bends, first = not arrays.is_point[places.curve[k]], arrays.first[pair.second]
-    if places.at_point[k] or not (bends or max(a, -b) > SLIDING):
-        return None
     trial = taken(places, np.array([k]))
     trial.curve[:], trial.piece[:], trial.xi[:] = pair.first, places.foot[k], places.eta[k]
     trial.other[:], trial.side[:] = pair.second, sides[places.pair[k], 0]

@@ -38,8 +38,8 @@ At an end of B, a convex corner and a circle the foot is a point: N = r/|r|, λ_
     λ_ξu = N·dC_A' + q_ξ (s_qq q + s_qe e),
 
 s the coefficients of λ_uu.  A moving place has λ_ξ = 0.  Newton's method eliminates the change of the place:
-dξ = −(λ_ξ + λ_ξu + λ_ξF dF)/λ_ξξ.  At a corner C_A' = 0 and all derivatives by ξ vanish.  The equilibrium takes the :class:`Row` below and vectors over the nodes; λ_uu
-less λ_ξu²/λ_ξξ is a form of rank three in q, e and λ_ξu.
+dξ = −(λ_ξ + λ_ξu + λ_ξF dF)/λ_ξξ.  At a corner C_A' = 0 and all derivatives by ξ vanish.  The equilibrium takes the
+:class:`Row` below and vectors over the nodes; λ_uu less λ_ξu²/λ_ξξ is a form of rank three in q, e and λ_ξu.
 """
 
 from __future__ import annotations

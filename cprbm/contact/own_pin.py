@@ -6,9 +6,10 @@ symbol   meaning
 β        opening: angle from an edge's direction at the pin to the direction of the beam
 =======  ====================================================================================
 
-At the pin the beam has no gap: the pin lies on the edge, or half the beam's thickness above.  The edge limits the angle of the beam and holds the beam by a moment, like a stop.
-With the edge's direction away from the pin and the beam on the left, β ≥ 0.  Where the edge runs on behind the pin, the
-angle from the beam to the rest of the edge is limited in the same way.
+At the pin the beam has no gap: the pin lies on the edge, or half the beam's thickness above.  The edge limits the angle
+of the beam and holds the beam by a moment, like a stop.  With the edge's direction away from the pin and the beam on
+the left, β ≥ 0.  Where the edge runs on behind the pin, the angle from the beam to the rest of the edge is limited in
+the same way.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ REACH = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Two curves of the contact ``name`` by number, the ``side`` of the first over the second, corners of the second."""
+    """Two curves of the contact ``name`` by number, ``side`` of the first over the second, corners of the second."""
 
     name: str
     first: int

@@ -15,6 +15,7 @@ import numpy as np
 from cprbm.chain import apart_ends, stop_angle
 from cprbm.continuation.closing import drawn_names, pressing_names
 from cprbm.continuation.driver import Driver, StepError
+from cprbm.continuation.landing import landed
 from cprbm.continuation.path import Way
 from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.rank import repeated_rows
@@ -45,6 +46,7 @@ def assembled(system: System, settings: Settings) -> Driver:
             # rounded coordinates of a beam drawn beyond an edge at the own pin: the beam turns to the edge
             closed = replace(first.state, driven=first.state.driven | passed)
             first = equilibrium(system, closed, settings.iterations)
+        first = landed(system, first, settings.iterations)
     except NotConvergedError as failure:
         raise StepError(Ending.STEP_TOO_SMALL, f"no equilibrium as drawn: {failure}") from failure
     driver = Driver(system, settings, first, np.zeros(len(loose), dtype=bool), drawn=drawn_names(system, state))

@@ -31,6 +31,10 @@ CLOSED = 1e-11
 """Overlap, over the longest beam, at which a contact has closed: ten times the active set's round-off."""
 
 
+LET_GO = 0.1
+"""Force of an opening contact, over the force at the begin of the step: a larger force jumps to zero."""
+
+
 class ContactChange(NamedTuple):
     """Pairs that close or open at a fraction ``share`` of a step, the pair ``first`` exactly there."""
 
@@ -78,13 +82,14 @@ def kept_open(state: State, pairs: frozenset[int]) -> State:
         return state
     kept = ~np.isin(contacts.places.pair, list(pairs))
     places, closed = taken(contacts.places, kept), contacts.closed[kept]
-    return replace(state, contacts=replace(contacts, places=places, closed=closed, kept_open=pairs))
+    apart = taken(contacts.places, ~kept & ~contacts.closed) if pairs else None
+    return replace(state, contacts=replace(contacts, places=places, closed=closed, kept_open=pairs, apart=apart))
 
 
 def may_close(state: State) -> State:
     """The state with pairs that are free to close again."""
     contacts = state.contacts
-    return state if contacts is None else replace(state, contacts=replace(contacts, kept_open=frozenset()))
+    return state if contacts is None else replace(state, contacts=replace(contacts, kept_open=frozenset(), apart=None))
 
 
 def pair_name(system: System, pair: int) -> str:
@@ -177,15 +182,23 @@ def _closing(
 
 
 def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[ContactChange]:
-    """The opening of a pair; empty if the force does not change its sign."""
+    """The opening of a pair; empty if the force does not change its sign.
+
+    Raises:
+        NotConvergedError: a state was not found, or the force jumps to zero.
+    """
 
     def force(share: float) -> float:
         solved = solve(share, frozenset())
         return Pressed(pair).force(solved) if pair in pressing(solved) else -_gap(solved, pair)
 
-    if not force(0.0) > 0.0 > force(1.0):
+    before = force(0.0)
+    if not before > 0.0 > force(1.0):
         return []
-    return [ContactChange(located(force), frozenset([pair]), closes=False, first=pair)]
+    share = located(force)
+    if force(share) > LET_GO * before:
+        raise NotConvergedError("a contact lets go under force")
+    return [ContactChange(share, frozenset([pair]), closes=False, first=pair)]
 
 
 def _gap(solved: Solved, pair: int) -> float:

@@ -22,6 +22,7 @@ from cprbm.contact import (
     Geometry,
     Places,
     corner_sides,
+    is_left,
     joined,
     left_corner,
     may_move,
@@ -71,7 +72,9 @@ def touched_equilibrium(
         NotConvergedError: no equilibrium was found, the places do not settle, or a beam passed through itself.
     """
     corners = corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters)
-    contacts = replace(contacts, given_up=frozenset(), corner_sides=corners)
+    kept = contacts.closed | contacts.places.moves
+    places, closed = taken(contacts.places, kept), contacts.closed[kept]
+    contacts = replace(contacts, places=places, closed=closed, given_up=frozenset(), corner_sides=corners)
     contacts = with_fixed_places(geometry, start.z, contacts)
     joints_tried, before, old = False, start.z, _of_all_pairs(geometry, start.z, contacts)
     for _ in range(ROUNDS):
@@ -129,6 +132,9 @@ def _revised(geometry: Geometry, solved: Touched) -> Contacts | None:
         kept = taken(places, np.arange(len(arcs)))
         kept.force[light] = 0.0
         return replace(contacts, places=kept, closed=contacts.closed & ~light)
+    ends = _at_ends(geometry, solved)
+    if ends is not None:
+        return ends
     created, replaced = _leaving_corners(geometry, solved)
     if not len(created.pair):
         created, replaced = _points(geometry, solved)
@@ -136,6 +142,19 @@ def _revised(geometry: Geometry, solved: Touched) -> Contacts | None:
         return None
     closed = np.concatenate([contacts.closed[~replaced], np.ones(len(created.pair), dtype=bool)])
     return replace(contacts, places=joined(taken(places, ~replaced), created), closed=closed)
+
+
+def _at_ends(geometry: Geometry, solved: Touched) -> Contacts | None:
+    """Contacts with the ends of beams in the place of corners that have left the round ends; None without any."""
+    contacts, places = solved.contacts, solved.contacts.places
+    kept, closed = taken(places, np.arange(len(contacts.closed))), contacts.closed.copy()
+    arcs, moved = arc_of(geometry, places), False
+    for k in np.flatnonzero(contacts.closed & places.at_point & on_edge(geometry.arrays, places)).tolist():
+        if is_left(geometry, solved.state.z, places, k):
+            mine = ~places.moves & (places.pair == places.pair[k]) & (places.curve == places.other[k])
+            at = np.flatnonzero(mine & (arcs == arcs[k]))
+            closed[k], closed[at], kept.force[at], moved = False, True, places.force[k], moved or len(at) > 0
+    return replace(contacts, places=kept, closed=closed) if moved else None
 
 
 def _leaving_corners(geometry: Geometry, solved: Touched) -> tuple[Places, Flags]:
@@ -147,13 +166,14 @@ def _leaving_corners(geometry: Geometry, solved: Touched) -> tuple[Places, Flags
     replaced = np.zeros(len(contacts.closed), dtype=bool)
     created = taken(places, replaced)
     arcs = arc_of(geometry, places)
-    for k in np.flatnonzero(contacts.closed & on_edge(geometry.arrays, places)).tolist():
-        trial = left_corner(geometry, z, places, k, contacts.sides, contacts.counters)
-        if trial is None:
+    for k in np.flatnonzero(contacts.closed & ~places.at_point & on_edge(geometry.arrays, places)).tolist():
+        if not is_left(geometry, z, places, k):
             continue
+        trial = left_corner(geometry, z, places, k, contacts.sides, contacts.counters)
         mine = contacts.closed & (places.pair == places.pair[k]) & (np.arange(len(arcs)) != k)
-        apart = np.abs(arcs[mine] - arc_of(geometry, trial))
-        if np.all(apart > ISOLATED * geometry.arrays.span[trial.piece]):
+        if trial is not None and np.all(
+            np.abs(arcs[mine] - arc_of(geometry, trial)) > ISOLATED * geometry.arrays.span[trial.piece]
+        ):
             replaced[k], created = True, joined(created, trial)
     return created, replaced
 

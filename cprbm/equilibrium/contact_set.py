@@ -23,6 +23,7 @@ from cprbm.contact import (
     near_pairs,
     on_edge,
     separations,
+    settle,
     settle_near,
     sweeps_any_circle,
     taken,
@@ -52,6 +53,10 @@ REACH = 0.1
 """Distance of two boxes, over the longest beam, up to which a pair has places."""
 
 
+BEYOND = 0.1
+"""Share of the half thicknesses, or of a piece for lines, by which a place is on the other side of a beam."""
+
+
 @dataclass(frozen=True, eq=False)
 class Touched:
     """An equilibrium with contacts: state, contacts, factors, gaps and curvatures of the places, iterations."""
@@ -67,7 +72,7 @@ class Touched:
 def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Contacts:
     """Contacts with fixed places at the nearest feet; known places keep force and state, moving places stay.
 
-    A place of a beam in self-contact has the present side.
+    A new place of a beam in self-contact has the present side, and a new place beyond the end of another beam too.
     """
     old = contacts.places
     near = near_pairs(z, geometry.arrays, geometry.columns, np.full(len(geometry.pairs), REACH), contacts.counters)
@@ -77,17 +82,48 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     moving = old.moves & ~on_edge(geometry.arrays, old)
     find_bends(z, geometry.arrays, fixed, ROUNDS)
     known = {_identity(old, k): k for k in np.flatnonzero(~moving).tolist()}
+    apart = {} if contacts.apart is None else _sides_of(contacts.apart)
     closed, corner = np.zeros(len(fixed.pair), dtype=bool), on_edge(geometry.arrays, fixed)
+    between = ~geometry.ends.rigid[fixed.curve] & ~geometry.ends.rigid[fixed.other] & (fixed.curve != fixed.other)
+    choose_sides(z, geometry.arrays, fixed)
     for k in range(len(closed)):
         before = known.get(_identity(fixed, k))
-        if before is not None and contacts.closed[before]:
+        if before is None:
+            if between[k] and _identity(fixed, k) in apart:
+                fixed.side[k], between[k] = apart[_identity(fixed, k)], False
+            continue
+        if contacts.closed[before]:
             closed[k], fixed.force[k] = True, old.force[before]
             fixed.piece[k], fixed.xi[k] = old.piece[before], old.xi[before]
-            fixed.foot[k], fixed.eta[k], fixed.side[k] = old.foot[before], old.eta[before], old.side[before]
-    choose_sides(z, geometry.arrays, fixed)
+            fixed.foot[k], fixed.eta[k] = old.foot[before], old.eta[before]
+        if contacts.closed[before] or between[k]:
+            fixed.side[k], between[k] = old.side[before], False
+    _turn_sides(geometry, z, fixed, between, contacts.counters)
     fixed.side[corner] = contacts.corner_sides[fixed.curve[corner]]
     both = joined(fixed, taken(old, moving))
     return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[moving]]))
+
+
+def _sides_of(places: Places) -> dict[tuple[int, int, int, float], float]:
+    """Sides by place."""
+    return {_identity(places, k): float(places.side[k]) for k in range(len(places.pair))}
+
+
+def _turn_sides(geometry: Geometry, z: Array, places: Places, which: Flags, counters: Ints) -> None:
+    """Turn the sides of places beyond another beam: there they have come round an end, and not through the beam.
+
+    Beams that overlap by less than ``BEYOND`` of their half thicknesses, or lines of a piece, are in contact.  A place
+    before an end has no side until it is seen beside the beam.
+    """
+    arrays, mine = geometry.arrays, np.flatnonzero(which)
+    trial, gaps = taken(places, mine), np.empty(len(mine))
+    settle(z, arrays, trial, gaps, np.empty(len(mine)), counters, 0)
+    thickness = arrays.thickness[trial.piece] + trial.xi * arrays.thickening[trial.piece]
+    thickness += arrays.thickness[trial.foot] + trial.eta * arrays.thickening[trial.foot]
+    depth = BEYOND * np.where(thickness > 0.0, thickness, arrays.span[trial.piece])
+    turned = mine[~trial.at_point & (gaps + thickness < -depth)]
+    places.side[turned] *= -1.0
+    places.side[mine[trial.at_point]] = 0.0
 
 
 def passed_through(geometry: Geometry, before: Array, old: Places, after: Array, new: Places, counters: Ints) -> bool:
@@ -99,7 +135,8 @@ def passed_through(geometry: Geometry, before: Array, old: Places, after: Array,
         return True
     first, second = separations(before, geometry.arrays, old), separations(after, geometry.arrays, new)
     number = {_identity(new, k): k for k in range(len(new.pair)) if not new.moves[k]}
-    for k in np.flatnonzero((old.curve == old.other) & ~old.moves & (np.hypot(*first.T) < REACH)).tolist():
+    unsigned = (old.curve == old.other) | (old.side == 0.0)
+    for k in np.flatnonzero(unsigned & ~old.moves & (np.hypot(*first.T) < REACH)).tolist():
         at = number.get(_identity(old, k))
         if at is not None and first[k] @ second[at] < 0.0:
             return True

@@ -137,105 +137,112 @@ def write_fitted_gaps(z: Array, b: Boundary, gaps: Array) -> None:  # pragma: no
 
 
 @compiled
-def slopes_of_fit(b: Boundary, fit: Fit) -> tuple[Array, Array, Array]:  # pragma: no cover
-    """P, P′, P″ at the points (n, 3), ρ (n,) and K (degree + 1, 2 n)."""
-    n, size = b.points.size, b.degree + 1
-    P, rest, K = np.empty((n, 3)), np.empty(n), np.zeros((size, 2 * n))
+def derivatives_of_fit(b: Boundary, fit: Fit) -> Array:  # pragma: no cover
+    """K (degree + 1, 2 n)."""
+    n = b.points.size
+    load = np.zeros((b.degree + 1, 2 * n))
     for i in range(n):
-        P[i] = fit.V[i] @ fit.q
-        rest[i] = P[i, 0] - fit.points[1, i]
-        for r in range(size):
-            for s in range(size):
-                K[r, i] -= fit.inverse[r, s] * (fit.V[i, 1, s] * rest[i] + fit.V[i, 0, s] * P[i, 1])
-                K[r, n + i] += fit.inverse[r, s] * fit.V[i, 0, s]
-    return P, rest, K
+        P = fit.V[i] @ fit.q
+        load[:, i] = -fit.V[i, 1] * (P[0] - fit.points[1, i]) - fit.V[i, 0] * P[1]
+        load[:, n + i] = fit.V[i, 0]
+    return fit.inverse @ load
+
+
+class Local(NamedTuple):
+    """Columns by local coordinates: a (k), o (k), A (n), B (n), τ (n).
+
+    ``vectors`` (columns, 2 k + 3 n), ``diagonal``, ``beside`` (columns,); ``numbers`` of columns and negative squares.
+    """
+
+    vectors: Array
+    diagonal: Array
+    beside: Array
+    numbers: Ints
 
 
 @compiled
-def _add(
-    entries: tuple[Ints, Ints, Array], used: int, column: int, index: int, value: float
-) -> int:  # pragma: no cover
-    """Append an entry; the number of all entries."""
-    entries[0][used], entries[1][used], entries[2][used] = column, index, value
-    return used + 1
+def _new_square(out: Local, square: float) -> Array:  # pragma: no cover
+    """Vector of a new column for square·v²."""
+    at = out.numbers[0]
+    out.diagonal[at] = -1.0 / square
+    out.numbers[0] += 1
+    out.numbers[1] += square > 0.0
+    vector: Array = out.vectors[at]
+    return vector
 
 
 @compiled
-def _add_point(
-    entries: tuple[Ints, Ints, Array], used: int, column: int, b: Boundary, fit: Fit, i: int, A: float, B: float
-) -> int:  # pragma: no cover
-    """Append the entries of A dA_i + B dB_i."""
-    turn = 0.5 * (A * fit.turns[0, i] + B * fit.turns[1, i])
-    used = _add(entries, used, column, b.points[i] + b.along, A)
-    used = _add(entries, used, column, b.points[i] + 1 - b.along, B)
-    used = _add(entries, used, column, b.angles[i], turn)
-    return _add(entries, used, column, b.angles[i + 1], turn)
+def _add_curvature(b: Boundary, fit: Fit, out: Local, K: Array, w: Array, basis: Array) -> None:  # pragma: no cover
+    """Append the columns of the second derivative; ``basis`` (k, 3, degree + 1) are the polynomials at the a_j."""
+    n, k, mu, slope = b.points.size, w.size, np.zeros(b.degree + 1), np.zeros(K.shape[1])
+    for c in range(k):
+        slope += w[c] * (basis[c, 0] @ K)
+        mu -= w[c] * (fit.inverse @ basis[c, 0])
+        square = w[c] * (basis[c, 2] @ fit.q)
+        if square != 0.0:
+            _new_square(out, square)[c] = 1.0
+    U = np.empty((n, 3))
+    for i in range(n):
+        P, U[i] = fit.V[i] @ fit.q, fit.V[i] @ mu
+        half, cross = 0.5 * (U[i, 2] * (P[0] - fit.points[1, i]) + U[i, 0] * P[2]) + U[i, 1] * P[1], -U[i, 1]
+        lean, size = 0.5 * atan2(cross, half), hypot(half, cross)
+        for value, A, B in ((half + size, cos(lean), sin(lean)), (half - size, -sin(lean), cos(lean))):
+            if abs(value) > REAL * size:
+                vector = _new_square(out, value)
+                vector[2 * k + i], vector[2 * k + n + i] = A, B
+        turn = -slope[i] * fit.offsets[0, i] - slope[n + i] * fit.offsets[1, i]
+        if turn != 0.0:
+            _new_square(out, turn)[2 * k + 2 * n + i] = 1.0
+    for r in range(b.degree + 1):
+        at = out.numbers[0]
+        out.vectors[at, :k] = w * basis[:, 1, r]
+        out.vectors[at, 2 * k : 2 * k + n] = U[:, 1] * fit.V[:, 0, r] + U[:, 0] * fit.V[:, 1, r]
+        out.vectors[at + 1, 2 * k : 2 * k + 2 * n] = K[r]
+        out.beside[at + 1] = -1.0
+        out.numbers[:] += np.array([2, 1])
+
+
+@compiled
+def _entries(b: Boundary, fit: Fit, joints: Ints, vectors: Array) -> tuple[Ints, Ints, Array]:  # pragma: no cover
+    """Entries of vectors over the local coordinates: column, unknown, value."""
+    k, n, count, used = joints.size, b.points.size, len(vectors), 0
+    index, local = np.empty(2 * k + 3 * n + 1, np.int64), np.empty(2 * k + 3 * n + 1)
+    index[:k], index[k : 2 * k] = b.joints[joints] + b.along, b.joints[joints] + 1 - b.along
+    index[2 * k : 2 * k + n], index[2 * k + n : 2 * k + 2 * n] = b.points + b.along, b.points + 1 - b.along
+    index[2 * k + 2 * n :] = b.angles
+    most = count * index.size
+    columns, unknowns, values = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most)
+    for c in range(count):
+        local[: 2 * k + 2 * n], local[2 * k + 2 * n :] = vectors[c, : 2 * k + 2 * n], 0.0
+        A, B, tau = vectors[c, 2 * k :].reshape((3, n))
+        turn = 0.5 * (A * fit.turns[0] + B * fit.turns[1] + tau)
+        local[2 * k + 2 * n : -1] += turn
+        local[2 * k + 2 * n + 1 :] += turn
+        for j in np.flatnonzero(local):
+            columns[used], unknowns[used], values[used] = c, index[j], local[j]
+            used += 1
+    return columns[:used], unknowns[:used], values[:used]
 
 
 @compiled
 def fitted_columns(z: Array, b: Boundary, force: Array, closed: Flags, gradient: Array) -> Columns:  # pragma: no cover
     """Columns of the constrained joints marked ``closed`` (m,); adds the gradient of −Σ F g to ``gradient``."""
-    n, size, joints = b.points.size, b.degree + 1, np.flatnonzero(closed)
-    k, fit = joints.size, fitted(z, b)
-    P, rest, K = slopes_of_fit(b, fit)
+    n, size, joints, fit = b.points.size, b.degree + 1, np.flatnonzero(closed), fitted(z, b)
+    k, K, w = joints.size, derivatives_of_fit(b, fit), b.sense * force[joints]
     most = 2 * k + 3 * n + 2 * size
-    diagonal, beside, values = np.zeros(most), np.zeros(most), np.empty(k)
-    most = k * (3 + 4 * n) + 10 * n + size * (k + 8 * n)
-    entries, used = (np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most)), 0
-    basis, slope, mu = np.empty((k, 3, size)), np.zeros(2 * n), np.zeros(size)
+    out = Local(np.zeros((most, 2 * k + 3 * n)), np.zeros(most), np.zeros(most), np.array([k, 0]))
+    values, basis = np.empty(k), np.empty((k, 3, size))
     for c in range(k):
-        a, o = b.joints[joints[c]] + b.along, b.joints[joints[c]] + 1 - b.along
-        write_basis(z[a], fit.middle, fit.width, basis[c])
-        values[c] = b.sense * (z[o] - basis[c, 0] @ fit.q)
-        first, over, F = used, basis[c, 0] @ K, force[joints[c]]
-        used = _add(entries, used, c, a, b.sense * (basis[c, 1] @ fit.q))
-        used = _add(entries, used, c, o, -b.sense)
-        for i in range(n):
-            used = _add_point(entries, used, c, b, fit, i, b.sense * over[i], b.sense * over[n + i])
-        for t in range(first, used):
-            gradient[entries[1][t]] += F * entries[2][t]
-        slope += b.sense * F * over
-        mu -= b.sense * F * (fit.inverse @ basis[c, 0])
-    at, negative = k, 0
-    if np.any(mu != 0.0):
-        for c in range(k):
-            weight = b.sense * force[joints[c]]
-            square = weight * (basis[c, 2] @ fit.q)
-            if square != 0.0:
-                diagonal[at] = -1.0 / square
-                negative += square > 0.0
-                used = _add(entries, used, at, b.joints[joints[c]] + b.along, 1.0)
-                at += 1
-        for i in range(n):
-            U = fit.V[i] @ mu
-            cross, turn = -U[1], -slope[i] * fit.offsets[0, i] - slope[n + i] * fit.offsets[1, i]
-            square = U[2] * rest[i] + 2.0 * U[1] * P[i, 1] + U[0] * P[i, 2]
-            lean, size_of = 0.5 * atan2(2.0 * cross, square), hypot(0.5 * square, cross)
-            for sign in (1.0, -1.0):
-                value = 0.5 * square + sign * size_of
-                if abs(value) > REAL * size_of:
-                    A, B = (cos(lean), sin(lean)) if sign > 0.0 else (-sin(lean), cos(lean))
-                    diagonal[at] = -1.0 / value
-                    negative += value > 0.0
-                    used = _add_point(entries, used, at, b, fit, i, A, B)
-                    at += 1
-            if turn != 0.0:
-                diagonal[at] = -1.0 / turn
-                negative += turn > 0.0
-                used = _add(entries, used, at, b.angles[i], 0.5)
-                used = _add(entries, used, at, b.angles[i + 1], 0.5)
-                at += 1
-        for r in range(size):
-            for c in range(k):
-                weight = b.sense * force[joints[c]]
-                used = _add(entries, used, at, b.joints[joints[c]] + b.along, weight * basis[c, 1, r])
-            for i in range(n):
-                U0, U1 = fit.V[i, 0] @ mu, fit.V[i, 1] @ mu
-                used = _add_point(entries, used, at, b, fit, i, U1 * fit.V[i, 0, r] + U0 * fit.V[i, 1, r], 0.0)
-                used = _add_point(entries, used, at + 1, b, fit, i, K[r, i], K[r, n + i])
-            beside[at + 1] = -1.0
-            negative += 1
-            at += 2
-    return Columns(
-        values, negative, diagonal[:at], beside[:at], entries[0][:used], entries[1][:used], entries[2][:used]
-    )
+        a, o = z[b.joints[joints[c]] + b.along], z[b.joints[joints[c]] + 1 - b.along]
+        write_basis(a, fit.middle, fit.width, basis[c])
+        values[c] = b.sense * (o - basis[c, 0] @ fit.q)
+        out.vectors[c, c], out.vectors[c, k + c] = b.sense * (basis[c, 1] @ fit.q), -b.sense
+        out.vectors[c, 2 * k : 2 * k + 2 * n] = b.sense * (basis[c, 0] @ K)
+    if np.any(w != 0.0):
+        _add_curvature(b, fit, out, K, w, basis)
+    count, negative = out.numbers
+    column, index, value = _entries(b, fit, joints, out.vectors[:count])
+    for t in range(column.size):
+        if column[t] < k:
+            gradient[index[t]] += force[joints[column[t]]] * value[t]
+    return Columns(values, negative, out.diagonal[:count], out.beside[:count], column, index, value)

@@ -10,7 +10,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 
@@ -19,23 +18,16 @@ from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.newton import Solved
 from cprbm.paper.contacts import FittedLaw
 from cprbm.paper.fit import Boundary, fitted
-from cprbm_scene.answer import Array, Flags
+from cprbm_scene.answer import Array
 from cprbm_scene.statement import EdgeContact, PinnedEnd
-
-
-class Misfit(NamedTuple):
-    """Largest distance of a polynomial from the points, m, and the station."""
-
-    distance: float
-    where: str
 
 
 @dataclass
 class Remarks:
-    """Stations at which a joint beside an own pin first pressed, and largest misfits, by contact."""
+    """By contact: station at which a joint beside an own pin first pressed; largest misfit, m, and the station."""
 
     beside_pins: dict[str, str] = field(default_factory=dict)
-    misfits: dict[str, Misfit] = field(default_factory=dict)
+    misfits: dict[str, tuple[float, str]] = field(default_factory=dict)
 
     def look(self, solved: Solved, where: str) -> None:
         """Look at a station, called ``where``."""
@@ -45,7 +37,7 @@ class Remarks:
         for boundary, name, _ in _pressed_boundaries(solved):
             if boundary.degree + 1 < len(boundary.points):
                 fit = fitted(solved.state.z, boundary)
-                misfit = Misfit(float(np.abs(fit.V[:, 0] @ fit.q - fit.points[1]).max()) * unit, where)
+                misfit = float(np.abs(fit.V[:, 0] @ fit.q - fit.points[1]).max()) * unit, where
                 self.misfits[name] = max(misfit, self.misfits.get(name, misfit))
 
     def told(self, solved: Solved) -> list[str]:
@@ -56,15 +48,15 @@ class Remarks:
             for name, first in self.beside_pins.items()
         ]
         said += [
-            f"in contact '{name}' the polynomial misses the points that it is fitted to by up to {misfit.distance:.1e} "
-            f"m, at {misfit.where}: more links do not take that away"
-            for name, misfit in self.misfits.items()
+            f"in contact '{name}' the polynomial misses the points that it is fitted to by up to {distance:.1e} "
+            f"m, at {where}: more links do not take that away"
+            for name, (distance, where) in self.misfits.items()
         ]
         z, unit = solved.state.z, solved.system.mechanism.units.length
-        for boundary, name, closed in _pressed_boundaries(solved):
+        for boundary, name, pull in _pressed_boundaries(solved):
             said.append(
                 f"in contact '{name}' forces on the fitted boundary's points and on the joints that press it leave a "
-                f"moment of {_left_moment(solved, closed):.1e} of the largest; the formulation has no rotational "
+                f"moment of {_left_moment(solved, pull):.1e} of the largest; the formulation has no rotational "
                 "invariance"
             )
             A, a = fitted(z, boundary).points[0], z[boundary.joints + boundary.along]
@@ -95,24 +87,19 @@ def _beside_pins(solved: Solved) -> list[str]:
     return found
 
 
-def _pressed_boundaries(solved: Solved) -> list[tuple[Boundary, str, Flags]]:
-    """Boundaries with closed joints, names of the contacts, and marks of the closed places."""
+def _pressed_boundaries(solved: Solved) -> list[tuple[Boundary, str, Array]]:
+    """Boundaries with closed joints, names of the contacts, and gradients (size,) of the contacts' −F λ."""
     geometry, contacts = solved.system.geometry, solved.state.contacts
     if geometry is None or contacts is None or not isinstance(geometry.law, FittedLaw):
         return []
-    law = geometry.law
-    every = zip(law.boundaries, law.pairs, law.names, strict=True)
-    found = [(boundary, name, contacts.pressing(pair)) for boundary, pair, name in every]
-    return [each for each in found if each[2].any()]
+    law, z, places = geometry.law, solved.state.z, contacts.places
+    every = zip(law.boundaries, law.names, map(contacts.pressing, law.pairs), strict=True)
+    return [(b, name, contact_terms(geometry, z, places, closed)[1]) for b, name, closed in every if closed.any()]
 
 
-def _left_moment(solved: Solved, closed: Flags) -> float:
-    """Moment of all forces of some places together, over the largest multiplier or the places' own force."""
-    system, contacts, z = solved.system, solved.state.contacts, solved.state.z
-    assert system.geometry is not None
-    assert contacts is not None
-    pull: Array = contact_terms(system.geometry, z, contacts.places, closed)[1]
+def _left_moment(solved: Solved, pull: Array) -> float:
+    """Moment of all forces of a contact together, over the largest force or moment of a joint or a load."""
+    system, z = solved.system, solved.state.z
     x, y = system.nodes.T
     moment = float(z[x] @ pull[y] - z[y] @ pull[x] + pull[system.angles].sum())
-    largest = max(float(np.abs(solved.state.multipliers(system)).max()), float(contacts.places.force[closed].max()))
-    return abs(moment) / largest if largest > 0.0 else 0.0
+    return abs(moment) / float(np.abs(solved.state.multipliers(system)).max())

@@ -13,6 +13,7 @@ from cprbm.chain import add_rows, mechanism_of
 from cprbm.contact import contact_geometry
 from cprbm.continuation.assembly import assembled
 from cprbm.continuation.driver import ContactEvent, Driver, Passed, StepError
+from cprbm.continuation.landing import landing_rows
 from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.system import System, system_of
@@ -78,6 +79,7 @@ class Run:
         links = {beam: self.settings.links_of(beam) for beam in self.scene.beams}
         mechanism = mechanism_of(self.scene, links, self.scene.theory, corrected=corrected)
         add_rows(mechanism)
+        mechanism.rows.extend(landing_rows(mechanism))
         geometry = contact_geometry(mechanism)
         if self.settings.formulation == "paper" and geometry is not None:
             refuse_contacts(self.scene)

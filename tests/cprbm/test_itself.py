@@ -183,7 +183,7 @@ def test_a_strip_drawn_from_its_other_end_is_the_same():
 
 @pytest.mark.parametrize("thick", [True, False])
 def test_ends_of_what_is_alike_from_both_slip_by_no_side_unnamed(thick):
-    # reference: symmetry; neither end may come to lie inside.  Round ends meet head on, and slip off each other to a side
+    # reference: symmetry; neither end may come to lie inside.  Round ends meet head on, and slip off to a side
     # that is named as left for the state beside
     alike = (0.0, 0.3, 0.7, 1.0), (1.0, 0.6, 0.6, 1.0)
     answer = cprbm.answer(roll((5.0, 5.5, 6.5), alike, thick=thick), cprbm.Settings(links=40))

@@ -90,6 +90,24 @@ def test_checked_points_have_a_verdict(scene, tmp_path, capsys):
     assert all(row["verdict"] for row in rows if row["solver"] == "compare")
     assert " of 2 checked points, 3 unchecked" in capsys.readouterr().out
     assert any(row["stated"] for row in table(tmp_path / "s"))
+    journal = tmp_path / "s" / "outcomes.jsonl"
+    lines = len(journal.read_bytes().splitlines())
+    swept(scene, tmp_path / "s", "--vary", "t=1.6mm..2.4mm:5", "--elements", "8")
+    assert len(journal.read_bytes().splitlines()) == lines, "the comparison has the answer of the plain point too"
+    assert [row["solver"] for row in table(tmp_path / "s", "last.csv")].count("compare") == 2
+
+
+def test_netcdf_has_the_numbers_of_the_table(scene, tmp_path):
+    xarray = pytest.importorskip("xarray", reason="the extra 'netcdf' is not installed")
+    assert swept(scene, tmp_path / "s", "--vary", "t=1.6mm..2.4mm:3", "--netcdf") == 0
+    with xarray.open_dataset(tmp_path / "s" / "sweep.nc", engine="scipy") as data:
+        assert data["t"].values == pytest.approx([1.6e-3, 2.0e-3, 2.4e-3])
+        assert list(data["ending"].values) == ["COMPLETED"] * 3
+        assert data["load.station"].values.tolist() == [[0.5, 1.0]] * 3
+        values = data["load.B.displacement.y"]
+        assert values.attrs == {"unit": "m"}
+        rows = [float(row["value"]) for row in table(tmp_path / "s") if row["component"] == "y"]
+        assert values.values.ravel() == pytest.approx(1e-3 * np.array(rows), rel=1e-12)
 
 
 @pytest.mark.parametrize("sample", ["sobol:4", "lhs:4", "points.csv"])
@@ -138,13 +156,13 @@ ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
 def test_poisoned_points_are_rows_and_are_tried_twice(scene, tmp_path):
     marks = tmp_path / "marks"
     command = [*program(tmp_path, POISONED.format(marks=str(marks))), str(scene), "-n", "6", "--quiet", "--out"]
-    options = [str(tmp_path / "s"), "--vary", "t=1.6mm..2.4mm:5", "--at-most", "12"]
+    options = [str(tmp_path / "s"), "--vary", "t=1.6mm..2.4mm:5", "--at-most", "20"]
     done = subprocess.run([*command, *options], env=ENVIRONMENT, capture_output=True, text=True, check=False)
     assert done.returncode == 1, done.stderr
     rows = table(tmp_path / "s", "last.csv")
     assert [row["ending"] for row in rows] == ["COMPLETED", "CRASHED", "TIME_LIMIT", "FAULT", "COMPLETED"]
     assert "7" in rows[1]["sentence"]
-    assert "12 s" in rows[2]["sentence"]
+    assert "20 s" in rows[2]["sentence"]
     assert "a beam of no length" in rows[3]["sentence"]
     assert len(marks.read_text()) == 5 + 2
     assert "3 of 5 points failed (1 CRASHED, 1 FAULT, 1 TIME_LIMIT)" in done.stdout

@@ -12,7 +12,7 @@ from cprbm.equilibrium.system import system_of
 from tests.cprbm.contact.workshop import FINDING, all_places, mechanism, settled
 from tests.cprbm.second.systems import disturbed
 
-SEEDS = range(12)
+SEEDS = range(18)
 
 FOCUS = 100.0
 """Largest change of a foot by a turn of its curve, in units."""
