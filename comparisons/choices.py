@@ -15,6 +15,9 @@ KINEMATICS: tuple[Kinematics, ...] = ("bending", "stretch", "shear")
 
 Count = int | Mapping[str, int]
 
+LOOSEST = 0.05
+"""Largest penetration of a family of sizes, over the thickness."""
+
 
 @dataclass(frozen=True, slots=True)
 class Choices:
@@ -52,6 +55,15 @@ class Choices:
             penetration=self.penetration / 16.0,
             across=2 * self.across,
         )
+
+    def of_size(self, n: int) -> Choices:
+        """The same with N = ``n`` links and elements, and a penetration whose error falls with the elements' own error.
+
+        The penetration is the present one at N = 40 and falls with the fourth power of N up to N = 160, then with the
+        square: below, round-off in the positions is a share of the penetration.
+        """
+        share = (40.0 / min(n, 160)) ** 4 * (160.0 / max(n, 160)) ** 2
+        return replace(self, links=n, elements=n, penetration=min(LOOSEST, self.penetration * share))
 
     def beside(self) -> Choices:
         """The same with a seventh more links and elements: joints and nodes are elsewhere, and errors hardly other.

@@ -12,13 +12,16 @@ import numpy as np
 Plain = dict[str, Any]
 
 
-def text_of(data: Mapping[str, Any]) -> str:
-    """``data`` as JSON with a line end.
+def text_of(data: Mapping[str, Any], indent: int | None = 1) -> str:
+    """``data`` as JSON with a line end; without an ``indent`` in a single line.
 
     Raises:
         ValueError: a number in ``data`` is not finite.
     """
-    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return (
+        json.dumps(data, indent=indent, ensure_ascii=False, allow_nan=False, separators=None if indent else (",", ":"))
+        + "\n"
+    )
 
 
 def plain(value: object) -> Any:  # noqa: ANN401 - all types of JSON

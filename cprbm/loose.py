@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from cprbm_scene import Scene
-from cprbm_scene.freedoms import Freedoms
-from cprbm_scene.mobility import unsupported
+from cprbm_scene.freedoms import Freedoms, unsupported
 from cprbm_scene.statement import SlidingBody, TurningBody
 
 

@@ -12,7 +12,6 @@ from typing import Any, Literal
 from comparisons.choices import Choices, Count
 from comparisons.crew import Solver
 from comparisons.pairing import Solvers, prepared
-from comparisons.studies.families import at
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
@@ -117,7 +116,7 @@ def mean(count: Count) -> float:
 def _ours(solver: Solver, choices: Choices) -> Callable[[Scene, Count, float], Run]:
     def begin(scene: Scene, count: Count, at_most: float) -> Run:
         # a penalty whose error falls with the elements' own
-        chosen = replace(at(choices, round(mean(count))), links=count, elements=count)
+        chosen = replace(choices.of_size(round(mean(count))), links=count, elements=count)
         return Run(lambda: prepared(solver, scene, chosen), _of_answer)
 
     return begin

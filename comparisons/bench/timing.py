@@ -15,9 +15,6 @@ from cprbm_scene import Answer, Scene
 
 Method = Literal["cprbm", "fea"]
 
-LARGEST: dict[Method, int] = {"cprbm": 5120, "fea": 1280}
-"""Up to which size a solver goes if no sizes are named."""
-
 
 def middle(seconds: Sequence[float]) -> float:
     """T: the median, s."""

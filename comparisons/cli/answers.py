@@ -8,7 +8,7 @@ import click
 
 if TYPE_CHECKING:
     from comparisons.choices import Choices
-    from comparisons.tolerances.search import Tolerance
+    from comparisons.tolerances.result import Tolerance
     from cprbm_scene import Answer, Scene
 
 SolverName = Literal["cprbm", "fea", "exact", "solid"]
@@ -31,10 +31,10 @@ def solve_scene(
 
     solvers = solvers_of(planted, exact=True)  # a named solver has no rule on its size
     if tol is not None and solver != "exact":
-        from comparisons.tolerances import tolerated
+        from comparisons.tolerances.search import solve_within
 
         with output.current(shown=shown) as say:
-            answer, reached = tolerated.solved(scene, solver, choices, tol, solvers, say)
+            answer, reached = solve_within(scene, solver, choices, tol, solvers, say)
         return answer, (reached,)
     solve = {
         "cprbm": solvers.cprbm,

@@ -11,12 +11,11 @@ from comparisons import workshop
 from comparisons.choices import KINEMATICS, Kinematics
 from comparisons.cli.completion import candidates
 from comparisons.cli.options import COUNT, count, counts, folder, output_options, parameters, settings, timed
+from comparisons.cli.section_output import SectionOutput, run_steps
 
 if TYPE_CHECKING:
     from comparisons.bench.contenders import Contender
-    from comparisons.bench.errors import Reference
-    from comparisons.bench.running import Clock, Session
-    from comparisons.present.columns import Section
+    from comparisons.bench.running import Clock, Job, Session
 
 NOT_COMPLETED = 1
 OURS = ("auto", "paper", "fea")
@@ -131,9 +130,11 @@ def command(
     from comparisons import cases, provenance
     from comparisons.bench import contenders, errors, question, running
     from comparisons.bench.section import bench_section
+    from comparisons.bench.tables import sized
     from comparisons.choices import Choices, check
     from comparisons.cli import output
     from comparisons.pairing import solvers_of
+    from comparisons.present.page import own_folder
     from cprbm_scene.frozendict import frozendict
 
     if sizes is not None and links:
@@ -169,56 +170,19 @@ def command(
     with output.current(shown=not quiet) as say:
         say("reference of the errors")
         known = errors.reference(question.asked(opened), solvers)
-    try:
-        for job in output.progress(session.jobs(), shown=not quiet):
-            session.do(job)
-            if session.seconds:
-                _write(bench_section(session.done(known)), json_file, out, scene.name)
-    except KeyboardInterrupt:
-        if session.seconds:
-            _report(session, known, json_file, out, quiet=quiet)
-        raise
-    return _report(session, known, json_file, out, quiet=quiet)
+    show = SectionOutput(json_file, None if out is None else own_folder(out, scene.name), quiet)
 
+    def run(session: Session, job: Job) -> Session:
+        session.do(job)
+        return session
 
-def _report(session: Session, known: Reference, json_file: Path | None, out: Path | None, *, quiet: bool) -> int:
-    """Write and print the finished runs; the exit code.
-
-    Raises:
-        SceneError: every method refused the question.
-        OSError: a file cannot be written.
-    """
-    from comparisons.bench import tables
-    from comparisons.bench.section import bench_section
-    from comparisons.cli import output
-
-    done = session.done(known)
-    found = bench_section(done)
-    _write(found, json_file, out, done.scene.name)
-    if json_file is not None and str(json_file) == "-":
-        output.json(json_file, dict(found.data))
-    if str(json_file) != "-" and not quiet:
-        output.tables(found.tables)
-    failed = [one for one in done.timings if one.contender.name in OURS and not one.outcome.completed]
-    for one in failed:
-        who = f"{one.contender.label} at N = {tables.sized(one.count)}"
-        click.echo(f"cprbm: {done.scene.name}: {who}: {one.outcome.why}", err=True)
+    jobs = output.progress(session.jobs(), shown=not quiet)
+    done = run_steps(session, jobs, run, lambda found: bench_section(found.done(known)), show).done(known)
+    failed = [row for row in done.timings if row.contender.name in OURS and not row.outcome.completed]
+    for row in failed:
+        who = f"{row.contender.label} at N = {sized(row.count)}"
+        click.echo(f"cprbm: {scene.name}: {who}: {row.outcome.why}", err=True)
     return NOT_COMPLETED if failed else 0
-
-
-def _write(found: Section, json_file: Path | None, out: Path | None, name: str) -> None:
-    """Write the numbers of the finished runs.
-
-    Raises:
-        OSError: a file cannot be written.
-    """
-    from comparisons.cli import output
-    from comparisons.present.page import own_folder, put_section
-
-    if json_file is not None and str(json_file) != "-":
-        output.json(json_file, dict(found.data))
-    if out is not None:
-        put_section(own_folder(out, name), found)
 
 
 def _peer(name: str) -> Contender:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from comparisons.crew import Crew
     from comparisons.offset_verdict import OffsetComparison
     from comparisons.pairing import Runs, Solvers
-    from comparisons.tolerances.search import Tolerance
+    from comparisons.tolerances.result import Tolerance
     from cprbm_scene import Question
 
 
@@ -112,7 +112,7 @@ def command(
                     output.json(json_file, {"cases": [document_of(comparison) for comparison in finished]})
             steps.clear()
             if printing:
-                _show(comparison, scenes[len(finished) - 1], quiet=quiet, full=logs.level() != NOTSET)
+                _show(comparison, scenes[len(finished) - 1], out, quiet=quiet, full=logs.level() != NOTSET)
     if json_file is not None and not printing:
         output.json(json_file, {"cases": [document_of(comparison) for comparison in finished]})
     _export(finished, csv_file, plot_file)
@@ -132,7 +132,7 @@ def _compared(
     from comparisons.cli import output
     from comparisons.offset_verdict import compared_offset
     from comparisons.pairing import begin
-    from comparisons.tolerances.tolerated import paired_within
+    from comparisons.tolerances.search import runs_within
     from cprbm_scene import OffsetQuestion, Scene
 
     def begun(place: int) -> Callable[[], Runs] | None:
@@ -149,7 +149,7 @@ def _compared(
         else:
             assert tol is not None
             with output.current(shown=shown) as say:
-                runs, found = paired_within(scene, choices, tol, solvers, crew, say)
+                runs, found = runs_within(scene, choices, tol, solvers, crew, say)
             yield replace(compare(scene, runs), tolerances=found)
 
 
@@ -169,7 +169,9 @@ def _export(finished: Sequence[Comparison | OffsetComparison], csv_file: Path | 
         click.echo(f"cprbm: {plot_file} is not drawn: a case has no station of both solvers.", err=True)
 
 
-def _show(comparison: Comparison | OffsetComparison, question: Question, *, quiet: bool, full: bool) -> None:
+def _show(
+    comparison: Comparison | OffsetComparison, question: Question, page: Path | None, *, quiet: bool, full: bool
+) -> None:
     """Print a case: in brief, in full with all tables, or quietly with the verdict alone."""
     from comparisons import cases
     from comparisons.cli import output
@@ -180,7 +182,7 @@ def _show(comparison: Comparison | OffsetComparison, question: Question, *, quie
 
     if not quiet and not full:
         values = [text for name, value in settings().items() for text in ("--set", f"{name}={value}")]
-        click.echo(brief(comparison, shlex.join([cases.argument(question), *values])) + "\n")
+        click.echo(brief(comparison, shlex.join([cases.argument(question), *values]), page) + "\n")
         return
     if not quiet:
         output.sections(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from comparisons.cli.options import fraction, positive
+from comparisons.cli.text import printable
 
 if TYPE_CHECKING:
     from comparisons.importing.scene_text import Unit
@@ -62,6 +63,6 @@ def command(
     text, notes = scene_text(drawn, drawing, Choices(named, unit, thickness, width, within))
     write(path, text)
     for note in notes:
-        click.echo(f"{drawing}: {note}", err=True)
-    click.echo(f"{path}: change load and probes, then run 'cprbm compare {path}'.")
+        click.echo(printable(f"{drawing}: {note}"), err=True)
+    click.echo(printable(f"{path}: change load and probes, then run 'cprbm compare {path}'."))
     return 0

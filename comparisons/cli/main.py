@@ -18,6 +18,7 @@ import click
 from comparisons import workshop
 from comparisons.cli.commands import Commands, ToolCommand
 from comparisons.cli.signals import SignalInterrupt
+from comparisons.cli.text import printable
 
 if TYPE_CHECKING:
     from comparisons.pairing import Solvers
@@ -41,6 +42,8 @@ GROUPS = {
 """Commands under their headings in the help."""
 
 WRONG_QUESTION = 2
+CLOSED_PIPE = 141
+"""Exit code of a shell for SIGPIPE."""
 
 
 class _SubCommands(Commands):
@@ -117,9 +120,9 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
         return stop.exit_code
     except KeyboardInterrupt as stop:
         return interrupted(stop)
-    except BrokenPipeError:
+    except BrokenPipeError:  # the reader has seen enough, as ``head`` has
         _drop_output()
-        return _report("Standard output was closed before everything was written.")
+        return CLOSED_PIPE
     except ImportError as error:
         # ``errors`` loads libraries, and the missing library may be among them
         from comparisons.cli import missing_library
@@ -170,5 +173,5 @@ def _drop_output() -> None:
 
 def _report(sentence: str, code: int = WRONG_QUESTION) -> int:
     with suppress(OSError):  # with standard error closed the exit code remains
-        click.echo(f"cprbm: {sentence}", err=True)
+        click.echo(f"cprbm: {printable(sentence)}", err=True)
     return code

@@ -175,7 +175,7 @@ def numerical(command: Decorated) -> Decorated:
     """The command with the options of :class:`comparisons.choices.Choices` and with ``--tol``."""
     standard = Choices()
     command = click.option("--tol", callback=tolerance, metavar="TOL",
-                           help="Search the cheapest N with a stated error below TOL, as 0.1% or 0.001, "
+                           help="Double N until the stated error is below TOL, as 0.1% or 0.001, "
                            "at every probe and station; in place of -n, --elements, --across.")(command)  # fmt: skip
     command = click.option("--penetration", callback=fraction, metavar="SHARE", default=str(standard.penetration),
                            show_default=True, help="Allowed overlap of the finite elements, over the thickness.",

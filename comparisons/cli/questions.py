@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from comparisons.cli.options import settings
+from comparisons.cli.text import printable
 
 if TYPE_CHECKING:
     from cprbm_scene import Question
@@ -28,7 +29,7 @@ def read_questions(arguments: Sequence[str]) -> list[Question]:
     questions = [cases.asked(name, settings()) for name in dict.fromkeys(names)]
     for question in questions:
         for note in notes(question) if isinstance(question, Scene) else ():
-            click.echo(f"Note: {question.file}: {note}", err=True)
+            click.echo(printable(f"Note: {question.file}: {note}"), err=True)
     own = [question.name for question in questions]
     twice = sorted({name for name in own if own.count(name) > 1})
     if twice:

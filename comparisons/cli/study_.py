@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
 
 import click
 
 from comparisons import workshop
 from comparisons.cli.commands import Commands, ToolCommand
 from comparisons.cli.options import folder, output_options, timed
-
-if TYPE_CHECKING:
-    from comparisons.present.columns import Section
-
-Found = TypeVar("Found")
-Step = TypeVar("Step")
+from comparisons.cli.section_output import SectionOutput, run_steps
 
 
 class _Studies(Commands):
@@ -62,7 +54,7 @@ def calibration(
     from comparisons.verdict.words import Word
 
     output.room_for(json_file, out)
-    show = StudyOutput(json_file, out, quiet)
+    show = SectionOutput(json_file, out, quiet)
     pieces = output.progress(study.pieces(), shown=not quiet)
     with run_into(out, solvers_of(planted), processes=workers_for(planted)) as run:
         found = run_steps(
@@ -97,73 +89,8 @@ def table1(
 
     output.room_for(json_file, out)
     solvers = solvers_of(planted)
-    show = StudyOutput(json_file, out, quiet)
+    show = SectionOutput(json_file, out, quiet)
     runs = output.progress(study.runs(repeat), shown=not quiet)
     begun = study.begun(solvers, provenance.machine())
     found = run_steps(begun, runs, lambda found, run: study.solved(found, run, solvers, at_most), result_of, show)
     return 1 if found.unfinished else 0
-
-
-@dataclass(frozen=True, slots=True)
-class StudyOutput:
-    """Files and screen for the result of a study, also for a partial result."""
-
-    json_file: Path | None
-    out: Path | None
-    quiet: bool
-
-    @property
-    def writes(self) -> bool:
-        """True with an output file or folder."""
-        return self.out is not None or (self.json_file is not None and str(self.json_file) != "-")
-
-    def write(self, result: Section) -> None:
-        """Write the files.
-
-        Raises:
-            OSError: a file cannot be written.
-        """
-        from comparisons.cli import output
-        from comparisons.present.page import Page, put_page, put_section
-
-        if self.json_file is not None and str(self.json_file) != "-":
-            output.json(self.json_file, dict(result.data))
-        if self.out is not None:
-            put_section(self.out, result)
-            put_page(self.out, Page(result.heading, "", further=(result,)), result.name)
-
-    def show(self, result: Section) -> None:
-        """Print the result on standard output."""
-        from comparisons.cli import output
-
-        if str(self.json_file) == "-":
-            output.json(Path("-"), dict(result.data))
-            return
-        if self.quiet:
-            return
-        output.sections([result])
-        if self.out is not None:
-            click.echo(f"report: {self.out / result.name}.html")
-
-
-def run_steps(
-    found: Found,
-    steps: Iterable[Step],
-    taken: Callable[[Found, Step], Found],
-    result_of: Callable[[Found], Section],
-    shown: StudyOutput,
-) -> Found:
-    """The finished study; every step writes the partial result, and an interrupted study shows its result."""
-    last: Section | None = None
-    try:
-        for step in steps:
-            found, last = taken(found, step), None
-            if shown.writes:
-                last = result_of(found)
-                shown.write(last)
-    finally:
-        if last is None:
-            last = result_of(found)
-            shown.write(last)
-        shown.show(last)
-    return found

@@ -9,8 +9,7 @@ from comparisons.display_units import display_units, distance_text, load_column,
 from comparisons.formats import component_names, components, number, percent
 from comparisons.present.columns import Column, Table, table_of
 from comparisons.quantities import load_unit, norm, unit_of
-from comparisons.tolerances.search import Tolerance
-from comparisons.tolerances.settled import extrapolation_note
+from comparisons.tolerances.result import Tolerance
 from comparisons.verdict.events import CriticalRow, mechanism, released
 from comparisons.verdict.rows import ROUND_OFF
 from comparisons.verdict.scales import probe_scales
@@ -76,8 +75,7 @@ def search_table(scene: Scene, found: Sequence[Tolerance]) -> Table:
         Column("met", lambda one: "yes" if one.met else "no"),
         Column("solved", lambda one: ", ".join(map(str, one.solved))),
     ]
-    notes = (extrapolation_note(one.extrapolated, one.probes) for one in found if one.extrapolated)
-    note = " ".join(("N: links or elements per beam; the finest N of an extrapolated answer.", *notes))
+    note = "N: links or elements per beam; the finer N of an extrapolated answer."
     return table_of(f"N for a tolerance of {percent(found[0].asked)}" if found else "", columns, found, note)
 
 

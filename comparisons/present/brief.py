@@ -6,6 +6,7 @@ import re
 import textwrap
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 from comparisons.case import Comparison, Verdict
 from comparisons.display_units import at_station
@@ -29,16 +30,17 @@ _SENTENCE_LINES = 6
 _COMMAND = re.compile(r"`(-[^`]* [^`]*|solve [^`]*)`")
 
 
-def brief(compared: Comparison | OffsetComparison, argument: str) -> str:
+def brief(compared: Comparison | OffsetComparison, argument: str, page: Path | None = None) -> str:
     """Report of at most ``LINES`` lines of ``WIDTH`` columns, with terminal colours.
 
     Args:
         compared: the case.
         argument: name or path of the case with its parameters, as the shell takes them.
+        page: written page of the case; None without a report.
     """
     verdict = compared.verdict
     first = _wrapped(headline(name_of(compared), verdict, verdict.because))
-    last = _next_step(argument, verdict)
+    last = _next_step(argument, verdict, page)
     if isinstance(compared, OffsetComparison):
         errors = offset.error_table(compared)
         lines = ("", *brief_lines(errors, width=WIDTH), *_wrapped(f"{errors.title}. {errors.note}"))
@@ -167,10 +169,10 @@ def _found_sizes(compared: Comparison) -> Iterator[str]:
             yield from _wrapped(found.sentence(compared.scene))
 
 
-def _next_step(argument: str, verdict: Verdict) -> tuple[str, ...]:
-    """The next command in a line, where the first sentence has a command or the case agrees."""
+def _next_step(argument: str, verdict: Verdict, page: Path | None) -> tuple[str, ...]:
+    """The next command in a line, where the first sentence has a command or the case agrees without a report."""
     hint = _COMMAND.search(verdict.because)
     if hint is not None:
         command, options = ("compare", hint[1]) if hint[1].startswith("-") else hint[1].split(" ", 1)
         return (f"next: cprbm {command} {argument} {options}",)
-    return (f"next: cprbm compare {argument} --out DIR",) if verdict.word is Word.AGREE else ()
+    return (f"next: cprbm compare {argument} --out DIR",) if verdict.word is Word.AGREE and page is None else ()

@@ -52,8 +52,8 @@ class _Entry(NamedTuple):
 
 _MEASURED = {
     "station_unit": ("station",),
-    "arc_length_unit": ("arc_length",),
-    "unit": ("value", "cprbm", "fea", "difference", "stated"),
+    "arc_length_unit": ("arc_length", "x", "y"),
+    "unit": ("value", "cprbm", "fea", "difference", "stated", "force_x", "force_y"),
 }
 """Columns of units, and the columns of numbers in the unit."""
 
@@ -120,18 +120,18 @@ def comparison_records(compared: Comparison) -> list[Plain]:
 
 def csv_of(scene: Scene, *answers: Answer) -> str:
     """Answers to a scene as comma-separated values in the units of the scene's file, with a line of headers."""
-    rows = (_in_file_units(scene, number) for answer in answers for number in numbers(scene, answer))
+    rows = (in_file_units(scene, number) for answer in answers for number in numbers(scene, answer))
     return csv_text([*Number.__annotations__, "arc_length_unit"], rows)
 
 
 def csv_of_comparisons(comparisons: Sequence[Comparison]) -> str:
     """Comparisons as comma-separated values in the units of the scenes' files, with a line of headers."""
-    rows = (_in_file_units(each.scene, record) for each in comparisons for record in comparison_records(each))
+    rows = (in_file_units(each.scene, record) for each in comparisons for record in comparison_records(each))
     headers = [column.header for each in comparisons[:1] for column in comparison_columns(each.scene)]
     return csv_text([*headers, "arc_length_unit"], rows)
 
 
-def _in_file_units(scene: Scene, record: Mapping[str, object]) -> Plain:
+def in_file_units(scene: Scene, record: Mapping[str, object]) -> Plain:
     """A record with numbers, to 15 digits, and units as in the scene's file."""
     row: Plain = {**record, "arc_length_unit": "m"}
     for unit, columns in _MEASURED.items():

@@ -27,6 +27,7 @@ from comparisons.present.canvas import (
     show_lengths,
 )  # fmt: skip
 from comparisons.present.columns import Figure
+from comparisons.present.contact_forces import contact_figures
 from comparisons.present.curves import curve_figures, reaction_figures
 from comparisons.present.picture import ARROW, LEAST, Bounds, Part, View, bounds_of, view_of
 from comparisons.present.row_tables import Judged, shown_stations
@@ -57,7 +58,7 @@ _FEW = 8  # places of contact with large marks
 
 
 def comparison_figures(compared: Comparison) -> tuple[Figure, ...]:
-    """Mechanism, curves against every load and drive, reactions, and stresses; none without a common station."""
+    """Mechanism, curves, reactions, stresses, and contact forces; none without a common station."""
     stations = shown_stations(compared)
     if not stations:
         return ()
@@ -67,7 +68,8 @@ def comparison_figures(compared: Comparison) -> tuple[Figure, ...]:
     found += [shapes(compared.scene, answers, names)] if len(names) > 1 else []
     found += [*curve_figures(compared.scene, runs.reference, runs.cprbm[0]), *reaction_figures(compared)]
     stresses = [judged for judged in stations[-1] if judged[0].probe.quantity == "bending_stress"]
-    return (*found, _stresses(compared.scene, stresses)) if stresses else tuple(found)
+    found += [_stresses(compared.scene, stresses)] if stresses else []
+    return (*found, *contact_figures(compared))
 
 
 def answer_figure(scene: Scene, answer: Answer) -> Figure:

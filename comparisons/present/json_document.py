@@ -12,7 +12,7 @@ from comparisons.plain import Plain, plain
 from comparisons.quantities import arc_lengths, unit_of
 from comparisons.reactions import WorkEnergyReaction
 from comparisons.third import Third, thirds_of
-from comparisons.tolerances.search import Tolerance
+from comparisons.tolerances.result import Tolerance
 from comparisons.verdict.completeness import CERTIFICATE_NUMBERS
 from comparisons.verdict.events import CriticalRow, released
 from comparisons.verdict.rows import Row

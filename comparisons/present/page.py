@@ -1,8 +1,8 @@
 """The page of a report, a convergence, or a study, and the folder: a single template with more or fewer chapters.
 
 In the folder: ``index.html``, complete without a network; per case ``comparison.json`` (as documented for ``compare
---json``), ``answers.json.gz`` (all answers, compressed), the JSON files of further sections, and all figures as SVG and
-PNG.
+--json``), ``answers.json.gz`` (all answers, compressed), ``contact-forces.csv`` (of both compared answers), the JSON
+files of further sections, and all figures as SVG and PNG.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from comparisons.case import Comparison
 from comparisons.formats import percent
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.plain import text_of
-from comparisons.present import json_document, offset
+from comparisons.present import contact_forces, json_document, offset
 from comparisons.present.case_tables import case_sections, claims_table
 from comparisons.present.columns import Figure, Section, Table
 from comparisons.present.figures import comparison_figures
@@ -129,7 +129,7 @@ def case_chapter(
             sections=(*_with_figures(case_sections(compared), figures), *chapter.sections),
             largest=_largest(compared),
             stepper=stepper(compared),
-            files=("comparison.json", "answers.json.gz", *chapter.files),
+            files=("comparison.json", "answers.json.gz", f"{contact_forces.NAME}.csv", *chapter.files),
         )
     return replace(
         chapter, word=verdict.word.value, sentence=verdict.sentence, because=verdict.because, claims=tuple(claims)
@@ -156,7 +156,12 @@ def light(section: Section) -> Section:
 def _with_figures(sections: Sequence[Section], figures: Sequence[Figure]) -> Iterable[Section]:
     """Curves first, and all other figures beside tables; a figure without tables has an own section."""
     shown = [replace(each, png=b"") for each in figures if each.name not in _SHOWN_BY_THE_STEPPER]
-    headings = {"path": "Curves", "reaction": "Reactions of the drives", "stress": "Stress along the beams"}
+    headings = {
+        "path": "Curves",
+        "reaction": "Reactions of the drives",
+        "stress": "Stress along the beams",
+        "contact": "Contact zones and forces",
+    }
     found: dict[str, list[Figure]] = {"Curves": []}
     for figure in shown:
         found.setdefault(headings[figure.name.partition("-")[0]], []).append(figure)
@@ -272,13 +277,17 @@ def put_case(folder: Path, compared: Comparison | OffsetComparison, figures: Ite
         OSError: the folder cannot be written to.
     """
     own = own_folder(folder, question_of(compared).name)
-    write(own / "comparison.json", text_of({"cases": [document_of(compared)]}))
+    write(own / "comparison.json", text_of({"cases": [document_of(compared)]}, None))
     if isinstance(compared, Comparison):
         runs = compared.runs
         answers = {"cprbm paper": runs.paper, "cprbm perturbed": runs.perturbed, "exact": runs.exact}
         answers[f"cprbm {runs.other_theory}"] = runs.other
         found = {**dict(runs.everything()), **{name: each for name, each in answers.items() if each is not None}}
         write(own / "answers.json.gz", packed_json(found))
+        write(
+            own / f"{contact_forces.NAME}.csv",
+            contact_forces.contact_csv(compared.scene, (runs.cprbm[0], runs.reference)),
+        )
     put_section(own, Section("", figures=tuple(figures)))
 
 
@@ -289,7 +298,7 @@ def put_section(folder: Path, section: Section) -> None:
         OSError: the folder cannot be written to.
     """
     if section.name:
-        write(folder / f"{section.name}.json", text_of(section.data))
+        write(folder / f"{section.name}.json", text_of(section.data, None))
     for figure in section.figures:
         write(folder / f"{figure.name}.svg", figure.svg)
         write(folder / f"{figure.name}.png", figure.png)

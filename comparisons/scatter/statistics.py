@@ -28,8 +28,8 @@ LEVELS = (0.025, 0.5, 0.975)
 
 _CONFIDENCE = 0.95
 _RESAMPLES = 400
-_CONSTANT = 1e-9
-"""Standard deviation over the largest magnitude below which a number is constant: the round-off of an answer."""
+CONSTANT = 1e-9
+"""Standard deviation below which a number is constant, over the largest magnitude of its unit: round-off of answers."""
 
 
 class Interval(NamedTuple):
@@ -65,11 +65,6 @@ def share(count: int, whole: int) -> Interval:
 
     ends = binomtest(count, whole).proportion_ci(_CONFIDENCE, method="wilson")
     return Interval(count / whole, float(ends.low), float(ends.high))
-
-
-def constant(values: Array) -> bool:
-    """Whether ``values`` scatter by round-off only."""
-    return bool(np.std(values) <= _CONSTANT * np.max(np.abs(values)))
 
 
 def indices(values: Array) -> Indices:

@@ -12,7 +12,7 @@ import numpy as np
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers
 from comparisons.scatter.draws import Distribution, drawn
-from comparisons.scatter.statistics import Indices, constant, indices
+from comparisons.scatter.statistics import CONSTANT, Indices, indices
 from comparisons.sweeps.demands import Bound, Measure, measures
 from comparisons.sweeps.outcome import Asked, Outcome
 from comparisons.sweeps.points import axes_of, in_file_units
@@ -63,12 +63,12 @@ class Scatter:
 
     def scattering(self) -> list[Measure]:
         """Numbers of the last stations with a value at all standing points that is not constant."""
-        found = []
-        for measure in measures(self.sweep.scene):
-            values = values_of(measure, self.standing)
-            if values.size and np.isfinite(values).all() and not constant(values):
-                found.append(measure)
-        return found
+        table = {measure: values_of(measure, self.standing) for measure in measures(self.sweep.scene)}
+        table = {measure: values for measure, values in table.items() if values.size and np.isfinite(values).all()}
+        largest: dict[str, float] = {}
+        for measure, values in table.items():
+            largest[measure.unit] = max(largest.get(measure.unit, 0.0), float(np.max(np.abs(values))))
+        return [each for each, values in table.items() if np.std(values) > CONSTANT * largest[each.unit]]
 
     def rows(self, measure: Measure) -> Array:
         """Values (d + 2, m) at A, B and the mixed points.

@@ -6,9 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from comparisons.budgets import drawn as budget_figures
-from comparisons.budgets import tables as budget_tables
-from comparisons.budgets.accounts import accounted
 from comparisons.choices import Choices
 from comparisons.crew import Crew
 from comparisons.display_units import at_station
@@ -16,7 +13,9 @@ from comparisons.pairing import Solvers
 from comparisons.present.canvas import GREY, LINES, canvas, common_legend, finished, logarithmic
 from comparisons.present.columns import Figure, Section
 from comparisons.store import AnswerMemory
+from comparisons.studies import budget_section as budgets
 from comparisons.studies import offset_convergence
+from comparisons.studies.budget import account_of
 from comparisons.studies.convergence_tables import convergence_tables, document, sentences_of, shown_size
 from comparisons.studies.families import Convergence, Family, converged
 from comparisons.thinning import at_shown
@@ -53,14 +52,14 @@ def convergence_section(
     memory = AnswerMemory(pool=crew.pool, solvers=solvers)
     found = converged(question, sizes, choices, solvers, memory)
     n = shown_size(found)
-    account = accounted(question, replace(choices, links=n, elements=2 * n), memory)
+    account = account_of(question, replace(choices, links=n, elements=2 * n), memory)
     return Section(
         "Error against N, and the error budget",
-        (*sentences_of(found), *budget_tables.sentences_of(account)),
-        (*convergence_figures(found), *budget_figures.of_account(account)),
-        (*convergence_tables(found), *budget_tables.sheets_of(account)),
+        (*sentences_of(found), *budgets.sentences_of(account)),
+        (*convergence_figures(found), *budgets.budget_figures(account)),
+        (*convergence_tables(found), *filter(lambda table: table.rows, (budgets.budget_table(account),))),
         "convergence",
-        {**document(found), **budget_tables.data_of(account)},
+        {**document(found), **budgets.data_of(account)},
         found.completed and not account.missing,
     )
 

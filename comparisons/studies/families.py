@@ -2,13 +2,8 @@
 
 The runs are those of both solvers in one beam theory, so that both limits are of the same equations.
 
-A penalty leaves an error that is proportional to the penetration.  To fall with the fourth power of N, as the
-elements' own, the penetration is P (40/N)⁴, P the standard one: at twice the N a sixteenth, as from any comparison's
-run to its finer one.  That error is then a part of the same law and does not bend it, however large it is beside the
-elements'.  It leaves a fortieth of the thickness at N = 10 (a twentieth is the most that is left to any N) and at
-N = 160 a few ten-millionths.  Below that round-off in the positions becomes a share of the penetration, and the
-penetration falls with the square of N only: enough for the order 2 that
-:mod:`comparisons.verdict.uncertainty` assumes where the values do not show the fourth.
+A penalty leaves an error that is proportional to the penetration, which falls with N as the elements' own error
+(:meth:`comparisons.choices.Choices.of_size`): both are parts of one law.
 
 Of a probe at a station a size counts if its run gave a whole answer, is on the branch of the finest size there, and the
 contact (or the stop) that the probe speaks of is as closed as at the finest size; of the sizes that do not, the coarser
@@ -18,7 +13,7 @@ ones do not count either, since a contact that closes between two sizes is no ma
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
@@ -33,15 +28,13 @@ from comparisons.stations import station_of
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import ROUND_OFF
 from comparisons.verdict.scales import probe_scales
-from comparisons.verdict.uncertainty import OWN, STANDARD, Limit, limit, observed, orders
+from comparisons.verdict.uncertainty import OWN, Limit, limit, observed, orders
 from cprbm_scene import Answer, Probe, Scene, Stage
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES
 
 SIZES = (10, 20, 40, 80, 160, 320)
 STANDARD_AT = 40
-STIFF_AT = 160
-LOOSEST = 0.05
 _AS_LARGE = 1e-3  # of the largest stress, by which a place may have less and count as one with it
 _BESIDE_A_KINK = 1.5  # elements: the one that holds it, and half of those beside it
 
@@ -170,12 +163,6 @@ class Convergence:
         return not any(series.why for series in self.series)
 
 
-def at(choices: Choices, n: int) -> Choices:
-    """The choices of the family's member of size N."""
-    share = (STANDARD_AT / min(n, STIFF_AT)) ** OWN["fea"] * (STIFF_AT / max(n, STIFF_AT)) ** STANDARD
-    return replace(choices, links=n, elements=n, penetration=min(LOOSEST, choices.penetration * share))
-
-
 def converged(
     scene: Scene,
     sizes: Sequence[int],
@@ -199,8 +186,8 @@ def converged(
     choices = choices.within(theory)
     jobs: dict[tuple[Method, str, int], Job] = {}
     for n in sizes:
-        jobs["cprbm", choices.formulation, n] = (solvers.cprbm, scene, at(choices, n))
-        jobs["fea", theory, n] = (solvers.fea, scene, at(choices, n))
+        jobs["cprbm", choices.formulation, n] = (solvers.cprbm, scene, choices.of_size(n))
+        jobs["fea", theory, n] = (solvers.fea, scene, choices.of_size(n))
     known = [] if solvers.exact is None or theory != "bending" else [(solvers.exact, scene, choices)]
     found = crew.answers([*jobs.values(), *known])
     exact, exact_absence = exact_or_why(found.pop() if known else None)

@@ -1,267 +1,218 @@
-"""N for a tolerance: the cheapest N whose own error estimate meets it, found from coarse to fine.
+"""N for a tolerance: N doubles until every stated uncertainty is within the tolerance.
 
-=======  ==================================================================================================
-symbol   meaning
-=======  ==================================================================================================
-N        links or elements per beam
-τ        the tolerance, a fraction
-f        stated uncertainty of a row (a probe at a station) over what its differences are divided by
-p        the order of convergence that both solvers have at least, 2
-q        the order that f shows between two N, between p and 4 (the highest order of either solver)
-g        by how much N must grow for f to be τ in every row: max (f/τ)^(1/q)
-M        safety factor of a predicted N, so that the N that is predicted passes
-=======  ==================================================================================================
+The symbols are those of :mod:`comparisons.tolerances.result`.  Values and uncertainties at an N follow from the
+answers at N/4, N/2 and N, of the CPRBM also at N/2 + N/14
+(:mod:`comparisons.tolerances.limits`).  No answer is solved twice.
 
-Two ways to meet τ, by what must be solved:
-
-* *plain*: the value at N, whose f comes from N and 2N (and from N + N/7, where the error may be uneven in N);
-* *settled*: of N/2, N and 2N the value at 2N, or what N and 2N extrapolate to, whichever states less, probe by probe.
-
-A solve's work grows with its N.  From f = C/N^p follows where the plain way would pass: at N' = M·g·N.  It must solve
-N' and 2N'; to double N must solve 4N alone, and makes both ways possible with what is solved already.  So N goes to N'
-where that is little work (3N' ≤ 5N), and else to 2N: never further than the double of what did not do.  Where
-extrapolation is not to be had (an error that is uneven in N by its nature), N goes to N' in one step, as soon as two N
-have shown the order.
+The finite elements come first, in the theory of the CPRBM.  Their values are the denominators of the other
+solvers' f; where a solver is asked alone, its own values are.  The solid has an element across the thickness for every
+20 along.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Literal, Protocol
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 
-from comparisons.display_units import at_station
-from comparisons.formats import percent
-from cprbm_scene import Scene, SceneError
-
-FIRST = 10
-"""N with which a search begins."""
-
-ENOUGH = 80
-"""N from which on a prediction is believed that says that the largest N will not do, and a failure as well."""
-
-MARGIN = 1.03
-HIGHEST_ORDER = 4.0
-
-_LARGEST_STEP = 4.0
-"""Of a predicted N over the one from which it was predicted."""
-
-_FOR_CERTAIN = 2.0
-"""How far beyond the largest N a predicted one must lie for the search to end."""
-
-
-@dataclass(frozen=True, slots=True)
-class Stated:
-    """A row's stated uncertainty.
-
-    Attributes:
-        probe, stage, station: the row.
-        fraction: f; infinite where none can be stated, because the value is there at one N and not at another.
-        order: p.
-    """
-
-    probe: str
-    stage: str
-    station: float
-    fraction: float
-    order: float
-
-    @property
-    def row(self) -> tuple[str, str, float]:
-        """What the row is known by."""
-        return self.probe, self.stage, self.station
+from comparisons.choices import Choices
+from comparisons.crew import Crew, Job
+from comparisons.pairing import Runs, Solvers, exact_or_why, in_other_theory, paired, with_solid
+from comparisons.reactions import perturbed_scene
+from comparisons.sentences import problem_sentences
+from comparisons.store import AnswerMemory
+from comparisons.tolerances.limits import Limits, limits_of
+from comparisons.tolerances.result import (
+    ENOUGH,
+    FIRST,
+    LARGEST,
+    LARGEST_PAPER,
+    Level,
+    SolverName,
+    Stated,
+    Tolerance,
+    worst_row,
+)  # fmt: skip
+from comparisons.verdict.rows import Row, rows_of
+from comparisons.verdict.station_events import Place
+from cprbm_scene import Answer, Scene, SceneError
+from cprbm_scene.frozendict import frozendict
 
 
-@dataclass(frozen=True, slots=True)
-class Estimate:
-    """What the solves at and about one N state.
-
-    Attributes:
-        rows: one for each that has a value.
-        trouble: why nothing is stated; empty otherwise.
-        extrapolated: names of the probes whose values are.
-    """
-
-    rows: tuple[Stated, ...]
-    trouble: str = ""
-    extrapolated: frozenset[str] = frozenset()
-
-    @property
-    def worst(self) -> Stated | None:
-        """The row with the largest f; None without rows."""
-        return max(self.rows, key=lambda row: row.fraction, default=None)
-
-    @property
-    def fraction(self) -> float:
-        """The largest f; infinite in trouble, 0 where no row has a value."""
-        if self.trouble:
-            return math.inf
-        return 0.0 if self.worst is None else self.worst.fraction
-
-    def worst_of_probes(self) -> dict[str, float]:
-        """The largest f of every probe."""
-        worst: dict[str, float] = {}
-        for row in self.rows:
-            worst[row.probe] = max(row.fraction, worst.get(row.probe, 0.0))
-        return worst
-
-    def growth(self, tolerance: float, before: Estimate | None, ratio: float) -> float:
-        """g, at least 1.
-
-        Args:
-            tolerance: τ.
-            before: what was stated at an N smaller by ``ratio``, from which q is seen; without it q is p.
-            ratio: greater than 1.
-        """
-        if self.trouble:
-            return math.inf
-        earlier = {} if before is None else {row.row: row.fraction for row in before.rows}
-        return max((_growth(row, tolerance, earlier.get(row.row), ratio) for row in self.rows), default=1.0)
-
-
-def _growth(row: Stated, tolerance: float, before: float | None, ratio: float) -> float:
-    if row.fraction <= tolerance:
-        return 1.0
-    q = row.order
-    if before is not None and math.isfinite(before) and math.isfinite(row.fraction):
-        q = min(max(q, math.log(before / row.fraction) / math.log(ratio)), HIGHEST_ORDER) if before > 0.0 else q
-    return float((row.fraction / tolerance) ** (1.0 / q))
-
-
-class Levels(Protocol):
-    """What a search may ask; whatever N an answer needs is solved once."""
-
-    def plain(self, n: int) -> Estimate:
-        """Of the values at ``n``, from n and 2n."""
-
-    def checked(self, n: int) -> Estimate:
-        """The same with all that the values at ``n`` are to be held against."""
-
-    def settled(self, n: int) -> Estimate:
-        """Of the values at 2n or of what n and 2n extrapolate to, from n/2, n and 2n."""
-
-
-@dataclass(frozen=True, slots=True)
-class Found:
-    """Where a search ended: at the values of ``n``, or at what is ``settled`` of n/2, n and 2n."""
-
-    n: int
-    estimate: Estimate
-    met: bool
-    settled: bool = False
-
-
-def search(levels: Levels, tolerance: float, largest: int, *, extrapolates: bool) -> Found:
-    """The cheapest N that meets a tolerance, or the best of what was solved where none does.
+def solve_within(
+    scene: Scene, solver: SolverName, choices: Choices, tolerance: float, solvers: Solvers, say: Callable[[str], None]
+) -> tuple[Answer, Tolerance]:
+    """One solver's answer within a tolerance, or the answer at the last N.
 
     Args:
-        levels: what is solved and stated.
-        tolerance: τ, positive.
-        largest: N beyond which nothing is solved; at least 4 ``FIRST``.
-        extrapolates: whether the settled way is open.
+        scene: the question.
+        solver: the solver.
+        choices: formulation, theory, and the penetration at N = 40.
+        tolerance: τ.
+        solvers: functions of the solvers.
+        say: called with a description of the next solve.
 
     Raises:
-        SceneError: the question is refused at every N.
+        SceneError: the solver refuses the question.
     """
-    tried: list[Found] = []
-    n, before = FIRST, None
-    while True:
-        try:
-            found = _plainly(levels, n, tolerance)
-        except SceneError:  # a formulation may ask for more joints in a range than few links have there
-            if n >= ENOUGH:
-                raise
-            n *= 2
-            continue
-        tried.append(found)
-        estimate = last = found.estimate
-        ratio = 2.0 if before is None else n / before.n
-        growth = estimate.growth(tolerance, None if before is None else before.estimate, ratio)
-        if not found.met and extrapolates:
-            if n > FIRST:
-                last = levels.settled(n)
-                tried.append(Found(n, last, last.fraction <= tolerance, settled=True))
-            if not tried[-1].met and 3 * _predicted(n, growth) <= 5 * n:
-                tried.append(_plainly(levels, _predicted(n, growth), tolerance))
-        if tried[-1].met:
-            return tried[-1]
-        step = 2.0 if extrapolates or before is None else _LARGEST_STEP
-        further = 2 * n if extrapolates else min(_predicted(n, growth), round(step * n))
-        further = min(further, largest // 2)
-        if further <= n or (n >= ENOUGH and _hopeless(last, 2.0 * n, tolerance, largest)):
-            return min(tried, key=lambda each: each.estimate.fraction)
-        before, n = found, further
+    memory = AnswerMemory(solvers=with_solid(solvers) if solver == "solid" else solvers, say=say)
+    theory = choices.kinematics_of(scene) if solver == "fea" else choices.theory_of(scene)
+    search = _Search(scene, solver, choices.within(theory), memory)
+    return search.run(tolerance), search.result(tolerance)
 
 
-def _plainly(levels: Levels, n: int, tolerance: float) -> Found:
-    estimate = levels.plain(n)
-    if estimate.fraction <= tolerance:
-        estimate = levels.checked(n)
-    return Found(n, estimate, estimate.fraction <= tolerance)
+def runs_within(
+    scene: Scene, choices: Choices, tolerance: float, solvers: Solvers, crew: Crew, say: Callable[[str], None]
+) -> tuple[Runs, tuple[Tolerance, ...]]:
+    """The runs of a comparison with all solvers within a tolerance, and the results of the searches.
 
+    Args:
+        scene, choices, tolerance, solvers, say: as of :func:`solve_within`.
+        crew: processes to share the runs.
 
-def _predicted(n: int, growth: float) -> int:
-    """N' = M·g·N; where g says nothing, because a value comes and goes, 2N.
-
-    It is even as the first N is, so that the middle of a beam, where what is symmetric touches, stays a border: a
-    prediction from one kind of mesh is worth little for another.
+    Raises:
+        SceneError: a solver refuses the question.
     """
-    return 2 * math.ceil(max(n + 1, MARGIN * growth * n) / 2) if math.isfinite(growth) else 2 * n
+    memory = AnswerMemory(pool=crew.pool, solvers=solvers, say=say)
+    choices = choices.within(choices.kinematics_of(scene))
+    fea = _Search(scene, "fea", choices, memory)
+    reference = fea.run(tolerance)
+    cprbm = _Search(scene, "cprbm", choices, memory, reference)
+    value = cprbm.run(tolerance)
+    at_last = replace(fea.choices_at(fea.n), links=cprbm.n, formulation=choices.formulation)
+    if cprbm.limits is not None and fea.limits is not None:
+        own, driven = cprbm.limits, perturbed_scene(scene)
+        other, other_absence = in_other_theory(scene, replace(at_last, links=cprbm.n // 2), solvers)
+        known = [(solvers.exact, scene, choices)] if solvers.exact is not None and choices.theory == "bending" else []
+        exact, exact_absence = exact_or_why(*memory.answers(known))
+        runs = Runs(
+            choices.kinematics_of(scene),
+            (value, own.coarse),
+            (fea.limits.answer, fea.limits.coarse),
+            auto=own.answer if choices.formulation == "paper" else None,
+            other=other,
+            other_absence=other_absence,
+            perturbed=None if driven is None else replace(cprbm, scene=driven, reference=None).at_last(),
+            exact=exact,
+            exact_absence=exact_absence,
+            settled=frozendict({"cprbm": own.uncertainties, "fea": fea.limits.uncertainties}),
+        )
+    else:
+        runs = paired(scene, at_last, replace(solvers, solid=None), memory)
+    found = cprbm.result(tolerance), fea.result(tolerance)
+    if solvers.solid is None:
+        return runs, found
+    solid = _Search(scene, "solid", choices, memory, reference if fea.limits else None)
+    solid.run(tolerance)
+    return replace(runs, solid=tuple(solid.answers.values())), (*found, solid.result(tolerance))
 
 
-def _hopeless(estimate: Estimate, finest: float, tolerance: float, largest: int) -> bool:
-    """Whether no N up to the largest is likely to do, with ``finest`` the finest N that was solved."""
-    if estimate.trouble:
-        return True
-    growth = estimate.growth(tolerance, None, 2.0)
-    if not math.isfinite(growth):
-        return finest >= 8 * ENOUGH
-    return finest * growth > _FOR_CERTAIN * largest
-
-
-@dataclass(frozen=True, slots=True)
-class Tolerance:
-    """What a search for N has come to.
+@dataclass(slots=True)
+class _Search:
+    """The search of one solver in one theory.
 
     Attributes:
-        asked: the tolerance, a fraction.
-        met: whether every row's stated uncertainty is within it.
-        solver: whose search it was.
-        n: links or elements per beam of the answer; of an extrapolated one the finest. Of a solid along each beam.
-        worst: the row with the largest stated uncertainty; None where nothing is stated.
-        trouble: why nothing is; empty otherwise.
-        extrapolated: N and 2N, or nothing.
-        probes: names of those whose values are extrapolated.
-        solved: every N that was solved, ascending.
-        ended: why nothing finer was solved, where that is said.
+        reference: the answer with the denominators; None for the solver's own answer.
+        n: the present N; answers: at the present N and coarser; limits: of the answers, None in trouble.
+        level: result at the present N.
     """
 
-    asked: float
-    met: bool
-    solver: Literal["cprbm", "fea", "solid"]
-    n: int
-    worst: Stated | None
-    trouble: str
-    extrapolated: tuple[int, ...]
-    probes: tuple[str, ...]
-    solved: tuple[int, ...]
-    ended: str = ""
+    scene: Scene
+    solver: SolverName
+    choices: Choices
+    memory: AnswerMemory
+    reference: Answer | None = None
+    n: int = 0
+    answers: dict[int, Answer] = field(default_factory=dict)
+    limits: Limits | None = None
+    level: Level = field(default_factory=lambda: Level(0, None))
 
-    def sentence(self, scene: Scene) -> str:
-        """What the search has found, with stations in the units of the scene's file."""
-        what = f"{self.n} {'links' if self.solver == 'cprbm' else 'elements'} per beam"
-        if self.extrapolated and self.solver == "solid":
-            coarse, fine = self.extrapolated
-            what = f"extrapolated from {coarse} and {fine} elements along each beam"
-        elif self.extrapolated:
-            coarse, fine = self.extrapolated
-            what = f"{len(self.probes)} probes extrapolated from N = {coarse}, {fine}, the others at N = {fine}"
-        found = self.trouble or "no row has a value"
-        if self.worst is not None:
-            row, found = self.worst, f"states {percent(self.worst.fraction)}"
-            if not math.isfinite(row.fraction):
-                found = "has a value at one N and none at another"
-            found = f"{row.probe} at {at_station(scene, row.stage, row.station)} {found}"
-        met = "within" if self.met else "NOT within"
-        ended = f"; {self.ended}" if self.ended else ""
-        return f"{self.solver.upper()}: {met} {percent(self.asked)}: {what}; at worst {found}{ended}."
+    def run(self, tolerance: float) -> Answer:
+        """The answer at the found N."""
+        self.n = 2 * FIRST[self.solver]
+        while True:
+            try:
+                value = self.at_last()
+            except SceneError:  # few links may be too few for the joints of a formulation
+                if self.n >= ENOUGH:
+                    raise
+                self.n *= 2
+                continue
+            if self.level.fraction <= tolerance or self.end(tolerance):
+                return value
+            self.n *= 2
+
+    def end(self, tolerance: float) -> str:
+        """Why N does not grow further; empty where N does."""
+        return self.level.end(tolerance, LARGEST_PAPER if self._paper else LARGEST[self.solver])
+
+    def at_last(self) -> Answer:
+        """The answer at the present N, with limits as values unless a run ended early."""
+        jobs = {size: self._job(size) for size in self._sizes()}
+        paper = [(*self._job(self.n)[:2], self.choices_at(self.n))]
+        found = self.memory.answers([*jobs.values(), *(paper if self._paper else ())])
+        value = found.pop() if self._paper else None
+        self.answers = dict(zip(jobs, found, strict=True))
+        problems = {n: next(iter(problem_sentences(self.scene, each)), "") for n, each in self.answers.items()}
+        trouble = problems[self.n // 2] or problems[self.n]
+        if trouble:
+            self.limits, self.level = None, Level(self.n, None, trouble)
+            return value or self.answers[self.n]
+        self.answers = {size: answer for size, answer in self.answers.items() if not problems[size]}
+        self.limits = limits_of(self.scene, self.answers, self.solver)
+        self.level = Level(self.n, self._worst(self.limits, value))
+        return value or self.limits.answer
+
+    def result(self, tolerance: float) -> Tolerance:
+        """Result of the search."""
+        probes = () if self._paper or self.limits is None else self.limits.probes
+        sizes = self.memory.sizes(getattr(self.memory.solvers, self.solver), self.scene)
+        ended = "" if self.level.fraction <= tolerance else self.end(tolerance)
+        return Tolerance(
+            tolerance, self.solver, self.level, (self.n // 2, self.n) if probes else (), probes, sizes, ended
+        )
+
+    def choices_at(self, n: int) -> Choices:
+        """The choices at N."""
+        return replace(self.choices.of_size(n), across=max(n // FIRST["solid"], 1))
+
+    @property
+    def _paper(self) -> bool:
+        return self.solver == "cprbm" and self.choices.formulation == "paper"
+
+    def _sizes(self) -> list[int]:
+        """N/4 unless below the first N, N/2 and N; of the CPRBM also N/2 + N/14."""
+        doubled = [self.n >> k for k in range(3) if self.n >> k >= FIRST[self.solver]]
+        third = [self.n // 2 + max(1, round(self.n / 14))] if self.solver == "cprbm" else []
+        return sorted([*doubled, *third])
+
+    def _job(self, size: int) -> Job:
+        even = replace(self.choices_at(size), formulation="auto")
+        return getattr(self.memory.solvers, self.solver), self.scene, even
+
+    def _worst(self, limits: Limits, paper: Answer | None) -> Stated | None:
+        """The row with the largest f, of a value in ``paper`` with the distance from ``auto``."""
+        reference = self.reference or limits.answer
+        runs = Runs(
+            self.choices.kinematics_of(self.scene),
+            (paper or limits.answer, limits.coarse),
+            (reference, reference),
+            auto=None if paper is None else limits.answer,
+            settled=frozendict({"cprbm": limits.uncertainties}),
+        )
+        return worst_row((row, _fraction(row, limits)) for row in rows_of(self.scene, runs))
+
+
+def _fraction(row: Row, limits: Limits) -> float | None:
+    """f; None without a value and between events, infinite where the value exists at one N and not at another."""
+    if row.place is Place.BETWEEN:
+        return None
+    if row.bounds is not None:
+        return row.fraction(row.bounds.cprbm)
+    shapes = {
+        station.values[row.probe.name].shape
+        for answer in (limits.answer, limits.coarse)
+        for station in answer.stations
+        if (station.stage, station.value) == row.where
+    }
+    return None if len(shapes) == 1 else math.inf

@@ -32,7 +32,7 @@ from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_o
 from cprbm.equilibrium.iteration import begin_by_law, begin_iteration, change_set, end_iteration
 from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
-from cprbm_scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Flags, Ints
 
 FREE_CHANGES = 12
 """Iterations with any change of the set; later iterations change one place at a time."""
@@ -135,7 +135,9 @@ def passed_through(geometry: Geometry, before: Array, old: Places, after: Array,
         return True
     first, second = separations(before, geometry.arrays, old), separations(after, geometry.arrays, new)
     number = {_identity(new, k): k for k in range(len(new.pair)) if not new.moves[k]}
-    unsigned = (old.curve == old.other) | (old.side == 0.0)
+    # joints of lines slide past the end of a line at no distance; the end's own place has a side
+    thick = geometry.arrays.thickness[old.piece] + geometry.arrays.thickness[old.foot] > 0.0
+    unsigned = (old.curve == old.other) | ((old.side == 0.0) & thick)
     for k in np.flatnonzero(unsigned & ~old.moves & (np.hypot(*first.T) < REACH)).tolist():
         at = number.get(_identity(old, k))
         if at is not None and first[k] @ second[at] < 0.0:

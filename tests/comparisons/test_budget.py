@@ -6,15 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.budgets import drawn, tables
-from comparisons.budgets.accounts import accounted
-from comparisons.budgets.parts import Budget, budgets_of
-from comparisons.budgets.runs import budgeted
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
 from comparisons.plain import text_of
 from comparisons.store import AnswerMemory
+from comparisons.studies.budget import Budget, account_of
+from comparisons.studies.budget_section import LOOKS, budget_figures, budget_table, data_of, sentences_of
 from cprbm_scene import Ending, Stage
 from tests.verdict.made_up import MadeUp
 
@@ -25,8 +23,8 @@ LOAD = 0.067
 def budget_at(scene, solvers, choices=None, probe="BD.rotation") -> Budget:
     """The budget at the load before contact, as ``paper`` may be run there."""
     before = scene.model_copy(update={"stages": (Stage(name="load", steps="M", stations=(LOAD,)),), "claims": ()})
-    runs = budgeted(before, choices or Choices(), AnswerMemory(solvers=solvers))
-    (found,) = [each for each in budgets_of(before, runs) if each.row.probe.name == probe]
+    account = account_of(before, choices or Choices(), AnswerMemory(solvers=solvers))
+    (found,) = [each for each in account.budgets if each.row.probe.name == probe]
     return found
 
 
@@ -61,7 +59,7 @@ def test_where_paper_was_chosen_the_contact_is_a_part(hinge):
 @pytest.mark.parametrize("formulation", ["auto", "paper"])
 def test_the_parts_sum_to_the_difference(hinge, formulation):
     solvers = Solvers(MadeUp("cprbm", 2e-3, paper=1e-3), MadeUp("fea", -5e-4, penalty=2e-4))
-    budgets = budgets_of(hinge, budgeted(hinge, Choices(formulation=formulation), AnswerMemory(solvers=solvers)))
+    budgets = account_of(hinge, Choices(formulation=formulation), AnswerMemory(solvers=solvers)).budgets
     assert len(budgets) > 100
     for each in budgets:
         assert sum(each.parts.by_name().values()) == pytest.approx(each.row.difference, rel=1e-9, abs=1e-18)
@@ -93,7 +91,7 @@ def test_parts_that_cancel_are_told_along_the_value(hinge):
 
 
 def test_an_open_contact_has_no_budget(hinge, right):
-    budgets = budgets_of(hinge, budgeted(hinge, Choices(), AnswerMemory(solvers=right)))
+    budgets = account_of(hinge, Choices(), AnswerMemory(solvers=right)).budgets
     of_contact = {(each.row.probe.name, each.row.station) for each in budgets if each.row.probe.of == "contact"}
     names = {name for name, station in of_contact if station == 0.67}
     assert names == {"contact.force", "contact.centre", "contact.closing_load"}
@@ -139,49 +137,26 @@ def test_what_the_beam_theories_miss_is_told_beside_the_sum(hinge):
     assert found.missed_uncertainty == pytest.approx(found.elements_uncertainty, rel=1e-9)  # both meshes say the same
     without = budget_at(hinge, beams)
     assert (without.missed, without.parts) == (None, found.parts)
-    account = accounted(hinge, Choices(), AnswerMemory(solvers=replace(beams, solid=a_solid(1.0022))))
-    (sheet,) = (one for one in tables.sheets_of(account) if "Error budget" in one.title)
-    assert sheet.headers[-2:] == ("missed", "±")
-    row = next(each for each in tables.data_of(account)["budget"] if each["probe"] == "BD.rotation")
+    account = account_of(hinge, Choices(), AnswerMemory(solvers=replace(beams, solid=a_solid(1.0022))))
+    assert budget_table(account).headers[-2:] == ("missed", "±")
+    row = next(each for each in data_of(account)["budget"] if each["probe"] == "BD.rotation")
     assert row["missed"] == pytest.approx(0.0022 / (1.0 - 8e-3 / 4.0), rel=1e-9)
-    assert "BD.rotation +0.2" in tables.sentences_of(account)[-1]
-    (figure,) = drawn.of_account(account)
+    assert "BD.rotation +0.2" in sentences_of(account)[-1]
+    (figure,) = budget_figures(account)
     assert "miss together" in figure.caption
 
 
 def test_a_solid_that_did_not_arrive_says_why_and_leaves_the_budget(hinge, right):
-    account = accounted(hinge, Choices(), AnswerMemory(solvers=replace(right, solid=ended_early)))
+    account = account_of(hinge, Choices(), AnswerMemory(solvers=replace(right, solid=ended_early)))
     assert account.budgets
     assert all(each.missed is None for each in account.budgets)
-    assert "det F" in tables.sentences_of(account)[-1]
-    assert all("missed" not in each for each in tables.data_of(account)["budget"])
+    assert "det F" in sentences_of(account)[-1]
+    assert all("missed" not in each for each in data_of(account)["budget"])
 
 
 def ended_early(scene, choices):
     whole = a_solid(1.0)(scene, choices)
     return replace(whole, ending=Ending.NOT_CERTIFIED, sentence="det F is -1e-3", stations=whole.stations[:3])
-
-
-def test_what_is_known_is_not_run_again(hinge, right):
-    calls = []
-
-    def counting(solver, name):
-        def answer(scene, choices):
-            calls.append((name, choices))
-            return solver(scene, choices)
-
-        return answer
-
-    memory = AnswerMemory(solvers=Solvers(counting(right.cprbm, "cprbm"), counting(right.fea, "fea")))
-    choices = Choices(links=30)
-    first = budgeted(hinge, choices, memory)
-    every = [each for each in calls if each[1].formulation == "auto"]
-    assert len(every) == len(set(every)) == 3 + 3 + 1  # links, penetrations, 2n
-    calls.clear()
-    again = budgeted(hinge, choices, memory)
-    assert {own.formulation for _, own in calls} == {"paper"}
-    for one, other in zip(budgets_of(hinge, first), budgets_of(hinge, again), strict=True):
-        assert one.parts == other.parts
 
 
 @pytest.mark.parametrize(
@@ -206,28 +181,26 @@ def test_a_solver_does_not_heed_the_others_choices(hinge, right, solver, own, ca
 
 
 def test_an_answer_that_is_not_whole_leaves_no_budget_and_says_so(hinge, right):
-    account = accounted(hinge, Choices(), AnswerMemory(solvers=Solvers(right.cprbm, MadeUp("fea", 0.0, until=3))))
-    assert account.budgets == account.last == ()
-    assert any("fea at 2 n" in why for why in account.missing)
-    assert tables.sheets_of(account) == ()
-    assert "no error budget" in tables.sentences_of(account)[0]
-    assert drawn.of_account(account) == ()
+    account = account_of(hinge, Choices(), AnswerMemory(solvers=Solvers(right.cprbm, MadeUp("fea", 0.0, until=3))))
+    assert account.budgets == ()
+    assert any("fea finer" in why for why in account.missing)
+    assert budget_table(account).rows == ()
+    assert "no error budget" in sentences_of(account)[0]
+    assert budget_figures(account) == ()
 
 
 def test_the_table_has_every_probe_with_a_value_at_the_last_station(hinge, right):
-    account = accounted(hinge, Choices(), AnswerMemory(solvers=right))
-    (budgets,) = tables.sheets_of(account)
-    assert [row[0] for row in budgets.rows] == [probe.name for probe in hinge.probes]
-    assert {len(row) for row in budgets.rows} == {len(budgets.headers)}
-    signs = dict(zip(budgets.headers, budgets.rows[2], strict=True))
+    table = budget_table(account_of(hinge, Choices(), AnswerMemory(solvers=right)))
+    assert [row[0] for row in table.rows] == [probe.name for probe in hinge.probes]
+    signs = dict(zip(table.headers, table.rows[2], strict=True))
     # the limit of the rotation is 0.8·0.67 + 0.02, of which the first part has errors of 0.2 % and −0.0125 %
     assert (signs["links"], signs["elements"]) == ("+0.193", "+0.0121")
-    assert sum("our difference of" in sentence for sentence in tables.sentences_of(account)) == 2  # two claims
+    assert "contact" not in table.headers
 
 
 def test_json_has_every_station_and_sums(hinge, right):
-    account = accounted(hinge, Choices(), AnswerMemory(solvers=right))
-    data = json.loads(text_of(tables.data_of(account)))
+    account = account_of(hinge, Choices(), AnswerMemory(solvers=right))
+    data = json.loads(text_of(data_of(account)))
     assert len({row["station"] for row in data["budget"]}) == 10
     for row in data["budget"]:
         assert sum(row["parts"].values()) == pytest.approx(row["difference"], rel=1e-9, abs=1e-15)
@@ -238,12 +211,12 @@ def test_json_has_every_station_and_sums(hinge, right):
 
 
 def test_the_picture_shows_every_part_that_there_is(hinge, right):
-    account = accounted(hinge, Choices(), AnswerMemory(solvers=right))
-    (picture,) = drawn.of_account(account)
+    account = account_of(hinge, Choices(), AnswerMemory(solvers=right))
+    (picture,) = budget_figures(account)
     assert picture.name == "budget"
-    (again,) = drawn.of_account(account)
+    (again,) = budget_figures(account)
     assert again.svg == picture.svg
-    for name, (colour, _) in drawn.LOOKS.items():
+    for name, (colour, _) in LOOKS.items():
         shown = any(getattr(each.parts, name) != 0.0 for each in account.budgets)
         assert (colour.encode() in picture.svg) == shown or name == "contact", name
     assert not any(each.parts.contact for each in account.budgets)
@@ -251,7 +224,7 @@ def test_the_picture_shows_every_part_that_there_is(hinge, right):
 
 def test_a_case_without_differences_has_no_picture(hinge):
     same = Solvers(MadeUp("cprbm", 0.0), MadeUp("fea", 0.0))
-    assert drawn.of_account(accounted(hinge, Choices(), AnswerMemory(solvers=same))) == ()
+    assert budget_figures(account_of(hinge, Choices(), AnswerMemory(solvers=same))) == ()
 
 
 def test_converge_tells_the_budget_and_spares_its_own_runs(hinge, right, capsys):
@@ -275,6 +248,6 @@ def test_converge_tells_the_budget_and_spares_its_own_runs(hinge, right, capsys)
 
 def test_converge_shows_the_budget_and_writes_its_figure(right, tmp_path, capsys):
     assert run(["converge", "hinge", "--sizes", "40,80", "--out", str(tmp_path)], right) == 0
-    assert "Error budget at load 0.67 with 40 links and 80 elements per beam" in capsys.readouterr().out
+    assert "Error budget at load 0.67 N·m with 40 links and 80 elements per beam" in capsys.readouterr().out
     assert (tmp_path / "hinge" / "budget.svg").read_bytes().startswith(b"<?xml")
     assert "Error budget" in (tmp_path / "index.html").read_text(encoding="utf-8")

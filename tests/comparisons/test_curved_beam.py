@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from comparisons.budgets.curved_beam import inner_edge_factor
+from comparisons.studies.curved_beam import inner_edge_factor
 
 
 @pytest.mark.parametrize("bentness", [0.02, 0.08, 0.1999, 0.2001, 0.5, 1.0, 1.9])

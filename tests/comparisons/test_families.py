@@ -14,7 +14,7 @@ from comparisons.pairing import Solvers
 from comparisons.plain import text_of
 from comparisons.studies import convergence
 from comparisons.studies import convergence_tables as tables
-from comparisons.studies.families import at, converged
+from comparisons.studies.families import converged
 from cprbm_scene import Ending
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
@@ -88,12 +88,12 @@ def test_both_limits_meet_in_one_theory(hinge, right, theory):
 
 
 def test_the_penetration_falls_with_the_fourth_power_and_is_never_large():
-    assert at(Choices(), 40).penetration == Choices().penetration
-    assert at(Choices(), 80).penetration == Choices().finer().penetration
-    assert at(Choices(), 10).penetration == pytest.approx(256.0 * Choices().penetration)
-    assert at(Choices(), 4).penetration == 0.05
-    assert at(Choices(), 160).penetration / at(Choices(), 320).penetration == pytest.approx(4.0)
-    assert (at(Choices(), 20).links, at(Choices(), 20).elements) == (20, 20)
+    assert Choices().of_size(40).penetration == Choices().penetration
+    assert Choices().of_size(80).penetration == Choices().finer().penetration
+    assert Choices().of_size(10).penetration == pytest.approx(256.0 * Choices().penetration)
+    assert Choices().of_size(4).penetration == 0.05
+    assert Choices().of_size(160).penetration / Choices().of_size(320).penetration == pytest.approx(4.0)
+    assert (Choices().of_size(20).links, Choices().of_size(20).elements) == (20, 20)
 
 
 def test_a_contact_that_is_open_at_some_sizes_is_followed_from_where_it_is_closed(hinge, right):

@@ -354,8 +354,10 @@ def put(comparison, tmp_path_factory):
 
 def test_the_folder_of_compare_holds_everything(put):
     found = {str(path.relative_to(put)) for path in put.rglob("*") if path.is_file()}
-    figures = {f"hinge/{name}.{kind}" for name in ("shapes", "stress", "path-M") for kind in ("svg", "png")}
-    assert found == {"index.html", "hinge/comparison.json", "hinge/answers.json.gz"} | figures
+    names = ("shapes", "stress", "path-M", "contact-forces")
+    figures = {f"hinge/{name}.{kind}" for name in names for kind in ("svg", "png")}
+    numbers = {f"hinge/{name}" for name in ("comparison.json", "answers.json.gz", "contact-forces.csv")}
+    assert found == {"index.html"} | numbers | figures
     data = json.loads((put / "hinge" / "comparison.json").read_text("utf-8"))
     assert data["cases"][0]["case"] == "hinge"
     answers = json.loads(gzip.decompress((put / "hinge" / "answers.json.gz").read_bytes()))

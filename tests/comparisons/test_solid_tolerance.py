@@ -12,8 +12,8 @@ from comparisons.cli.main import run
 from comparisons.crew import ALONE
 from comparisons.pairing import Runs, Solvers, solid_answer
 from comparisons.solid_limits import solid_limit
-from comparisons.tolerances.solids import LARGEST
-from comparisons.tolerances.tolerated import paired_within, solved
+from comparisons.tolerances.result import LARGEST
+from comparisons.tolerances.search import runs_within, solve_within
 from comparisons.verdict.rows import rows_of
 from cprbm_scene import Ending
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
@@ -57,7 +57,7 @@ def test_the_error_is_within_the_tolerance_whatever_the_order(hinge, p, toleranc
     # reference: the law without an error, 0.01 of the load along x
     scene = of_stage(hinge)
     solid = Falling(-0.017, p)
-    answer, found = solved(scene, "solid", Choices(), tolerance, Solvers(solid=solid), lambda text: None)
+    answer, found = solve_within(scene, "solid", Choices(), tolerance, Solvers(solid=solid), lambda text: None)
     assert found.worst is not None
     assert found.met == (found.worst.fraction <= tolerance)
     error = abs(answer.stations[-1].values["B.displacement"][0] - 0.0067) / 0.0067
@@ -81,27 +81,27 @@ def test_the_order_is_seen_on_three_meshes_and_assumed_on_two(hinge):
 def test_the_search_ends_at_its_bound_and_says_so(hinge):
     scene = of_stage(hinge)
     solid = Falling(0.02, 1.1)
-    _, found = solved(scene, "solid", Choices(), 1e-4, Solvers(solid=solid), lambda text: None)
+    _, found = solve_within(scene, "solid", Choices(), 1e-3, Solvers(solid=solid), lambda text: None)
     assert not found.met
-    assert max(found.solved) == LARGEST
-    assert "no mesh of more than 160 elements" in found.sentence(hinge)
+    assert max(found.solved) == LARGEST["solid"]
+    assert "N = 160 is the largest N" in found.sentence(hinge)
 
 
 def test_what_no_mesh_can_meet_is_not_looked_for_on_the_finest(hinge):
     solid = Falling(0.2, 1.1)
-    _, found = solved(of_stage(hinge), "solid", Choices(), 1e-9, Solvers(solid=solid), lambda text: None)
+    _, found = solve_within(of_stage(hinge), "solid", Choices(), 1e-9, Solvers(solid=solid), lambda text: None)
     assert not found.met
-    assert max(found.solved) < LARGEST
+    assert max(found.solved) < LARGEST["solid"]
     assert "would not do either" in found.sentence(hinge)
 
 
 def test_a_mesh_too_coarse_to_arrive_counts_for_nothing(hinge):
     solid = Falling(0.01, 3.0, until=40)
-    _, found = solved(of_stage(hinge), "solid", Choices(), 1e-2, Solvers(solid=solid), lambda text: None)
+    _, found = solve_within(of_stage(hinge), "solid", Choices(), 1e-2, Solvers(solid=solid), lambda text: None)
     assert found.met
     assert found.extrapolated == (40, 80)
     never = Falling(0.01, 3.0, until=1000)
-    answer, found = solved(of_stage(hinge), "solid", Choices(), 1e-2, Solvers(solid=never), lambda text: None)
+    answer, found = solve_within(of_stage(hinge), "solid", Choices(), 1e-2, Solvers(solid=never), lambda text: None)
     assert not found.met
     assert not answer.completed
     assert "ended early" in found.sentence(hinge)
@@ -110,7 +110,7 @@ def test_a_mesh_too_coarse_to_arrive_counts_for_nothing(hinge):
 def test_a_comparison_has_all_meshes_of_the_solid_and_solves_none_twice(hinge, right):
     solid = Falling(0.01, 3.1)
     solvers = replace(right, solid=solid)
-    runs, found = paired_within(of_stage(hinge), SAME_THEORY, 2e-3, solvers, ALONE, lambda text: None)
+    runs, found = runs_within(of_stage(hinge), SAME_THEORY, 2e-3, solvers, ALONE, lambda text: None)
     assert [each.solver for each in found] == ["cprbm", "fea", "solid"]
     assert found[2].met
     assert len(set(solid.asked)) == len(solid.asked)
@@ -122,7 +122,7 @@ def test_a_bar_bends_as_timoshenko_says_within_what_is_asked():
     L, t, P = 0.31, 0.034, 0.011
     scene = bar(straight(L), t, poisson=0.35, stations=(P,), probes=(("tip", "displacement"),))
     solvers = Solvers(solid=solid_answer)
-    answer, found = solved(scene, "solid", Choices(), 1e-3, solvers, lambda text: None)
+    answer, found = solve_within(scene, "solid", Choices(), 1e-3, solvers, lambda text: None)
     bending = P * L**3 / (3.0 * YOUNG * WIDTH * t**3 / 12.0)
     shear = 1.2 * P * L / (YOUNG / 2.7 * WIDTH * t)
     assert found.met

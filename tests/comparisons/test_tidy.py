@@ -10,6 +10,18 @@ import comparisons
 import cprbm
 from comparisons import cases
 from comparisons.choices import Choices
+from comparisons.present.contact_forces import contact_csv
+
+
+def test_contact_forces_sum_up_to_the_resultant_of_the_probe(wrapped):
+    scene, answer = wrapped
+    rows = list(csv.DictReader(contact_csv(scene, [answer]).splitlines()))
+    assert {(row["contact"], row["beam"], row["arc_length_unit"]) for row in rows} == {("contact", "beam", "m")}
+    for station in answer.stations:
+        mine = [row for row in rows if float(row["station"]) == station.value]
+        resultant = np.hypot(*(sum(float(row[key]) for row in mine) for key in ("force_x", "force_y")))
+        assert resultant == pytest.approx(station.values["contact.force"][0], rel=1e-9)
+        assert max((float(row["arc_length"]) for row in mine), default=0.0) < 0.0973  # the length of the beam
 
 
 @pytest.fixture(scope="module")

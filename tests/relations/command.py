@@ -8,7 +8,7 @@ import click
 
 from comparisons.cli.completion import candidates
 from comparisons.cli.options import COUNT, count, folder, output_options
-from comparisons.cli.study_ import StudyOutput, run_steps
+from comparisons.cli.section_output import SectionOutput, run_steps
 
 
 @click.command("relations")
@@ -38,7 +38,7 @@ def command(
     from tests.relations.result import result_of
 
     output.room_for(json_file, out)
-    show = StudyOutput(json_file, out, quiet)
+    show = SectionOutput(json_file, out, quiet)
     with run_into(out, solvers_of(planted)) as run:
         asked = study.pieces(scenes, Choices(links=links, elements=elements), run.solvers)
         found = run_steps(study.Relations(), output.progress(asked, shown=not quiet), study.with_piece, result_of, show)

@@ -59,7 +59,7 @@ def test_the_radius_for_a_fall_of_half_the_length(tmp_path, links, allowed):
     (tmp_path / "round.toml").write_text(SCENE, "utf-8")
     (tmp_path / "goal.toml").write_text(GOAL, "utf-8")
     out = tmp_path / "out"
-    options = ["-n", str(links), "--starts", "1", "--quiet", "--out", str(out)]
+    options = ["-n", str(links), "--elements", "20", "--starts", "1", "--quiet", "--out", str(out)]
     run(["optimise", str(tmp_path / "round.toml"), "--goal", str(tmp_path / "goal.toml"), *options])
     found = json.loads((out / "optimum.json").read_text("utf-8"))
     assert found["goal"]["value"] == pytest.approx(-0.5, abs=1e-4)

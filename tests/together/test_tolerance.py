@@ -17,9 +17,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers
 from comparisons.quantities import arc_lengths, norm
 from comparisons.stations import station_of
-from comparisons.store import AnswerMemory
-from comparisons.tolerances.levels import SceneLevels
-from comparisons.tolerances.tolerated import solved
+from comparisons.tolerances.search import solve_within
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.scales import denominator, probe_scales
 from cprbm_scene import Answer, Scene
@@ -112,7 +110,7 @@ ASKED = [
 @pytest.mark.parametrize(("case", "solver", "tolerance"), ASKED)
 def test_the_true_error_is_within_the_tolerance(case, solver, tolerance):
     scene, truth = QUESTIONS[case]
-    answer, found = solved(scene, solver, BENDING, tolerance, SOLVERS, silent)
+    answer, found = solve_within(scene, solver, BENDING, tolerance, SOLVERS, silent)
     assert found.met
     assert found.worst is not None
     assert found.worst.fraction <= tolerance
@@ -120,40 +118,10 @@ def test_the_true_error_is_within_the_tolerance(case, solver, tolerance):
     assert sum(error > tolerance for error in true) <= 0.05 * len(true), max(true)
 
 
-def smallest(levels: SceneLevels, tolerance: float, largest: int) -> int:
-    """The smallest even N from which on the plain estimate meets the tolerance, by halving the distance."""
-    low, high = 10, largest
-    while high - low > 2:
-        middle = 2 * round((low + high) / 4)
-        low, high = (low, middle) if levels.checked(middle).fraction <= tolerance else (middle, high)
-    return high
-
-
-@pytest.mark.parametrize(
-    ("case", "solver", "tolerance"),
-    [
-        ("tapered", "cprbm", 1e-2),
-        ("tapered", "cprbm", 1e-3),
-        ("tapered", "fea", 1e-5),
-        ("hinge", "cprbm", 2e-2),
-    ],
-)
-def test_nothing_finer_is_solved_than_the_cheapest_n_needs_for_its_own_estimate(case, solver, tolerance):
-    scene, _ = QUESTIONS[case]
-    _, found = solved(scene, solver, BENDING, tolerance, SOLVERS, silent)
-    answers = SOLVERS.cprbm if solver == "cprbm" else SOLVERS.fea
-    levels = SceneLevels(scene, answers, BENDING, ("bending",), AnswerMemory(solvers=SOLVERS), beside=solver == "cprbm")
-    n = smallest(levels, tolerance, 100)
-    assert levels.checked(n).fraction <= tolerance
-    if found.n < max(found.solved):  # else it is settled there, and nothing finer was needed
-        assert found.n <= 1.5 * n
-    assert max(found.solved) <= 1.5 * 2 * n
-
-
 def test_paper_keeps_to_its_own_stated_uncertainty():
     scene, truth = QUESTIONS["hinge"]
     paper = Choices(formulation="paper")
-    answer, found = solved(scene, "cprbm", paper, 2e-2, SOLVERS, silent)
+    answer, found = solve_within(scene, "cprbm", paper, 2e-2, SOLVERS, silent)
     assert found.met
     assert not found.extrapolated
     assert answer.settings["formulation"] == "paper"

@@ -1,1 +1,0 @@
-"""What a difference between the solvers is made of."""

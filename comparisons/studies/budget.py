@@ -1,0 +1,279 @@
+"""Parts of the difference between a CPRBM value and the finite elements' value, probe by probe.
+
+==========  ================================================================================================
+symbol      meaning
+==========  ================================================================================================
+N, n, p     links, elements and penetration of the choices
+v_c, v_f    the CPRBM's value, and the finite elements' in the same theory: the compared values
+v_a         the CPRBM's value in ``auto`` at N; v_c unless ``paper`` was chosen
+L_c         limit of v_a for N → ∞, from N, 2N and 4N
+v_0         limit of v_f for p → 0 at n elements, from p/4 and p/16
+L_f         limit of v_f for p → 0 and n → ∞
+δ           v(p/16) − v_0, the effect of the penalty where it is stiffest
+==========  ================================================================================================
+
+    v_c − v_f = (v_c − v_a) + (v_a − L_c) + (L_c − L_f) + (L_f − v_0) + (v_0 − v_f)
+                 contact       links         rest          elements      penalty
+
+A part is its component along v_c − v_f, with its sign: the parts sum to the norm of the difference.  Of a stress the
+parts are taken at the place of the largest difference.  Without a difference, parts that cancel count along v_f.
+
+The limits in N and n are those of :mod:`comparisons.verdict.uncertainty`.  The effect of the penalty is proportional to
+a small p.  Where v(p) is farther off the line through p/4 and p/16 than half of the line's own change, no law shows:
+v_0 is then the value at p/16, and δ becomes an uncertainty.  L_f follows from n at p/16 and 2n at p/256, less δ and
+δ/16.  On a circle the length of the elements decides on the depth of a beam: there the penalty is a part of
+``elements``.
+
+Three sizes stand beside the sum: the distance of ``paper`` from ``auto`` at N, the error of the straight-beam formula
+of stress (:mod:`comparisons.studies.curved_beam`), and L_f less the value of the solid.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from itertools import pairwise
+
+import numpy as np
+
+from comparisons.choices import Choices, check
+from comparisons.geometry import bentness_on, length
+from comparisons.pairing import in_paper
+from comparisons.quantities import direction, norm
+from comparisons.sentences import problem_sentences
+from comparisons.solid_limits import solid_limit
+from comparisons.stations import station_of
+from comparisons.store import AnswerMemory
+from comparisons.studies.curved_beam import inner_edge_factor
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.rows import Row, bare_row
+from comparisons.verdict.scales import probe_scales
+from comparisons.verdict.uncertainty import limit
+from cprbm_scene import Answer, Probe, Scene, Stage
+from cprbm_scene.answer import Array, Flags
+from cprbm_scene.frozendict import frozendict
+
+LEVELS, ELEMENTS, TIGHTNESS = (1, 2, 4), (1, 2), (1, 4, 16)
+"""Links over N, elements over n, and p over the penetration of a run."""
+
+DEEPER = (1.0, 1.0 / 16.0)
+"""Penetrations at n and 2n over the penetration at n."""
+
+LINEAR = 0.5
+"""Largest distance of v(p) from the line of the penalty, over the change of the line."""
+
+LEAST = 1e-9
+"""Fraction below which the parts together are tolerances of the iterations."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """Parts of a difference in the order of the sum, each along the difference, in the probe's unit."""
+
+    contact: float
+    links: float
+    rest: float
+    elements: float
+    penalty: float
+
+    def by_name(self) -> dict[str, float]:
+        """Parts by name."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """Parts of the difference of a probe at a station, in the probe's unit.
+
+    Attributes:
+        row: values, difference and denominator.
+        parts: the sum.
+        rest_uncertainty: of L_c − L_f, by the uncertainties of the limits; elements_uncertainty: of L_f.
+        off_line: distance of v_f from the line through the values at p/4 and p/16.
+        paper: component of ``paper`` less ``auto`` at N along the difference; None without both values.
+        inner_edge: of a stress the factor K (k,) of the curved beam's inner edge; None of other probes.
+        curved: the largest (K − 1)|v_f| at the places that take part.
+        missed: component of L_f less the solid's value along the difference; None without such a value.
+        missed_uncertainty: uncertainty of ``missed``.
+    """
+
+    row: Row
+    parts: Parts
+    rest_uncertainty: float
+    elements_uncertainty: float
+    off_line: float
+    paper: float | None
+    inner_edge: Array | None
+    curved: float | None
+    missed: float | None = None
+    missed_uncertainty: float | None = None
+
+    @property
+    def all_parts(self) -> float:
+        """Σ|part| as a fraction; 0 for the tolerances of iterations."""
+        found = self.row.fraction(sum(map(abs, self.parts.by_name().values()))) or 0.0
+        return found if found > LEAST else 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Account:
+    """Budgets of a scene.
+
+    Attributes:
+        scene, choices: the question, and the compared discretisation with its theory.
+        budgets: at every station; none with an incomplete answer.
+        missing: problems of incomplete answers, in sentences.
+        silent: why the requested solid has no complete answer; empty otherwise.
+    """
+
+    scene: Scene
+    choices: Choices
+    budgets: tuple[Budget, ...]
+    missing: tuple[str, ...] = ()
+    silent: str = ""
+
+    @property
+    def last(self) -> tuple[Budget, ...]:
+        """Budgets of the last station of the last stage."""
+        stage = self.scene.stages[-1]
+        return tuple(each for each in self.budgets if each.row.where == (stage.name, stage.stations[-1]))
+
+
+_Runs = Mapping[str, tuple[Answer, ...]]
+"""Answers by name: ``cprbm`` as chosen, ``cprbm auto`` at LEVELS, ``fea`` at TIGHTNESS, ``fea finer`` and
+``solid`` at ELEMENTS."""
+
+
+def account_of(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
+    """The budgets of a scene.
+
+    Args:
+        scene: the question.
+        choices: the compared discretisation.
+        memory: the solvers, and known answers.
+
+    Raises:
+        SceneError: a solver refuses the question.
+    """
+    check(choices, scene)
+    choices = choices.within(choices.kinematics_of(scene))
+    runs = _solve(scene, choices, memory)
+    beams = {name: answers for name, answers in runs.items() if name != "solid"}
+    missing = tuple(
+        f"{name}, run {place + 1} of {len(answers)}: {sentence}"
+        for name, answers in beams.items()
+        for place, answer in enumerate(answers)
+        for sentence in problem_sentences(scene, answer)
+    )
+    if missing:
+        return Account(scene, choices, (), missing)
+    ended = [answer for answer in runs.get("solid", ()) if not answer.completed]
+    paper = runs["cprbm"][0] if choices.formulation == "paper" else in_paper(scene, choices, memory.solvers)
+    scales = probe_scales(scene, (runs["cprbm"][0], runs["fea"][0]))
+    solids = () if ended else runs.get("solid", ())
+    found = (
+        _budget(scene, beams, paper, solids, probe, stage, value, scales[stage.name, probe.name])
+        for stage in scene.stages
+        for value in stage.stations
+        for probe in scene.probes_in(stage.name)
+    )
+    silent = f"{ended[0].ending.value}. {ended[0].sentence}" if ended else ""
+    return Account(scene, choices, tuple(each for each in found if each is not None), silent=silent)
+
+
+def _solve(scene: Scene, choices: Choices, memory: AnswerMemory) -> _Runs:
+    even, solvers = replace(choices, formulation="auto"), memory.solvers
+    tight = [replace(choices, penetration=choices.penetration / tightness) for tightness in TIGHTNESS]
+    wanted = {
+        "cprbm": [(solvers.cprbm, choices)],
+        "cprbm auto": [(solvers.cprbm, own) for own in (even, even.finer(), even.finer().finer())],
+        "fea": [(solvers.fea, own) for own in tight],
+    }
+    wanted["fea finer"] = [(solvers.fea, own) for own in (tight[-1], tight[-1].finer())]
+    if solvers.solid is not None:
+        wanted["solid"] = [(solvers.solid, own) for own in (choices, choices.finer())]
+    jobs = [(solver, scene, own) for each in wanted.values() for solver, own in each]
+    answers = iter(memory.answers(jobs))
+    return frozendict({name: tuple(next(answers) for _ in each) for name, each in wanted.items()})
+
+
+def _budget(
+    scene: Scene,
+    runs: _Runs,
+    paper: Answer | None,
+    solids: tuple[Answer, ...],
+    probe: Probe,
+    stage: Stage,
+    value: float,
+    scale: float,
+) -> Budget | None:
+    """The budget of a probe; None where a contact is open, and where the answers are on different branches."""
+    at = {name: [station_of(each, stage.name, value) for each in answers] for name, answers in runs.items()}
+    stations = [station for each in at.values() for station in each]
+    every = [station.values[probe.name] for station in stations]
+    alike = len({station.branch for station in stations}) == 1 and len({v.shape for v in every}) == 1
+    if not alike or every[0].size == 0 or not any(v.any() for v in every):
+        return None
+    row = bare_row(scene, (at["cprbm"][0], at["fea"][0]), probe, stage, value, scale)
+    counts = np.ones(row.cprbm.shape, dtype=bool)
+    if row.arc_length is not None:
+        counts = away_from_point_forces(scene, probe.of, row.arc_length, stations)
+        if not counts.any():
+            return None
+    v = {name: np.array([each.values[probe.name][counts] for each in found]) for name, found in at.items()}
+    v_c, v_a, v_f = v["cprbm"][0], v["cprbm auto"][0], v["fea"][0]
+    v_0, delta, off_line, in_doubt = _penalty(probe, v["fea"])
+    L_c = limit(LEVELS, v["cprbm auto"])
+    L_f = limit(ELEMENTS, v["fea finer"] - np.outer(DEEPER, delta))
+    along = direction(probe.quantity, v_c - v_f if (v_c - v_f).any() else v_f)
+    parts = Parts(*(float(np.dot(a - b, along)) for a, b in pairwise([v_c, v_a, L_c.value, L_f.value, v_0, v_f])))
+    K = None
+    if row.arc_length is not None:
+        beam = scene.beams[probe.of]
+        K = inner_edge_factor(bentness_on(beam, row.arc_length / length(beam.curve)))
+    own = float(np.dot(L_f.uncertainty + in_doubt, np.abs(along)))
+    missed, uncertainty = _missed(scene, row, solids, counts, L_f.value, along)
+    return Budget(
+        row=replace(row, difference=norm(probe.quantity, v_c - v_f)),
+        parts=parts,
+        rest_uncertainty=float(np.dot(L_c.uncertainty + L_f.uncertainty + in_doubt, np.abs(along))),
+        elements_uncertainty=own,
+        off_line=off_line,
+        paper=_of_paper(paper, row, at["cprbm"][0].branch, v_a, counts, along),
+        inner_edge=K,
+        curved=None if K is None else float(np.max((K - 1.0)[counts] * np.abs(v_f))),
+        missed=missed,
+        missed_uncertainty=None if missed is None else uncertainty + own,
+    )
+
+
+def _penalty(probe: Probe, values: Array) -> tuple[Array, Array, float, Array]:
+    """v_0, δ, the distance of v(p) from the line, and the uncertainty of v_0, from values (3, k) at p, p/4 and p/16."""
+    v_0 = limit(TIGHTNESS[1:], values[1:], 1.0).value
+    delta = values[-1] - v_0
+    off_line = norm(probe.quantity, values[0] - (v_0 + TIGHTNESS[-1] * delta))
+    if off_line > LINEAR * norm(probe.quantity, TIGHTNESS[-1] * delta):
+        return values[-1], np.zeros_like(delta), off_line, np.abs(delta)
+    return v_0, delta, off_line, np.zeros_like(delta)
+
+
+def _of_paper(paper: Answer | None, row: Row, branch: int, v_a: Array, counts: Flags, along: Array) -> float | None:
+    """Component of ``paper`` less ``auto``; None without a complete answer on the branch with such a value."""
+    if paper is None or not paper.completed:
+        return None
+    station = station_of(paper, *row.where)
+    value = station.values[row.probe.name]
+    alike = station.branch == branch and value.shape == row.cprbm.shape
+    return float(np.dot(value[counts] - v_a, along)) if alike else None
+
+
+def _missed(
+    scene: Scene, row: Row, solids: tuple[Answer, ...], counts: Flags, beams: Array, along: Array
+) -> tuple[float | None, float]:
+    """Component of the ``beams``' limit less the solid's value, and its uncertainty; None without such a value."""
+    limited = solid_limit(scene, row, solids) if solids else None
+    if limited is None or not limited[1][counts][np.abs(along) > 0.0].all():  # the solid's contacts may end elsewhere
+        return None, 0.0
+    found = limited[0]
+    off = float(np.dot(beams - found.value[counts], along))
+    return off, float(np.dot(found.uncertainty[counts], np.abs(along)))
