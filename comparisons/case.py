@@ -81,8 +81,8 @@ def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
         runs: the answers.
         look: the audit.
     """
-    exact = None if runs.exact is None else complete_part(scene, runs.exact)
-    table = RunsTable(scene, replace(runs, exact=exact))
+    exact, other = (None if each is None else complete_part(scene, each) for each in (runs.exact, runs.other))
+    table = RunsTable(scene, replace(runs, exact=exact, other=other))
     criticals, closings = critical_rows(table), closing_rows(table)
     rows = build_rows(table, station_events(table))
     judged = judge_rows(table, rows)
@@ -124,6 +124,7 @@ def _verdict(
     others = [name for name in table.problems if not ends_at_critical(table.answers[name])]
     more = [said.ended_sentence(table, others)] if completed and others else []
     more += [*said.passed_sentences(table, rows, judged), said.calibration_sentence(table.scene, rows)]
+    more.append(said.theory_sentence(table.scene, table.runs, rows))
     if word is Word.AGREE:
         more.append(said.wider_limits(table.scene))
     return Verdict(

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 Kinematics = Literal["bending", "stretch", "shear"]
 KINEMATICS: tuple[Kinematics, ...] = ("bending", "stretch", "shear")
-"""The beam theories of the finite elements, each with one freedom more than the one before."""
+"""The beam theories of both solvers, each with one freedom more than the one before."""
 
 Count = int | Mapping[str, int]
 
@@ -27,17 +27,19 @@ class Choices:
         links: the CPRBM's links per beam: one number, or one for each beam by name.
         formulation: of the CPRBM's contact.
         elements: finite elements per beam, given in the same way.
-        kinematics: the finite elements' beam theory.
+        kinematics: beam theory of the finite elements; None for ``theory``.
         penetration: the overlap that the finite elements may leave, as a fraction of the thickness.
         across: elements of the solid across a beam's thickness; along it has as many as the beam elements.
+        theory: beam theory of both solvers; None for the scene's.
     """
 
     links: Count = 40
     formulation: Literal["auto", "paper"] = "auto"
     elements: Count = 80
-    kinematics: Kinematics = "shear"
+    kinematics: Kinematics | None = None
     penetration: float = 1e-4
     across: int = 2
+    theory: Kinematics | None = None
 
     def finer(self) -> Choices:
         """The same with twice the links, twice the elements along and across, and a sixteenth of the penetration.
@@ -77,9 +79,17 @@ class Choices:
         beside = self.beside()
         return _whole(self.links) / _whole(beside.links), _whole(self.elements) / _whole(beside.elements)
 
-    def within(self, kinematics: Kinematics) -> Choices:
-        """The same with another beam theory of the finite elements."""
-        return replace(self, kinematics=kinematics)
+    def within(self, theory: Kinematics) -> Choices:
+        """The same with a beam theory of both solvers."""
+        return replace(self, kinematics=theory, theory=theory)
+
+    def theory_of(self, scene: Scene) -> Kinematics:
+        """Beam theory of the CPRBM on a scene."""
+        return self.theory or scene.theory
+
+    def kinematics_of(self, scene: Scene) -> Kinematics:
+        """Beam theory of the finite elements on a scene; both solvers answer in this theory in a comparison."""
+        return self.kinematics or self.theory_of(scene)
 
 
 def check(choices: Choices, scene: Scene) -> None:

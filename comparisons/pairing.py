@@ -1,20 +1,21 @@
 """The runs of a comparison: only this module imports the solvers, at the place of use.
 
-Runs of the CPRBM: N and 2N links.  The error of the formulation ``paper`` is uneven in N: there N in ``paper``, and N
-and 2N in ``auto``.  With a contact, or a kink of a section inside an element, also N + N/7.
+Seven runs in one theory, the theory of the finite elements (:meth:`comparisons.choices.Choices.kinematics_of`):
 
-Runs of the finite elements: n and 2n in the chosen theory and in ``bending``, the theory of the CPRBM; n in the theory
-between the two, for the steps from theory to theory; with a contact also n + n/7 in the chosen theory.
+* CPRBM at N, N + N/7 and 2N links, at the last two always in ``auto``; in ``paper`` also at N in ``auto``;
+* finite elements at n, n + n/7 and 2n elements;
+* CPRBM at N links in ``bending``, or in ``shear`` where the comparison is in ``bending``.  The last run shows the step
+  of theory; a refusal or an early end of this run leaves the verdict alone.
 
 The runs at N and n come first.  Where these two have no station and no critical value in common, there is no row, no
-other run can change the word, and the other runs are cancelled.
+other run can change the word, and all others but the run in the other theory are cancelled.
 
 Beside ``auto``, a run at N in ``paper`` shows the effect of the contact formulation, if the contacts of two beams state
 all that ``paper`` needs.  The verdict does not use this run.  There is none where a stage asks for the ends of
 branches: with another contact a branch ends elsewhere, and answers on two branches show nothing of the formulation.
 
-An exact answer in ``bending`` stands beside both solvers at the covered stations.  A rule on the number of pieces and
-stations of a scene says whether the exact reference is asked (:func:`exact_by_rule`).
+An exact answer stands beside both solvers at the covered stations, if the comparison is in ``bending``.  A rule on the
+number of pieces and stations of a scene says whether the exact reference is asked (:func:`exact_by_rule`).
 
 Where the reaction of a drive is a probe, the CPRBM runs at N once more at two perturbed stations around every station
 of the drive (:mod:`comparisons.reactions`).  The work–energy reaction follows from the energies.  The verdict does not
@@ -32,7 +33,7 @@ from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from pydantic import ValidationError
 
-from comparisons.choices import KINEMATICS, Choices, Kinematics, check
+from comparisons.choices import Choices, Kinematics, check
 from comparisons.crew import ALONE, Crew, Job, Solver
 from comparisons.reactions import perturbed_scene
 from cprbm_scene import Answer, Ending, Mistake, RigidContact, Scene, SceneError, Spacing
@@ -44,7 +45,6 @@ if TYPE_CHECKING:
     from comparisons.verdict.uncertainty import Error
 
 Prepared = Callable[[], Answer]
-Planned = str | tuple[Kinematics, bool]
 
 Uncertainties: TypeAlias = "Mapping[tuple[str, float, str], Error]"
 """Stated uncertainties by stage, station and probe."""
@@ -80,7 +80,19 @@ def cprbm_prepared(scene: Scene, choices: Choices) -> Prepared:
 
     with _named("links"):
         settings = cprbm.Settings(links=_plain(choices.links), formulation=choices.formulation)
-    return cprbm.prepared(scene, settings).answer
+    theory = choices.theory_of(scene)
+    run = cprbm.prepared(in_theory(scene, theory), settings)
+    return lambda: _with_theory(run.answer(), theory)
+
+
+def _with_theory(answer: Answer, theory: Kinematics) -> Answer:
+    """The answer with the beam theory among its settings, as the finite elements state it."""
+    return replace(answer, settings=frozendict({**answer.settings, "kinematics": theory}))
+
+
+def in_theory(scene: Scene, theory: Kinematics) -> Scene:
+    """The scene with a beam theory."""
+    return scene if scene.theory == theory else scene.model_copy(update={"theory": theory})
 
 
 def fea_answer(scene: Scene, choices: Choices) -> Answer:
@@ -103,7 +115,7 @@ def fea_prepared(scene: Scene, choices: Choices) -> Prepared:
     with _named("elements"):
         settings = fea_reference.Settings(
             elements=_plain(choices.elements),
-            kinematics=choices.kinematics,
+            kinematics=choices.kinematics_of(scene),
             penetration=choices.penetration,
         )
     return fea_reference.prepared(scene, settings).answer
@@ -236,20 +248,20 @@ class Runs:
     """All answers to one scene in a comparison; a failed run is a failed answer.
 
     Attributes:
-        kinematics: the chosen beam theory of the finite elements.
+        theory: beam theory of the comparison.
         cprbm: the CPRBM at N and 2N links, at 2N always in the formulation ``auto``; at N alone where the answers at N
             and n have nothing in common.
-        fea: the finite elements by theory, from ``bending`` to the chosen theory: at n and 2n elements; at n alone in
-            the theory between, which may be absent.  In the chosen theory at n alone where the answers at N and n have
-            nothing in common.
+        fea: the finite elements at n and 2n elements; at n alone likewise.
         auto: the CPRBM at N links in ``auto``, if another formulation is chosen.
-        paper: the CPRBM at N links in ``paper`` beside ``auto``; no part of the verdict.
-        beside: the CPRBM in ``auto`` at N + N/7 links, with a contact or a kink of a section.
+        paper: the CPRBM at N links in ``paper`` and in ``bending``, beside ``auto``; no part of the verdict.
+        beside: the CPRBM in ``auto`` at N + N/7 links.
         ratio: N over N + N/7.
-        fea_beside: the finite elements in the chosen theory at n + n/7, with a contact.
+        fea_beside: the finite elements at n + n/7.
         fea_ratio: n over n + n/7.
+        other: the CPRBM at N links in ``auto`` in :attr:`other_theory`; None without this run.
+        other_absence: why the CPRBM refuses the other theory; empty otherwise.
         perturbed: the CPRBM at N links at :func:`comparisons.reactions.perturbed_scene`; no part of the verdict.
-        exact: the exact answer in ``bending`` at the covered stations; None without any.
+        exact: the exact answer at the covered stations; None without any, and outside ``bending``.
         exact_absence: why the exact reference covers no station; empty if the reference was not asked.
         solid: the solid at n and 2n elements, or on the meshes of a tolerance, from coarse to fine; no part of the
             verdict.
@@ -257,15 +269,17 @@ class Runs:
             grids.
     """
 
-    kinematics: Kinematics
+    theory: Kinematics
     cprbm: tuple[Answer, ...]
-    fea: Mapping[Kinematics, tuple[Answer, ...]]
+    fea: tuple[Answer, ...]
     auto: Answer | None = None
     paper: Answer | None = None
     beside: Answer | None = None
     ratio: float = 1.0
     fea_beside: Answer | None = None
     fea_ratio: float = 1.0
+    other: Answer | None = None
+    other_absence: str = ""
     perturbed: Answer | None = None
     exact: Answer | None = None
     exact_absence: str = ""
@@ -274,28 +288,33 @@ class Runs:
 
     @property
     def reference(self) -> Answer:
-        """The finite elements' answer in the chosen theory at n elements."""
-        return self.fea[self.kinematics][0]
+        """The finite elements' answer at n elements."""
+        return self.fea[0]
+
+    @property
+    def other_theory(self) -> Kinematics:
+        """``bending``, the paper's theory; ``shear`` where the comparison is in ``bending``."""
+        return _other(self.theory)
 
     @property
     def formulations(self) -> tuple[Answer, Answer] | None:
-        """The CPRBM at N links in ``paper`` and in ``auto``; None without both runs."""
+        """The CPRBM at N links in ``paper`` and in ``auto``, in one theory; None without both runs."""
         if self.auto is not None:
             return self.cprbm[0], self.auto
-        return None if self.paper is None else (self.paper, self.cprbm[0])
+        even = self.cprbm[0] if self.theory == "bending" else self.other
+        return None if self.paper is None or even is None else (self.paper, even)
 
     def everything(self) -> Iterator[tuple[str, Answer]]:
-        """Names and answers of all runs for the verdict."""
-        families = {"cprbm": self.cprbm, **{f"fea {kinematics}": fea for kinematics, fea in self.fea.items()}}
-        for name, answers in families.items():
+        """Names and answers of all runs in the theory of the comparison."""
+        for name, answers in (("cprbm", self.cprbm), ("fea", self.fea)):
             for level, answer in enumerate(answers):
                 yield f"{name} finer" if level else name, answer
-        if self.auto is not None:
-            yield "cprbm auto", self.auto
-        if self.beside is not None:
-            yield "cprbm beside", self.beside
-        if self.fea_beside is not None:
-            yield f"fea {self.kinematics} beside", self.fea_beside
+        others = {"cprbm auto": self.auto, "cprbm beside": self.beside, "fea beside": self.fea_beside}
+        yield from ((name, answer) for name, answer in others.items() if answer is not None)
+
+
+def _other(theory: Kinematics) -> Kinematics:
+    return "shear" if theory == "bending" else "bending"
 
 
 def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE, *, bare: bool = False) -> Runs:
@@ -306,7 +325,7 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE,
         choices: how finely, and by which variants.
         solvers: who answers.
         crew: processes to share the runs.
-        bare: whether to leave out runs without a part in the verdict.
+        bare: whether to leave out all runs outside the theory of the comparison, and perturbed runs.
 
     Raises:
         SceneError: a solver refuses the question.
@@ -323,29 +342,29 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
         SceneError: the choices do not fit the scene.
     """
     check(choices, scene)
+    theory = choices.kinematics_of(scene)
+    choices = choices.within(theory)
     even = replace(choices, formulation="auto")
     jobs = _planned(scene, choices, solvers, bare=bare)
     pending = crew.begin(list(jobs.values()), partial(_nothing_in_common, scene))
 
     def ended() -> Runs:
         found = dict(zip(jobs, pending(), strict=False))  # of decided runs the first two alone
-        fea: dict[Kinematics, tuple[Answer, ...]] = {}
-        for kinematics in KINEMATICS:
-            levels = (found.get((kinematics, finer)) for finer in (False, True))
-            if answers := tuple(answer for answer in levels if answer is not None):
-                fea[kinematics] = answers
+        other, other_absence = (None, "") if bare else in_other_theory(scene, even, solvers)
         exact, exact_absence = exact_or_why(found.get("exact"))
         ratio, fea_ratio = even.ratios_beside()
         return Runs(
-            choices.kinematics,
+            theory,
             tuple(found[name] for name in ("cprbm", "cprbm finer") if name in found),
-            frozendict(fea),
+            tuple(found[name] for name in ("fea", "fea finer") if name in found),
             auto=found.get("auto"),
             paper=None if bare or "auto" in jobs or len(found) < len(jobs) else in_paper(scene, choices, solvers),
             beside=found.get("beside"),
             ratio=ratio,
             fea_beside=found.get("fea beside"),
             fea_ratio=fea_ratio,
+            other=other,
+            other_absence=other_absence,
             perturbed=found.get("perturbed"),
             exact=exact,
             exact_absence=exact_absence,
@@ -355,30 +374,20 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
     return ended
 
 
-def _planned(scene: Scene, choices: Choices, solvers: Solvers, *, bare: bool) -> dict[Planned, Job]:
-    """The runs of a comparison by name; of the finite elements at n and 2n by theory and whether at 2n."""
-    even, chosen = replace(choices, formulation="auto"), choices.kinematics
-    jobs: dict[Planned, Job] = {
-        "cprbm": (solvers.cprbm, scene, choices),
-        (chosen, False): (solvers.fea, scene, choices),
-        "cprbm finer": (solvers.cprbm, scene, even.finer()),
-    }
+def _planned(scene: Scene, choices: Choices, solvers: Solvers, *, bare: bool) -> dict[str, Job]:
+    """The runs of a comparison by name, without the other theory and ``paper``."""
+    even = replace(choices, formulation="auto")
+    jobs: dict[str, Job] = {"cprbm": (solvers.cprbm, scene, choices), "fea": (solvers.fea, scene, choices)}
     if even != choices:
         jobs["auto"] = (solvers.cprbm, scene, even)
-    if may_be_uneven(scene):
-        jobs["beside"] = (solvers.cprbm, scene, even.beside())
     driven = None if bare else perturbed_scene(scene)
     if driven is not None:
         jobs["perturbed"] = (solvers.cprbm, driven, choices)
-    for kinematics in KINEMATICS[: KINEMATICS.index(chosen) + 1]:
-        variant, between = choices.within(kinematics), kinematics not in ("bending", chosen)
-        if not (bare and between):
-            jobs[kinematics, False] = (solvers.fea, scene, variant)
-        if not between:
-            jobs[kinematics, True] = (solvers.fea, scene, variant.finer())
-    if scene.contacts:
-        jobs["fea beside"] = (solvers.fea, scene, choices.beside())
-    if solvers.exact is not None:
+    jobs["beside"] = (solvers.cprbm, scene, even.beside())
+    jobs["cprbm finer"] = (solvers.cprbm, scene, even.finer())
+    jobs["fea beside"] = (solvers.fea, scene, choices.beside())
+    jobs["fea finer"] = (solvers.fea, scene, choices.finer())
+    if solvers.exact is not None and choices.theory == "bending":
         jobs["exact"] = (solvers.exact, scene, choices)
     if solvers.solid is not None:
         jobs["solid"] = (solvers.solid, scene, choices)
@@ -393,32 +402,29 @@ def _nothing_in_common(scene: Scene, cprbm: Answer, fea: Answer) -> bool:
     return not (asked & reached[0] & reached[1]) and not cprbm.critical and not fea.critical
 
 
-def known_exactly(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew) -> tuple[Answer | None, str]:
-    """The exact answer and the reason of its absence, as in :class:`Runs`.
-
-    Raises:
-        SceneError: the question is refused.
-    """
-    return exact_or_why(*crew.answers([] if solvers.exact is None else [(solvers.exact, scene, choices)]))
-
-
-def may_be_uneven(scene: Scene) -> bool:
-    """Whether the CPRBM's error may depend on the places of joints, beside a contact or a kink of a section."""
-    return bool(scene.contacts) or any(len(beam.knots) > 2 for beam in scene.beams.values())
-
-
 def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
-    """The CPRBM at N in ``paper``; None where the run is impossible, takes long or shows nothing."""
+    """The CPRBM at N in ``paper`` and ``bending``; None where the run is impossible, takes long or shows nothing."""
     finest = choices.links if isinstance(choices.links, int) else max(choices.links.values())
     contacts = scene.contacts.values()
     has_hints = all(isinstance(contact, RigidContact) or contact.paper is not None for contact in contacts)
     ends = any(stage.beyond is not None for stage in scene.stages)
     if not contacts or not has_hints or ends or finest > PAPER_BESIDE_AUTO:
         return None
+    # `paper` may refuse too few links for the polynomial; no requested value depends on the run
+    return _unless_refused(solvers, scene, replace(choices.within("bending"), formulation="paper"))[0]
+
+
+def in_other_theory(scene: Scene, choices: Choices, solvers: Solvers) -> tuple[Answer | None, str]:
+    """The CPRBM in the other theory (:attr:`Runs.other_theory`), or None and the mistakes of a refusal."""
+    return _unless_refused(solvers, scene, choices.within(_other(choices.kinematics_of(scene))))
+
+
+def _unless_refused(solvers: Solvers, scene: Scene, choices: Choices) -> tuple[Answer | None, str]:
+    """The CPRBM's answer, or None and the mistakes of a refusal."""
     try:
-        return solvers.cprbm(scene, replace(choices, formulation="paper"))
-    except SceneError:  # too few links for the polynomial; no requested value depends on the run
-        return None
+        return solvers.cprbm(scene, choices), ""
+    except SceneError as error:
+        return None, "; ".join(map(str, error.mistakes))
 
 
 @contextmanager

@@ -9,6 +9,7 @@ from functools import partial
 
 from comparisons.display_units import at_station, distance_text, with_unit
 from comparisons.formats import number, percent
+from comparisons.pairing import Runs
 from comparisons.verdict.calibration import SOLVERS, error_ratios, tally, true_errors
 from comparisons.verdict.completeness import problems
 from comparisons.verdict.events import ClosingRow, CriticalRow, mechanism
@@ -47,8 +48,7 @@ def pressure(row: Row) -> float:
     """Largest share of a stated uncertainty that a row's differences use, or of the scale where none is stated."""
     if row.bounds is None:
         return math.inf
-    shares = [_share(row.difference, row.bounds.total), _share(row.same_theory, row.bounds.same_theory)]
-    return max(*shares, *(each.pressure for each in true_errors(row)), 0.0)
+    return max(_share(row.difference, row.bounds.total), *(each.pressure for each in true_errors(row)), 0.0)
 
 
 def place(scene: Scene, row: Row) -> str:
@@ -82,6 +82,28 @@ def wider_limits(scene: Scene) -> str:
     return f"The scene allows stated uncertainties of {percent(scene.verdict_limit)} of the scale; {limits}."
 
 
+def theory_sentence(scene: Scene, runs: Runs, rows: Sequence[Row]) -> str:
+    """The largest step of theory, or why the CPRBM has no value in the other theory; empty without this run."""
+    other = runs.other
+    if other is None:
+        absence = f"The CPRBM does not answer in {runs.other_theory}: {runs.other_absence}."
+        return absence if runs.other_absence else ""
+    steps = [(row.theory / row.scale, row) for row in rows if math.isfinite(row.theory)]
+    parts = []
+    if steps:
+        largest, row = max(steps, key=lambda step: step[0])
+        parts.append(
+            f"In {runs.other_theory} the CPRBM's values are at most {percent(largest)} of the scale away "
+            f"({place(scene, row)})."
+        )
+    if other.completed and not runs.cprbm[0].completed:
+        parts.append(f"In {runs.other_theory} the CPRBM has a complete answer: `--theory {runs.other_theory}`.")
+    elif runs.cprbm[0].completed and not other.completed:
+        ending = _first(problem_sentences(scene, other))
+        parts.append(f"In {runs.other_theory} the CPRBM has no complete answer: {ending}.")
+    return " ".join(parts)
+
+
 def problem_sentences(scene: Scene, answer: Answer) -> tuple[str, ...]:
     """Problems of an answer in sentences, with stations in the units of the scene's file; empty if complete."""
     return problems(scene, answer, partial(at_station, scene))
@@ -111,10 +133,13 @@ def critical_sentence(scene: Scene, row: CriticalRow) -> str:
         for name, one in found.items()
     )
     if row.bounds is not None:
-        sizes = (row.difference, row.bounds.theory, row.same_theory, row.bounds.same_theory, row.allowed)
-        apart, theory, own, stated, allowed = (distance_text(scene, size, row.unit) for size in sizes)
-        parts += f", {apart} apart and {theory} by theory; within one theory {own} against a stated {stated}, "
-        parts += f"{allowed} allowed"
+        sizes = (row.difference, row.bounds.total, row.allowed)
+        apart, stated, allowed = (distance_text(scene, size, row.unit) for size in sizes)
+        parts += f", {apart} apart against a stated {stated}, {allowed} allowed"
+        if math.isfinite(row.theory):
+            parts += f"; the theories are {distance_text(scene, row.theory, row.unit)} apart"
+        elif row.theory > row.largest:
+            parts += "; the CPRBM has no such point in the other theory"
     elif row.ended_before:
         parts += ", and the run without it ended before that load"
     elif not row.steady:
@@ -185,11 +210,10 @@ def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:
                 f"{cause}: the station lies between their loads of one event. Ask for a station beside it, or refine."
             )
         case Reason.THEORY:
-            assert row.bounds is not None
             return (
-                f"the theories differ by {_of_scale(row.bounds.theory, row)} of the scale, more than "
-                f"{percent(table.scene.limit(row.probe))}; in one theory the solvers agree to "
-                f"{_of_scale(row.same_theory, row)}. Use the finite elements' value in {table.runs.kinematics}."
+                f"bending and shear differ by {_of_scale(row.theory, row)} of the scale, more than "
+                f"{percent(table.scene.limit(row.probe))}; in bending the solvers agree to "
+                f"{_of_scale(row.difference, row)}. Use the value in shear: `--theory shear`."
             )
         case Reason.NOT_UNIQUE:
             return f"{row.probe.of} shares its force with a joint or contact beside it, and the sums agree."
@@ -211,15 +235,14 @@ def _coarse(table: RunsTable, row: Row) -> str:
     for solver, stated in (("cprbm", row.bounds.cprbm), ("fea", row.bounds.fea)):
         option, key = _OPTIONS[solver]
         size = table.answers[table.compared[SOLVERS.index(solver)]].settings.get(key)
-        room = 0.4 * max(limit * row.scale - row.bounds.theory, 0.1 * limit * row.scale)
+        room = 0.4 * limit * row.scale
         if isinstance(size, int) and stated > room:
             needed[solver] = f"{option} {math.ceil(size * math.sqrt(stated / room) / 10.0) * 10}"
-    largest = max(row.bounds.total, row.bounds.same_theory)
     hint = f" `{' '.join(needed.values())}` would do." if needed else " Refine both solvers."
     whose = NAMES["cprbm" if row.bounds.cprbm >= row.bounds.fea else "fea"]
     return (
-        f"the stated uncertainty is {_of_scale(largest, row)} of the scale, more than {percent(limit)}, most of it "
-        f"of {whose} ({_parts(row)}).{hint}"
+        f"the stated uncertainty is {_of_scale(row.bounds.total, row)} of the scale, more than {percent(limit)}, most "
+        f"of it of {whose} ({_parts(row)}).{hint}"
     )
 
 
@@ -237,19 +260,15 @@ def _others(rows: Sequence[Row], judged: Sequence[Judged]) -> str:
 
 
 def _measured(row: Row) -> str:
-    """The difference closest to its stated uncertainty, and both as shares of the scale."""
+    """The difference and its stated uncertainty as shares of the scale."""
     if row.bounds is None:
         return f"the values differ by {_of_scale(row.difference, row)} of the scale"
-    bounds = row.bounds
-    tight = _share(row.same_theory, bounds.same_theory) > _share(row.difference, bounds.total)
-    pair = (row.same_theory, bounds.same_theory) if tight else (row.difference, bounds.total)
-    theory = " within one theory" if tight else ""
-    return f"{_of_scale(pair[0], row)} of the scale{theory} against a stated {_of_scale(pair[1], row)}"
+    return f"{_of_scale(row.difference, row)} of the scale against a stated {_of_scale(row.bounds.total, row)}"
 
 
 def _parts(row: Row) -> str:
     assert row.bounds is not None
-    parts = {"CPRBM": row.bounds.cprbm, "FEA": row.bounds.fea, "theory": row.bounds.theory}
+    parts = {"CPRBM": row.bounds.cprbm, "FEA": row.bounds.fea}
     return ", ".join(f"{name} {_of_scale(part, row)}" for name, part in parts.items())
 
 

@@ -46,8 +46,8 @@ _PAIRS = ("touching", "places", "place", "force")
 """Fields with arrays (k, 2): a list of no pairs does not show its second size."""
 
 _CHOSEN: Mapping[str, tuple[str, ...]] = {
-    "cprbm": ("links", "formulation"),
-    "fea": ("elements", "kinematics", "penetration"),
+    "cprbm": ("links", "formulation", "theory"),
+    "fea": ("elements", "kinematics", "theory", "penetration"),
     "solid": ("elements", "across"),
     "exact": (),
 }
@@ -55,8 +55,8 @@ _CHOSEN: Mapping[str, tuple[str, ...]] = {
 
 
 _DESCRIPTION = {
-    "cprbm": "CPRBM {0.formulation}, N = {0.links}",
-    "fea": "FEA {0.kinematics}, {0.elements} elements",
+    "cprbm": "CPRBM {0.theory} {0.formulation}, N = {0.links}",
+    "fea": "FEA {0.theory}, {0.elements} elements",
     "solid": "solid, {0.elements} × {0.across} elements",
     "exact": "exact",
 }

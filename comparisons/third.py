@@ -1,4 +1,4 @@
-"""The third opinion: what both beam theories miss together, each held against the mechanism as a solid.
+"""The third opinion: the beam theories beside the mechanism as a solid.
 
 The solid's value x is extrapolated from its meshes, and u is its stated uncertainty, the largest over the probe's
 stations in the stage (:mod:`comparisons.solid_limits`).  The distances of the beam theories from x are their errors, as
@@ -8,6 +8,7 @@ the verdict rests on them: a beam theory that is as far from the solid as it mus
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 from comparisons.case import Comparison
@@ -24,16 +25,16 @@ from cprbm_scene.answer import Array, Flags
 class Third:
     """One row and what the solid says of it.
 
-    ``solid`` is x (k,); ``uncertainty`` u, and ``cprbm``, ``bending`` and ``chosen`` the distances from x of the CPRBM
-    and of the finite elements in ``bending`` and in the chosen theory, in the probe's unit.
+    ``solid`` is x (k,); ``uncertainty`` u, and ``cprbm``, ``fea`` and ``other`` the distances from x of the CPRBM, of
+    the finite elements, and of the CPRBM in the other theory, in the probe's unit; NaN without a value.
     """
 
     row: Row
     solid: Array
     uncertainty: float
     cprbm: float
-    bending: float
-    chosen: float
+    fea: float
+    other: float
 
 
 def thirds_of(compared: Comparison) -> tuple[Third, ...]:
@@ -43,12 +44,9 @@ def thirds_of(compared: Comparison) -> tuple[Third, ...]:
         return ()
     found = []
     for row in compared.rows:
-        if row.bounds is None or row.bounds.bending is None:
+        if row.bounds is None:
             continue
-        bending, chosen = (
-            station_of(answer, row.stage, row.station) for answer in (runs.fea["bending"][0], runs.reference)
-        )
-        limited = solid_limit(scene, row, runs.solid, (chosen,))
+        limited = solid_limit(scene, row, runs.solid, (station_of(runs.reference, row.stage, row.station),))
         if limited is None or not limited[1].any():
             continue
         (x, u), counts = (limited[0].value, limited[0].uncertainty), limited[1]
@@ -56,8 +54,8 @@ def thirds_of(compared: Comparison) -> tuple[Third, ...]:
         def size(difference: Array, row: Row = row, counts: Flags = counts) -> float:
             return norm(row.probe.quantity, difference[counts])
 
-        v_b = bending.values[row.probe.name]
-        found.append(Third(row, x, size(u), size(row.cprbm - x), size(v_b - x), size(row.fea - x)))
+        other = math.nan if math.isnan(row.theory) or row.other is None else size(row.other - x)
+        found.append(Third(row, x, size(u), size(row.cprbm - x), size(row.fea - x), other))
     widest = largest(((one.row.probe.name, one.row.stage), one.uncertainty) for one in found)
     return tuple(replace(one, uncertainty=widest[one.row.probe.name, one.row.stage]) for one in found)
 
@@ -80,8 +78,7 @@ def sentence(compared: Comparison) -> str:
 
     return (
         f"Beside the solid, displacements and rotations at the last station are off by at most "
-        f"{largest([one.row.fraction(one.bending) for one in last])} in bending alone and "
-        f"{largest([one.row.fraction(one.chosen) for one in last])} in {runs.kinematics}: that is what the beam "
-        f"theories miss together (the solid is uncertain by "
-        f"{largest([one.row.fraction(one.uncertainty) for one in last])})."
+        f"{largest([one.row.fraction(one.fea) for one in last])} in {runs.theory} (finite elements) and "
+        f"{largest([one.row.fraction(one.other) for one in last])} in {runs.other_theory} (CPRBM); the solid is "
+        f"uncertain by {largest([one.row.fraction(one.uncertainty) for one in last])}."
     )

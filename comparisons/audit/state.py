@@ -266,7 +266,7 @@ def unit(direction: tuple[float, float]) -> complex:
 
 def states_of(scene: Scene, answer: Answer) -> Iterator[StationState]:
     """Every station that states internal forces of all beams; loads and drives keep their last value."""
-    kinematics, names = str(answer.settings.get("kinematics", "bending")), [stage.name for stage in scene.stages]
+    kinematics, names = str(answer.settings.get("kinematics", scene.theory)), [stage.name for stage in scene.stages]
     for station in answer.stations:
         if station.beams.keys() >= scene.beams.keys():
             before = scene.stages[: names.index(station.stage)]

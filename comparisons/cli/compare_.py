@@ -55,7 +55,8 @@ def command(
     links: int | Mapping[str, int],
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
-    kinematics: Kinematics,
+    theory: Kinematics | None,
+    kinematics: Kinematics | None,
     penetration: float,
     across: int,
     tol: float | None,
@@ -82,7 +83,7 @@ def command(
     refuse_sizes_with(tol)
     taking_part = with_solid(solvers_of(planted, exact=exact)) if asking_solid else solvers_of(planted, exact=exact)
     scenes = read_questions(arguments)
-    choices = Choices(links, formulation, elements, kinematics, penetration, across)
+    choices = Choices(links, formulation, elements, kinematics, penetration, across, theory)
     for scene in scenes:
         if not isinstance(scene, OffsetQuestion):
             check(choices, scene)

@@ -44,7 +44,8 @@ def command(
     asking_solid: bool,  # noqa: FBT001 - click passes a keyword
     sizes: tuple[int, ...],
     formulation: Literal["auto", "paper"],
-    kinematics: Kinematics,
+    theory: Kinematics | None,
+    kinematics: Kinematics | None,
     exact: bool | None,  # noqa: FBT001 - click passes a keyword
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click passes a keyword
@@ -67,7 +68,7 @@ def command(
         out = Path("convergence")
     output.room_for(json_file, out)
     taking_part = with_solid(solvers_of(planted, exact=exact)) if asking_solid else solvers_of(planted, exact=exact)
-    choices = Choices(formulation=formulation, kinematics=kinematics)
+    choices = Choices(formulation=formulation, kinematics=kinematics, theory=theory)
     printing = str(json_file) != "-"
     finished: list[Section] = []
     chapters: tuple[Chapter, ...] = ()

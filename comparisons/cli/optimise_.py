@@ -38,7 +38,8 @@ def command(
     links: int | Mapping[str, int],
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
-    kinematics: Kinematics,
+    theory: Kinematics | None,
+    kinematics: Kinematics | None,
     place: str,
     at_most: float,
     quiet: bool,  # noqa: FBT001 - click passes a keyword
@@ -64,7 +65,7 @@ def command(
     scene = opened(case, settings())
     axes = [axis_of(text, in_si(case)) for text in vary]
     problem = problem_of(scene, axes, goal)
-    choices = Choices(links, formulation, elements, kinematics)
+    choices = Choices(links, formulation, elements, kinematics, theory=theory)
     out = Path(f"optimise-{scene.name}") if out is None else out
     with workers_on(place) as workers, output.counted(starts * solves, shown=not quiet) as moved:
         output.room_for(None, out)

@@ -161,10 +161,12 @@ def _number(text: str) -> float:
 
 
 def variants(command: Decorated) -> Decorated:
-    """The command with ``--formulation`` and ``--kinematics``."""
-    standard = Choices()
-    command = click.option("--kinematics", type=click.Choice(KINEMATICS), default=standard.kinematics,
-                           show_default=True, help="Beam theory of the finite elements.")(command)  # fmt: skip
+    """The command with ``--formulation``, ``--theory`` and ``--kinematics``."""
+    standard, theories = Choices(), click.Choice(KINEMATICS)
+    command = click.option("--kinematics", type=theories, help="Beam theory of the finite elements; beside them the "
+                           "CPRBM answers in this theory.  [default: as --theory]")(command)  # fmt: skip
+    command = click.option("--theory", type=theories, help="Beam theory of both solvers.  [default: the scene's]",
+                           )(command)  # fmt: skip
     return click.option("--formulation", type=click.Choice(["auto", "paper"]), default=standard.formulation,
                         show_default=True, help="Contact formulation of the CPRBM.")(command)  # fmt: skip
 

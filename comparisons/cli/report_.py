@@ -40,7 +40,8 @@ def command(
     links: int | Mapping[str, int],
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
-    kinematics: Kinematics,
+    theory: Kinematics | None,
+    kinematics: Kinematics | None,
     sizes: tuple[int, ...],
     without: tuple[str, ...],
     exact: bool | None,  # noqa: FBT001 - click passes a keyword
@@ -64,7 +65,7 @@ def command(
     from cprbm_scene import OffsetQuestion
 
     wanted = read_questions(arguments or ("all",))
-    choices = Choices(links, formulation, elements, kinematics)
+    choices = Choices(links, formulation, elements, kinematics, theory=theory)
     for question in wanted:
         if not isinstance(question, OffsetQuestion):
             check(choices, question)

@@ -30,7 +30,8 @@ def command(
     links: int | Mapping[str, int],
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
-    kinematics: Kinematics,
+    theory: Kinematics | None,
+    kinematics: Kinematics | None,
     penetration: float,
     across: int,
     tol: float | None,
@@ -46,7 +47,7 @@ def command(
 
     refuse_sizes_with(tol)
     scene = cases.opened(case, settings())
-    choices = Choices(links, formulation, elements, kinematics, penetration, across)
+    choices = Choices(links, formulation, elements, kinematics, penetration, across, theory)
     check(choices, scene)
     for file in (json_file, csv_file, plot_file):
         output.room_for(file)

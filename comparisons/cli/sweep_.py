@@ -58,7 +58,8 @@ def command(
     links: int | Mapping[str, int],
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
-    kinematics: Kinematics,
+    theory: Kinematics | None,
+    kinematics: Kinematics | None,
     place: str,
     shard: tuple[int, int],
     merge: tuple[Path, ...],
@@ -85,7 +86,7 @@ def command(
 
     scene = opened(case, settings())
     axes, points = _asked(scene, vary, sample, in_si(case))
-    choices = Choices(links, formulation, elements, kinematics)
+    choices = Choices(links, formulation, elements, kinematics, theory=theory)
     tasks = tasks_of(scene, points, solver, chosen_for_check(points, axes, check), choices, shard)
     out = Path(f"sweep-{scene.name}") if out is None else out
     output.room_for(None, out)

@@ -44,7 +44,8 @@ def command(
     links: int | Mapping[str, int],
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
-    kinematics: Kinematics,
+    theory: Kinematics | None,
+    kinematics: Kinematics | None,
     place: str,
     at_most: float,
     quiet: bool,  # noqa: FBT001 - click passes a keyword
@@ -68,7 +69,7 @@ def command(
     from comparisons.sweeps.workers import workers_on
 
     scene = opened(case, settings())
-    choices = Choices(links, formulation, elements, kinematics)
+    choices = Choices(links, formulation, elements, kinematics, theory=theory)
     bounds = bounds_of(scene, read_demands(limits) if limits else Demands(), str(limits))
     asked = study(scene, distributions_of(scene), samples, solver, choices, indexed=sobol, bounds=bounds)
     out = Path(f"tolerance-{scene.name}") if out is None else out

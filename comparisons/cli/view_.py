@@ -51,7 +51,8 @@ def command(
     links: int | Mapping[str, int],
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
-    kinematics: Kinematics,
+    theory: Kinematics | None,
+    kinematics: Kinematics | None,
     penetration: float,
     across: int,
     tol: float | None,
@@ -76,7 +77,7 @@ def command(
         raise click.BadParameter(f"found {path.name!r}; allowed: a name that ends in {', '.join(KINDS)}",
                                  param_hint="--out")  # fmt: skip
     wanted = None if station is None else _wanted(scene, station)
-    choices = Choices(links, formulation, elements, kinematics, penetration, across)
+    choices = Choices(links, formulation, elements, kinematics, penetration, across, theory)
     check(choices, scene)
     output.room_for(None, path.parent)
     answer, found = solve_scene(planted, scene, solver, choices, tol, shown=not quiet)

@@ -16,7 +16,7 @@ from comparisons.present import offset
 from comparisons.present.columns import NOTHING, Column, Table, table_of
 from comparisons.present.row_tables import Judged, judged_rows, row_units, share
 from comparisons.present.table import brief_lines
-from comparisons.sentences import pressure
+from comparisons.sentences import pressure, theory_sentence
 from comparisons.verdict.rows import ROUND_OFF
 from comparisons.verdict.words import SEVERITY, Word
 
@@ -45,7 +45,8 @@ def brief(compared: Comparison | OffsetComparison, argument: str, page: Path | N
         errors = offset.error_table(compared)
         lines = ("", *brief_lines(errors, width=WIDTH), *_wrapped(f"{errors.title}. {errors.note}"))
         return "\n".join((*first, *lines, *last))
-    last = (*_found_sizes(compared), *last)
+    theories = theory_sentence(compared.scene, compared.runs, compared.rows)
+    last = (*_found_sizes(compared), *_wrapped(theories), *last)
     rows = last_rows_of_stages(compared)
     lines = ()
     for count in range(min(ROWS, len(rows)), 0, -1):
@@ -118,7 +119,7 @@ def _largest_pressure(compared: Comparison | OffsetComparison) -> float | None:
 def _seconds(compared: Comparison | OffsetComparison) -> float:
     if isinstance(compared, OffsetComparison):
         return sum(compared.seconds.values())
-    answers = [*dict(compared.runs.everything()).values(), compared.runs.exact]
+    answers = [*dict(compared.runs.everything()).values(), compared.runs.other, compared.runs.exact]
     return sum(answer.seconds for answer in answers if answer is not None)
 
 

@@ -9,10 +9,17 @@ from comparisons.display_units import at_station
 from comparisons.formats import number, percent
 from comparisons.present.answer_tables import branch_table, critical_table, search_table
 from comparisons.present.columns import Column, Section, Table, table_of
-from comparisons.present.difference_tables import explanation, paper_table, solid_table, steps_table
+from comparisons.present.difference_tables import paper_table, solid_table
 from comparisons.present.json_document import worst_certificate
 from comparisons.present.reaction_tables import reaction_tables
-from comparisons.present.row_tables import error_tables, exact_table, shown_stations, value_table, verdict_table
+from comparisons.present.row_tables import (
+    error_tables,
+    exact_table,
+    shown_stations,
+    theory_table,
+    value_table,
+    verdict_table,
+)
 from comparisons.third import sentence as solid_sentence
 from cprbm_scene import Answer
 
@@ -32,17 +39,16 @@ def case_sections(compared: Comparison) -> tuple[Section, ...]:
     """All sections of a comparison without figures, in the order of reading; empty sections are left out."""
     stations = shown_stations(compared)
     last = stations[-1] if stations else ()
-    explained = tuple(filter(None, (*explanation(compared), solid_sentence(compared))))
     sections = (
         Section("Search for N", tables=(search_table(compared.scene, compared.tolerances),)),
         Section("Errors in displacement, stress and force", tables=error_tables(compared, last)),
         Section("Critical points and branches", tables=(critical_table(compared), branch_table(compared))),
         Section("Values at further stations", tables=tuple(value_table(compared, each) for each in stations[:-1])),
         Section("What the verdict rests on", tables=(verdict_table(last), exact_table(compared, last))),
-        Section("What the source claims", explained, tables=(claims_table(compared),)),
+        Section("What the source claims", tables=(claims_table(compared),)),
         Section("Reactions of the drives", tables=reaction_tables(compared)),
-        Section("What the difference is made of",
-                tables=(steps_table(compared, last), paper_table(compared), solid_table(compared))),
+        Section("Other theories and formulations", tuple(filter(None, (solid_sentence(compared),))),
+                tables=(theory_table(compared, last), paper_table(compared), solid_table(compared))),
         Section("Certificates and audit", tables=(_certificate_table(compared),)),
         Section("Run time", tables=(_seconds_table(compared),)),
     )  # fmt: skip
@@ -78,7 +84,7 @@ def claims_table(compared: Comparison) -> Table:
 
 def _certificate_table(compared: Comparison) -> Table:
     runs = compared.runs
-    answers = {"cprbm": runs.cprbm[0], f"fea {runs.kinematics}": runs.reference}
+    answers = {"cprbm": runs.cprbm[0], "fea": runs.reference}
     answers |= {} if runs.solid is None else {"solid": runs.solid[-1]}  # its finest mesh
     found = {name: worst_certificate(answer) for name, answer in answers.items()}
     audits = {name: compared.audits.get(answer.solver) for name, answer in answers.items()}
@@ -112,7 +118,8 @@ def _audit_word(found: Audit | None) -> str:
 def _seconds_table(compared: Comparison) -> Table:
     """Seconds stand alone, since every run has others."""
     runs = compared.runs
-    answers = {"CPRBM": runs.cprbm[0], f"FEA ({runs.kinematics})": runs.reference}
+    answers = {f"CPRBM ({runs.theory})": runs.cprbm[0], f"FEA ({runs.theory})": runs.reference}
+    answers |= {} if runs.other is None else {f"CPRBM ({runs.other_theory})": runs.other}
     answers |= {} if runs.exact is None else {"exact (bending)": runs.exact}
     answers |= {f"solid, {one.settings['elements']} along": one for one in runs.solid or ()}
     columns = [

@@ -1,80 +1,19 @@
-"""Parts of a difference: steps of theory and contact model, the formulation paper, and a solid as a third opinion."""
+"""Values beside the verdict: the other theory, the formulation paper, and a solid as a third opinion."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-
 from comparisons.case import Comparison
-from comparisons.claims import as_claimed, standings
+from comparisons.contact_model import contact_model
 from comparisons.display_units import at_station, display_units, with_unit
 from comparisons.formats import percent, vector
 from comparisons.present.columns import Column, Table, table_of
-from comparisons.present.row_tables import Judged, share
 from comparisons.quantities import norm
-from comparisons.sentences import place
-from comparisons.steps import Steps, contact_model, steps_of
 from comparisons.third import Third, thirds_of
 from comparisons.verdict.rows import Row
 from cprbm_scene import Answer, Scene
 
 MANY_TIMES = 10.0
 """Fraction above which a distance prints with its unit."""
-
-
-def explanation(compared: Comparison) -> Iterable[str]:
-    """A sentence per claimed difference about its parts, at the worst station."""
-    for standing in standings(compared.scene, compared.rows):
-        if not isinstance(standing.worst, Row) or standing.claim.value is not None:
-            continue
-        row = as_claimed(standing.worst)
-        steps = steps_of(compared.runs, row)
-        if steps is not None:
-            yield (
-                f"{place(compared.scene, row)}: our difference of {share(row, row.difference)} is the finite elements' "
-                f"own step of theory, {share(row, steps.stretch)} from bending to stretch and "
-                f"{share(row, steps.shear)} from stretch to shear, and {_in_one_theory(compared, row, steps)}; the "
-                f"source states {percent(standing.claim.bound)}."
-            )
-
-
-def _in_one_theory(compared: Comparison, row: Row, steps: Steps) -> str:
-    own, stated = share(row, steps.own), share(row, row.bounds.same_theory if row.bounds else None)
-    if compared.runs.auto is not None:
-        return (
-            f"{own} between the two methods within one theory and {share(row, steps.contact)} in the contact model, "
-            f"from paper to auto; the runs state {stated} for both together"
-        )
-    text = f"{own} between the two methods within one theory, where the two discretisations state {stated}"
-    model = contact_model(compared.runs, row)
-    return text if model is None else f"{text}; the contact model of paper would put the CPRBM {share(row, model)} away"
-
-
-def steps_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
-    """Steps of the differences of one station."""
-    runs = compared.runs
-    found = [(row, steps) for row, *_ in rows if (steps := steps_of(runs, row)) is not None]
-    models = any(contact_model(runs, row) is not None for row, _ in found)
-    note = "Components along the difference; the steps add up."
-    if runs.auto is not None:
-        note += " Contact model: the CPRBM's step from paper to auto."
-    elif models:
-        note += " Contact model: the CPRBM's distance in paper from auto, which is no part of the sum."
-    elif runs.paper is not None and not runs.paper.completed:
-        note += f" The formulation paper ended early: {runs.paper.ending.value}."
-    columns = [
-        Column[tuple[Row, Steps]]("probe", lambda at: at[0].probe.name),
-        Column("difference", lambda at: share(at[0], at[0].difference)),
-        Column(
-            "contact model",
-            lambda at: (
-                share(at[0], at[1].contact if runs.auto is not None else contact_model(runs, at[0])) if models else None
-            ),
-        ),
-        Column("CPRBM to bending", lambda at: share(at[0], at[1].own)),
-        Column("bending to stretch", lambda at: share(at[0], at[1].stretch)),
-        Column("stretch to shear", lambda at: share(at[0], at[1].shear)),
-    ]
-    return table_of("Steps of the difference", columns, found, note)
 
 
 def paper_table(compared: Comparison) -> Table:
@@ -141,8 +80,8 @@ def solid_table(compared: Comparison) -> Table:
         value("solid", "solid"),
         off("u solid", "uncertainty"),
         off("CPRBM off", "cprbm"),
-        off("FEA bending off", "bending"),
-        off(f"FEA {compared.runs.kinematics} off", "chosen"),
+        off("FEA off", "fea"),
+        off(f"CPRBM in {compared.runs.other_theory} off", "other"),
     ]
     return table_of(
         "The beam theories beside a solid, at the last station",

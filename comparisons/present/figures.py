@@ -63,7 +63,7 @@ def comparison_figures(compared: Comparison) -> tuple[Figure, ...]:
     if not stations:
         return ()
     runs, names = compared.runs, [rows[0][0].where for rows in stations]
-    answers = {f"FEA ({runs.kinematics})": runs.reference, "CPRBM": runs.cprbm[0]}
+    answers = {f"FEA ({runs.theory})": runs.reference, "CPRBM": runs.cprbm[0]}
     found = [shapes(compared.scene, answers, names[-1:])]
     found += [shapes(compared.scene, answers, names)] if len(names) > 1 else []
     found += [*curve_figures(compared.scene, runs.reference, runs.cprbm[0]), *reaction_figures(compared)]

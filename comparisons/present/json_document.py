@@ -7,13 +7,12 @@ from typing import Any
 from comparisons.audit import Audit
 from comparisons.case import Comparison
 from comparisons.claims import claim_met, claim_of, claim_of_critical, claimed_difference, critical_difference
+from comparisons.contact_model import contact_model
 from comparisons.plain import Plain, plain
 from comparisons.quantities import arc_lengths, unit_of
 from comparisons.reactions import WorkEnergyReaction
-from comparisons.steps import contact_model, largest_difference, steps_of
 from comparisons.third import Third, thirds_of
 from comparisons.tolerances.result import Tolerance
-from comparisons.verdict.bounds import Bounds
 from comparisons.verdict.completeness import CERTIFICATE_NUMBERS
 from comparisons.verdict.events import CriticalRow, released
 from comparisons.verdict.rows import Row
@@ -27,6 +26,7 @@ def comparison(compared: Comparison) -> Plain:
     """One case of ``compare``."""
     scene, runs, verdict = compared.scene, compared.runs, compared.verdict
     answers = {"cprbm": runs.cprbm[0], "fea": runs.reference, "exact": runs.exact}
+    answers["cprbm_other_theory"] = runs.other
     answers["solid"] = None if runs.solid is None else runs.solid[-1]  # its finest mesh
     judged = zip(compared.rows, verdict.words, verdict.reasons, strict=True)
     return {
@@ -34,6 +34,7 @@ def comparison(compared: Comparison) -> Plain:
         "verdict": verdict.word.value,
         "reason": name_of(verdict.reason),
         "sentence": verdict.sentence,
+        "theory": runs.theory,
         "solvers": {
             name: {**solver(answer, compared.audits.get(name)), **_search(compared.tolerances, name)}
             for name, answer in answers.items()
@@ -185,8 +186,7 @@ def _search(tolerances: tuple[Tolerance, ...], name: str) -> Plain:
 
 def _row(compared: Comparison, row: Row) -> Plain:
     scene, runs, bounds, true = compared.scene, compared.runs, row.bounds, row.true_errors
-    claim, steps, model = claim_of(scene, row), steps_of(runs, row), contact_model(runs, row)
-    bending = bounds is not None and bounds.bending is not None
+    claim, model = claim_of(scene, row), contact_model(runs, row)
     return {
         "probe": row.probe.name,
         "stage": row.stage,
@@ -200,24 +200,20 @@ def _row(compared: Comparison, row: Row) -> Plain:
         "uncertainty": {
             "cprbm": None if bounds is None else row.fraction(bounds.cprbm),
             "fea": None if bounds is None else row.fraction(bounds.fea),
-            "theory": row.fraction(bounds.theory) if bounds is not None and bending else None,
-            "fea_bending": row.fraction(bounds.bending or 0.0) if bounds is not None and bending else None,
+            "theory": row.fraction(row.theory),
             "round_off": None if bounds is None else row.fraction(bounds.round_off),
         },
+        "other_theory": None if row.other is None else values(row.probe, row.other),
         "claim": None if claim is None else claim.bound,
         "claim_value": None if claim is None else claim.value,
         "claim_met": claim_met(claim, row),
         "claim_difference": None if claim is None else claimed_difference(claim, row),
-        "difference_same_theory": row.fraction(row.same_theory),
-        "steps": None
-        if steps is None
-        else {name: row.fraction(getattr(steps, name)) for name in ("contact", "own", "stretch", "shear")},
         "contact_model": None if model is None else row.fraction(model),
-        "difference_largest": row.fraction(largest_difference(row)),
+        "difference_largest": row.fraction(row.largest_difference),
         "exact": None if row.exact is None else values(row.probe, row.exact),
         "true_error": {
             "cprbm": None if true is None else row.fraction(true.cprbm),
-            "fea_bending": None if true is None else row.fraction(true.bending),
+            "fea_bending": None if true is None else row.fraction(true.fea),
         },
         "scale": row.scale,
         "denominator": row.denominator,
@@ -228,7 +224,7 @@ def _row(compared: Comparison, row: Row) -> Plain:
 def _third(found: Third) -> Plain:
     """A row beside the solid: the extrapolated value, its uncertainty, and distances from it as fractions."""
     row = found.row
-    off = {"cprbm": found.cprbm, "fea_bending": found.bending, "fea": found.chosen}
+    off = {"cprbm": found.cprbm, "fea": found.fea, "other_theory": found.other}
     return {
         "probe": row.probe.name,
         "stage": row.stage,
@@ -255,8 +251,7 @@ def _critical_row(scene: Scene, row: CriticalRow) -> Plain:
         "released": {name: None if found is None else plain(released(found)) for name, found in both.items()},
         "gone_over": {name: plain(turned) for name, turned in row.turned.items()},
         "difference": plain(row.difference),
-        "difference_same_theory": plain(row.same_theory),
-        "uncertainty": _uncertainty(row.bounds),
+        "uncertainty": _uncertainty(row),
         "claim": None if claim is None else claim.bound,
         "claim_value": None if claim is None else claim.value,
         "claim_met": None if claim is None or off is None else off <= claim.bound,
@@ -268,9 +263,9 @@ def _critical_row(scene: Scene, row: CriticalRow) -> Plain:
     }
 
 
-def _uncertainty(bounds: Bounds | None) -> Plain:
-    parts = {"cprbm": "cprbm", "fea": "fea", "theory": "theory", "fea_bending": "bending", "round_off": "round_off"}
-    return {key: None if bounds is None else plain(getattr(bounds, name)) for key, name in parts.items()}
+def _uncertainty(row: CriticalRow) -> Plain:
+    parts = {name: getattr(row.bounds, name, None) for name in ("cprbm", "fea", "round_off")}
+    return {name: plain(part) for name, part in {**parts, "theory": row.theory}.items()}
 
 
 def _reaction(found: WorkEnergyReaction) -> Plain:

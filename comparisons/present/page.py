@@ -281,6 +281,7 @@ def put_case(folder: Path, compared: Comparison | OffsetComparison, figures: Ite
     if isinstance(compared, Comparison):
         runs = compared.runs
         answers = {"cprbm paper": runs.paper, "cprbm perturbed": runs.perturbed, "exact": runs.exact}
+        answers[f"cprbm {runs.other_theory}"] = runs.other
         found = {**dict(runs.everything()), **{name: each for name, each in answers.items() if each is not None}}
         write(own / "answers.json.gz", packed_json(found))
         write(

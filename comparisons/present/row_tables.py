@@ -12,13 +12,11 @@ from comparisons.formats import number, percent, vector
 from comparisons.geometry import bentness
 from comparisons.present.columns import Column, Table, table_of
 from comparisons.quantities import norm
-from comparisons.steps import largest_difference
 from comparisons.verdict.calibration import EXACT_FACTOR, SOLVERS, ErrorRatio, error_ratios, tally, true_errors
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.station_events import Place
 from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Scene
-from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES, Quantity
 
 Judged: TypeAlias = tuple[Row, Word | None, Reason | None]
@@ -34,6 +32,8 @@ GROUPS: tuple[tuple[str, frozenset[Quantity]], ...] = (
     ("Error in energy", frozenset({"potential_energy"})),
 )
 """Tables of errors by quantity, in the manner of the paper."""
+
+_VALUES = {"cprbm": "CPRBM", "fea": "FEA", "exact": "exact"}
 
 
 def judged_rows(compared: Comparison) -> tuple[Judged, ...]:
@@ -82,24 +82,20 @@ def _share_column(header: str, size: object, digits: int = 3) -> Column[Judged]:
     return Column(header, value)
 
 
-def _bending_column(header: str, size: str) -> Column[Judged]:
-    """The same column where the finite elements have an answer in the theory ``bending``."""
-    inner = _share_column(header, size)
-    return Column(header, lambda at: None if at[0].bounds is None or at[0].bounds.bending is None else inner.value(at))
+def _value_columns(units: Units, headers: Mapping[str, str]) -> list[Column[Judged]]:
+    """Probe, unit, and values of a row by the name of the row's attribute, with their headers."""
 
+    def value(name: str, header: str) -> Column[Judged]:
+        def text(at: Judged) -> str | None:
+            row, values = at[0], getattr(at[0], name)
+            return None if values is None else vector(values, units[row.unit][0], ROUND_OFF * row.scale)
 
-def _value_columns(units: Units) -> list[Column[Judged]]:
-    """Probe, unit, both values and the exact value."""
-
-    def text(row: Row, values: Array | None) -> str | None:
-        return None if values is None else vector(values, units[row.unit][0], ROUND_OFF * row.scale)
+        return Column(header, text)
 
     return [
         Column("probe", lambda at: at[0].probe.name),
         Column("unit", lambda at: units[at[0].unit][1]),
-        Column("CPRBM", lambda at: text(at[0], at[0].cprbm)),
-        Column("FEA", lambda at: text(at[0], at[0].fea)),
-        Column("exact", lambda at: text(at[0], at[0].exact)),
+        *(value(name, header) for name, header in headers.items()),
     ]
 
 
@@ -107,7 +103,7 @@ def value_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
     """Values of one station."""
     units = row_units(compared.scene, [row for row, *_ in rows])
     title = at_station(compared.scene, *rows[0][0].where)
-    columns = [*_value_columns(units), _share_column("error", "difference"), Column("word", judgement)]
+    columns = [*_value_columns(units, _VALUES), _share_column("error", "difference"), Column("word", judgement)]
     return table_of(f"Values at {title}", columns, rows)
 
 
@@ -121,7 +117,7 @@ def error_tables(compared: Comparison, last: Sequence[Judged]) -> tuple[Table, .
     worst = _largest_errors(compared)
     absence = f" No exact values: {runs.exact_absence}" if runs.exact_absence else ""
     notes = (
-        f"CPRBM beside the finite elements in the theory {runs.kinematics}. Errors are fractions of the FEA's value, "
+        f"CPRBM beside the finite elements, both in the theory {runs.theory}. Errors are fractions of the FEA's value, "
         f"or of the probe's largest value where the value may vanish. Exact values are those in bending.{absence}",
         "Largest magnitudes along the beam. The error is the largest difference anywhere a thickness or more from held "
         "ends and from ends of contacts. A beam of initial radius R has a true stress at its inner edge that is larger "
@@ -130,9 +126,9 @@ def error_tables(compared: Comparison, last: Sequence[Judged]) -> tuple[Table, .
     for title, quantities in GROUPS:
         rows = [judged for judged in last if judged[0].probe.quantity in quantities]
         columns = [
-            *_value_columns(units),
+            *_value_columns(units, _VALUES),
             _share_column("error", "difference"),
-            Column("error of max", lambda at: share(at[0], largest_difference(at[0]))),
+            Column("error of max", lambda at: share(at[0], at[0].largest_difference)),
             Column("t/(3R)", lambda at: _edge_factor(compared.scene, at[0])),
             Column("largest error", lambda at: share(*worst[at[0].probe.name]) if at[0].probe.name in worst else None),
             Column("at", lambda at: _where(compared.scene, worst.get(at[0].probe.name))),
@@ -171,17 +167,26 @@ def verdict_table(rows: Sequence[Judged]) -> Table:
         _share_column("stated", "bounds.total"),
         _share_column("u CPRBM", "bounds.cprbm"),
         _share_column("u FEA", "bounds.fea"),
-        _bending_column("theory", "bounds.theory"),
-        _bending_column("in bending", "same_theory"),
-        _bending_column("stated in bending", "bounds.same_theory"),
         _share_column("round-off", "bounds.round_off"),
+        _share_column("theory", "theory"),
         Column("word", judgement),
     ]
     note = (
-        "Both differences must stay within the stated uncertainties, which follow from further discretisations of each "
-        "solver; in bending the FEA has the CPRBM's theory. Fractions as in the tables of errors."
+        "The difference must stay within the stated uncertainty, which follows from further discretisations of each "
+        "solver. Theory: the step of the CPRBM to the other theory. Fractions as in the tables of errors."
     )
     return table_of("Differences and stated uncertainties", columns, rows, note)
+
+
+def theory_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
+    """Values of one station in both theories; without rows where the CPRBM has no value in the other theory."""
+    runs = compared.runs
+    units = row_units(compared.scene, [row for row, *_ in rows])
+    chain = (("other", runs.other_theory), ("cprbm", runs.theory))
+    headers = {name: f"CPRBM in {theory}" for name, theory in chain} | {"fea": f"FEA in {runs.theory}"}
+    columns = [*_value_columns(units, headers), _share_column("theory", "theory")]
+    note = "Theory: distance of the CPRBM's values in both theories, in the formulation auto."
+    return table_of("Both theories", columns, [at for at in rows if at[0].other is not None], note)
 
 
 def exact_table(compared: Comparison, rows: Sequence[Judged]) -> Table:

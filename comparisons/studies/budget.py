@@ -4,23 +4,23 @@
 symbol      meaning
 ==========  ================================================================================================
 N, n, p     links, elements and penetration of the choices
-v_c, v_f    the CPRBM's value, and the finite elements' in the chosen theory: the compared values
+v_c, v_f    the CPRBM's value, and the finite elements' in the same theory: the compared values
 v_a         the CPRBM's value in ``auto`` at N; v_c unless ``paper`` was chosen
 L_c         limit of v_a for N → ∞, from N, 2N and 4N
 v_0         limit of v_f for p → 0 at n elements, from p/4 and p/16
-L_t         limit for p → 0 and n → ∞ in the theory t: b (``bending``), s (``stretch``) or f (the chosen theory)
+L_f         limit of v_f for p → 0 and n → ∞
 δ           v(p/16) − v_0, the effect of the penalty where it is stiffest
 ==========  ================================================================================================
 
-    v_c − v_f = (v_c − v_a) + (v_a − L_c) + (L_c − L_b) + (L_b − L_s) + (L_s − L_f) + (L_f − v_0) + (v_0 − v_f)
-                 contact       links         rest          stretch       shear         elements      penalty
+    v_c − v_f = (v_c − v_a) + (v_a − L_c) + (L_c − L_f) + (L_f − v_0) + (v_0 − v_f)
+                 contact       links         rest          elements      penalty
 
 A part is its component along v_c − v_f, with its sign: the parts sum to the norm of the difference.  Of a stress the
 parts are taken at the place of the largest difference.  Without a difference, parts that cancel count along v_f.
 
 The limits in N and n are those of :mod:`comparisons.verdict.uncertainty`.  The effect of the penalty is proportional to
 a small p.  Where v(p) is farther off the line through p/4 and p/16 than half of the line's own change, no law shows:
-v_0 is then the value at p/16, and δ becomes an uncertainty.  L_t follows from n at p/16 and 2n at p/256, less δ and
+v_0 is then the value at p/16, and δ becomes an uncertainty.  L_f follows from n at p/16 and 2n at p/256, less δ and
 δ/16.  On a circle the length of the elements decides on the depth of a beam: there the penalty is a part of
 ``elements``.
 
@@ -36,7 +36,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from comparisons.choices import KINEMATICS, Choices, check
+from comparisons.choices import Choices, check
 from comparisons.geometry import bentness_on, length
 from comparisons.pairing import in_paper
 from comparisons.quantities import direction, norm
@@ -73,8 +73,6 @@ class Parts:
     contact: float
     links: float
     rest: float
-    stretch: float
-    shear: float
     elements: float
     penalty: float
 
@@ -90,7 +88,7 @@ class Budget:
     Attributes:
         row: values, difference and denominator.
         parts: the sum.
-        rest_uncertainty: of L_c − L_b, by the uncertainties of the limits; elements_uncertainty: of L_f.
+        rest_uncertainty: of L_c − L_f, by the uncertainties of the limits; elements_uncertainty: of L_f.
         off_line: distance of v_f from the line through the values at p/4 and p/16.
         paper: component of ``paper`` less ``auto`` at N along the difference; None without both values.
         inner_edge: of a stress the factor K (k,) of the curved beam's inner edge; None of other probes.
@@ -122,7 +120,7 @@ class Account:
     """Budgets of a scene.
 
     Attributes:
-        scene, choices: the question and the compared discretisation.
+        scene, choices: the question, and the compared discretisation with its theory.
         budgets: at every station; none with an incomplete answer.
         missing: problems of incomplete answers, in sentences.
         silent: why the requested solid has no complete answer; empty otherwise.
@@ -142,8 +140,8 @@ class Account:
 
 
 _Runs = Mapping[str, tuple[Answer, ...]]
-"""Answers by name: ``cprbm`` as chosen, ``cprbm auto`` at LEVELS, ``fea`` at TIGHTNESS, ``fea`` and a theory, and
-``solid``, at ELEMENTS."""
+"""Answers by name: ``cprbm`` as chosen, ``cprbm auto`` at LEVELS, ``fea`` at TIGHTNESS, ``fea finer`` and
+``solid`` at ELEMENTS."""
 
 
 def account_of(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
@@ -158,6 +156,7 @@ def account_of(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
         SceneError: a solver refuses the question.
     """
     check(choices, scene)
+    choices = choices.within(choices.kinematics_of(scene))
     runs = _solve(scene, choices, memory)
     beams = {name: answers for name, answers in runs.items() if name != "solid"}
     missing = tuple(
@@ -190,9 +189,7 @@ def _solve(scene: Scene, choices: Choices, memory: AnswerMemory) -> _Runs:
         "cprbm auto": [(solvers.cprbm, own) for own in (even, even.finer(), even.finer().finer())],
         "fea": [(solvers.fea, own) for own in tight],
     }
-    for theory in KINEMATICS[: KINEMATICS.index(choices.kinematics) + 1]:
-        stiff = tight[-1].within(theory)
-        wanted[f"fea {theory}"] = [(solvers.fea, own) for own in (stiff, stiff.finer())]
+    wanted["fea finer"] = [(solvers.fea, own) for own in (tight[-1], tight[-1].finer())]
     if solvers.solid is not None:
         wanted["solid"] = [(solvers.solid, own) for own in (choices, choices.finer())]
     jobs = [(solver, scene, own) for each in wanted.values() for solver, own in each]
@@ -227,23 +224,19 @@ def _budget(
     v_c, v_a, v_f = v["cprbm"][0], v["cprbm auto"][0], v["fea"][0]
     v_0, delta, off_line, in_doubt = _penalty(probe, v["fea"])
     L_c = limit(LEVELS, v["cprbm auto"])
-    L = [limit(ELEMENTS, found - np.outer(DEEPER, delta)) for name, found in v.items() if name.startswith("fea ")]
+    L_f = limit(ELEMENTS, v["fea finer"] - np.outer(DEEPER, delta))
     along = direction(probe.quantity, v_c - v_f if (v_c - v_f).any() else v_f)
-    ladder = [v_c, v_a, L_c.value, *(each.value for each in L), v_0, v_f]
-    contact, links, rest, *theory, elements, penalty = (
-        float(np.dot(one - other, along)) for one, other in pairwise(ladder)
-    )
-    stretch, shear = theory + [0.0] * (2 - len(theory))
+    parts = Parts(*(float(np.dot(a - b, along)) for a, b in pairwise([v_c, v_a, L_c.value, L_f.value, v_0, v_f])))
     K = None
     if row.arc_length is not None:
         beam = scene.beams[probe.of]
         K = inner_edge_factor(bentness_on(beam, row.arc_length / length(beam.curve)))
-    own = float(np.dot(L[-1].uncertainty + in_doubt, np.abs(along)))
-    missed, uncertainty = _missed(scene, row, solids, counts, L[-1].value, along)
+    own = float(np.dot(L_f.uncertainty + in_doubt, np.abs(along)))
+    missed, uncertainty = _missed(scene, row, solids, counts, L_f.value, along)
     return Budget(
         row=replace(row, difference=norm(probe.quantity, v_c - v_f)),
-        parts=Parts(contact, links, rest, stretch, shear, elements, penalty),
-        rest_uncertainty=float(np.dot(L_c.uncertainty + L[0].uncertainty + in_doubt, np.abs(along))),
+        parts=parts,
+        rest_uncertainty=float(np.dot(L_c.uncertainty + L_f.uncertainty + in_doubt, np.abs(along))),
         elements_uncertainty=own,
         off_line=off_line,
         paper=_of_paper(paper, row, at["cprbm"][0].branch, v_a, counts, along),

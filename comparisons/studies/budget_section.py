@@ -21,8 +21,6 @@ LOOKS = {
     "contact": ("#7b4ea3", "contact: paper to auto"),
     "links": ("#1f5fa8", "CPRBM: links"),
     "rest": ("#222222", "rest between the limits"),
-    "stretch": ("#f0a35e", "theory: stretch"),
-    "shear": ("#c8321e", "theory: shear"),
     "elements": ("#3f8f5b", "FEA: elements"),
     "penalty": ("#8fd0b5", "FEA: penalty"),
 }
@@ -104,8 +102,8 @@ def budget_table(account: Account) -> Table:
     ]
     note = (
         "Per cent of the denominator of the case's table. The parts sum to the difference; negative parts make the "
-        "difference smaller. Links, elements, penalty: value beside its limit. Rest: between the solvers' limits in "
-        "bending, with the uncertainty. Stretch, shear: between the finite elements' limits. Beside the sum: paper, "
+        "difference smaller. Links, elements, penalty: value beside its limit. Rest: between the solvers' limits "
+        f"in {account.choices.theory}, with the uncertainty. Beside the sum: paper, "
         "from auto to paper at the same links; curved, error of the straight-beam formula of stress, t/(3R) to first "
         "order; missed, limit of the finite elements less the solid's limit, with the uncertainty."
     )

@@ -88,7 +88,7 @@ def with_piece(found: Calibration, piece: Piece, solvers: Solvers, crew: Crew = 
         SceneError: a solver refuses the question.
     """
     scene = piece.scene
-    whole = (solvers.exact or exact_answer)(scene, Choices(kinematics="bending"))
+    whole = (solvers.exact or exact_answer)(scene, Choices(theory="bending"))
     exact = complete_part(scene, whole)
     asked = sum(len(stage.stations) for stage in scene.stages)
     known = len(exact.stations)
@@ -107,7 +107,7 @@ def tried(scene: Scene, links: int, elements: int, exact: Answer, solvers: Solve
     Raises:
         SceneError: a solver refuses the question.
     """
-    choices = Choices(links=links, elements=elements, kinematics="bending")
-    runs = paired(scene, choices, replace(solvers, exact=None), crew)
+    choices = Choices(links=links, elements=elements, theory="bending")
+    runs = paired(scene, choices, replace(solvers, exact=None), crew, bare=True)
     comparison = compare(scene, replace(runs, exact=exact))
     return Trial(scene.name, choices, comparison.verdict, error_ratios(comparison.rows))

@@ -70,16 +70,14 @@ def convergence_figures(found: Convergence) -> tuple[Figure, ...]:
     last = [
         family
         for family in found.families
-        if (family.stage, family.station) == (stage.name, stage.stations[-1])
-        and family.series.kinematics == "bending"
-        and _errors(family)
+        if (family.stage, family.station) == (stage.name, stage.stations[-1]) and _errors(family)
     ]
     if not last:
         return ()
     names = list(dict.fromkeys(family.probe.name for family in last))
     with canvas(10.4, 5.6) as drawing:
         panels = drawing.subplots(1, 2, sharey=True)
-        for axes, method, title in zip(panels, ("cprbm", "fea"), ("CPRBM", "FEA in bending"), strict=True):
+        for axes, method, title in zip(panels, ("cprbm", "fea"), ("CPRBM", "FEA"), strict=True):
             logarithmic(axes, found.sizes)
             for family in last:
                 if family.series.method == method:

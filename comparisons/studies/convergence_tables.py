@@ -131,8 +131,8 @@ def shown_size(found: Convergence) -> int:
 
 
 def pairs_of(found: Convergence) -> tuple[Pair, ...]:
-    """The CPRBM's families beside the finite elements' in ``bending``."""
-    other = {_question(family): family for family in found.families if family.series.variant == "bending"}
+    """The CPRBM's families beside the finite elements'."""
+    other = {_question(family): family for family in found.families if family.series.method == "fea"}
     return tuple(
         Pair(family, other[_question(family)])
         for family in found.families
@@ -176,7 +176,7 @@ def _limits(found: Convergence) -> Table:
         Column("no limit because", lambda at: "" if at.cprbm.found else at.cprbm.why),
     ]
     note = (
-        "FEA in bending, the CPRBM's own theory. Limits by Richardson's extrapolation; fractions of the probe's "
+        f"Both solvers in {found.series[0].theory}. Limits by Richardson's extrapolation; fractions of the probe's "
         "largest value in the stage. Stresses at one place."
     )
     absence = f" No exact values: {found.exact_absence}" if found.exact_absence else ""
@@ -278,8 +278,8 @@ def critical_table(scene: Scene, sizes: Sequence[int], families: Sequence[Critic
 
 
 def _critical_sentences(scene: Scene, families: Sequence[CriticalFamily]) -> Iterable[str]:
-    """Distances of the limits of the CPRBM and of the finite elements in ``bending``."""
-    fea = {(each.stage, each.place): each for each in families if each.series.variant == "bending"}
+    """Distances of the limits of the CPRBM and of the finite elements."""
+    fea = {(each.stage, each.place): each for each in families if each.series.method == "fea"}
     for one in families:
         other = fea.get((one.stage, one.place))
         if one.series.method != "cprbm" or other is None or one.found is None or other.found is None:
@@ -288,7 +288,7 @@ def _critical_sentences(scene: Scene, families: Sequence[CriticalFamily]) -> Ite
         stated = float(one.found.uncertainty[0] + other.found.uncertainty[0])
         same = "by the same mechanism" if one.mechanism == other.mechanism else "by different mechanisms"
         yield (
-            f"The limits of the critical value in {one.stage} are {distance_text(scene, apart, one.unit)} apart within "
-            f"bending, where {distance_text(scene, stated, one.unit)} are stated, {same}: {one.mechanism} in the "
-            f"CPRBM, {other.mechanism} in the finite elements."
+            f"The limits of the critical value in {one.stage} are {distance_text(scene, apart, one.unit)} apart in "
+            f"{one.series.theory}, where {distance_text(scene, stated, one.unit)} are stated, {same}: {one.mechanism} "
+            f"in the CPRBM, {other.mechanism} in the finite elements."
         )

@@ -1,7 +1,6 @@
 """A scene at a family of sizes N: which runs, and how every probe goes with N.
 
-The runs are the CPRBM's, the finite elements' in ``bending`` (the CPRBM's own theory, so that both limits are of the
-same equations) and, where another theory was chosen, the finite elements' in that.
+The runs are those of both solvers in one beam theory, so that both limits are of the same equations.
 
 A penalty leaves an error that is proportional to the penetration, which falls with N as the elements' own error
 (:meth:`comparisons.choices.Choices.of_size`): both are parts of one law.
@@ -51,12 +50,14 @@ class Series:
     Attributes:
         method: who solved.
         variant: the beam theory; of the CPRBM its formulation.
+        theory: the beam theory.
         answers: by N, ascending.
         why: by N, why an answer is not whole.
     """
 
     method: Method
     variant: str
+    theory: Kinematics
     answers: Mapping[int, Answer]
     why: Mapping[int, str]
 
@@ -65,12 +66,7 @@ class Series:
         """What all runs have in common, and the beam theory."""
         every = [answer.settings for answer in self.answers.values()]
         common = {key: value for key, value in every[0].items() if all(other.get(key) == value for other in every)}
-        return {"kinematics": self.kinematics, **common}
-
-    @property
-    def kinematics(self) -> str:
-        """The beam theory."""
-        return "bending" if self.method == "cprbm" else self.variant
+        return {**common, "kinematics": self.theory}
 
     @property
     def whole(self) -> dict[int, Answer]:
@@ -92,7 +88,7 @@ class Family:
         floor: what round-off leaves open, in the unit.
         found: the limit, if there are two sizes or more that count.
         why: why there is no limit, or no observed order.
-        exact: the exact values (k,) in the theory ``bending``, if they are known and the series is of that theory.
+        exact: the exact values (k,), if they are known; in ``bending`` alone.
     """
 
     series: Series
@@ -151,8 +147,8 @@ class Family:
 class Convergence:
     """A scene at all sizes.
 
-    ``families`` stand in the order of stages, stations and probes, and for each the CPRBM's, the finite elements' in
-    ``bending`` and those in the chosen theory.  ``exact_absence`` says why the exact reference covers no station.
+    ``families`` stand in the order of stages, stations and probes, and for each the CPRBM's and the finite elements'.
+    ``exact_absence`` says why the exact reference covers no station.
     """
 
     scene: Scene
@@ -186,19 +182,19 @@ def converged(
     Raises:
         SceneError: a solver refuses the question.
     """
-    theories: dict[Kinematics, None] = dict.fromkeys(("bending", choices.kinematics))
+    theory = choices.kinematics_of(scene)
+    choices = choices.within(theory)
     jobs: dict[tuple[Method, str, int], Job] = {}
     for n in sizes:
         jobs["cprbm", choices.formulation, n] = (solvers.cprbm, scene, choices.of_size(n))
-        for theory in theories:
-            jobs["fea", theory, n] = (solvers.fea, scene, choices.of_size(n).within(theory))
-    known = [] if solvers.exact is None else [(solvers.exact, scene, choices)]
+        jobs["fea", theory, n] = (solvers.fea, scene, choices.of_size(n))
+    known = [] if solvers.exact is None or theory != "bending" else [(solvers.exact, scene, choices)]
     found = crew.answers([*jobs.values(), *known])
     exact, exact_absence = exact_or_why(found.pop() if known else None)
     answers: dict[tuple[Method, str], dict[int, Answer]] = {}
     for (method, variant, n), answer in zip(jobs, found, strict=True):
         answers.setdefault((method, variant), {})[n] = answer
-    series = [Series(*which, own, _complaints(scene, own)) for which, own in answers.items()]
+    series = [Series(*which, theory, own, _complaints(scene, own)) for which, own in answers.items()]
     return Convergence(scene, tuple(sizes), tuple(series), _families(scene, series, exact), exact_absence)
 
 
@@ -306,9 +302,7 @@ def _family(
         floor=floor,
         found=found,
         why=why,
-        exact=_exactly(exact, stage, value, probe, places, last)
-        if series.settings["kinematics"] == "bending"
-        else None,
+        exact=_exactly(exact, stage, value, probe, places, last),
     )
 
 

@@ -1,10 +1,10 @@
 """N for a tolerance: N doubles until every stated uncertainty is within the tolerance.
 
 The symbols are those of :mod:`comparisons.tolerances.result`.  Values and uncertainties at an N follow from the
-answers at N/4, N/2 and N, of the CPRBM also at N/2 + N/14 where the error may be uneven
+answers at N/4, N/2 and N, of the CPRBM also at N/2 + N/14
 (:mod:`comparisons.tolerances.limits`).  No answer is solved twice.
 
-The finite elements come first, in ``bending`` and in the chosen theory.  Their values are the denominators of the other
+The finite elements come first, in the theory of the CPRBM.  Their values are the denominators of the other
 solvers' f; where a solver is asked alone, its own values are.  The solid has an element across the thickness for every
 20 along.
 """
@@ -15,9 +15,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from comparisons.choices import KINEMATICS, Choices, Kinematics
+from comparisons.choices import Choices
 from comparisons.crew import Crew, Job
-from comparisons.pairing import Runs, Solvers, known_exactly, may_be_uneven, paired, with_solid
+from comparisons.pairing import Runs, Solvers, exact_or_why, in_other_theory, paired, with_solid
 from comparisons.reactions import perturbed_scene
 from comparisons.sentences import problem_sentences
 from comparisons.store import AnswerMemory
@@ -56,8 +56,8 @@ def solve_within(
         SceneError: the solver refuses the question.
     """
     memory = AnswerMemory(solvers=with_solid(solvers) if solver == "solid" else solvers, say=say)
-    theory: Kinematics = choices.kinematics if solver == "fea" else "bending"
-    search = _Search(scene, solver, (theory,), choices, memory)
+    theory = choices.kinematics_of(scene) if solver == "fea" else choices.theory_of(scene)
+    search = _Search(scene, solver, choices.within(theory), memory)
     return search.run(tolerance), search.result(tolerance)
 
 
@@ -73,64 +73,62 @@ def runs_within(
     Raises:
         SceneError: a solver refuses the question.
     """
-    memory, chosen = AnswerMemory(pool=crew.pool, solvers=solvers, say=say), choices.kinematics
-    theories: tuple[Kinematics, ...] = tuple(dict.fromkeys(("bending", chosen)))
-    fea = _Search(scene, "fea", theories, choices, memory)
+    memory = AnswerMemory(pool=crew.pool, solvers=solvers, say=say)
+    choices = choices.within(choices.kinematics_of(scene))
+    fea = _Search(scene, "fea", choices, memory)
     reference = fea.run(tolerance)
-    cprbm = _Search(scene, "cprbm", ("bending",), choices, memory, reference)
+    cprbm = _Search(scene, "cprbm", choices, memory, reference)
     value = cprbm.run(tolerance)
-    if cprbm.limits and fea.limits:
-        own, driven = cprbm.limits["bending"], perturbed_scene(scene)
-        exact, exact_absence = known_exactly(scene, choices, solvers, memory)
-        between = KINEMATICS[1 : KINEMATICS.index(chosen)]
-        families = {theory: (each.answer, each.coarse) for theory, each in fea.limits.items()}
-        alone = {theory: (replace(fea, theories=(theory,)).at_last(),) for theory in between}
+    at_last = replace(fea.choices_at(fea.n), links=cprbm.n, formulation=choices.formulation)
+    if cprbm.limits is not None and fea.limits is not None:
+        own, driven = cprbm.limits, perturbed_scene(scene)
+        other, other_absence = in_other_theory(scene, replace(at_last, links=cprbm.n // 2), solvers)
+        known = [(solvers.exact, scene, choices)] if solvers.exact is not None and choices.theory == "bending" else []
+        exact, exact_absence = exact_or_why(*memory.answers(known))
         runs = Runs(
-            chosen,
+            choices.kinematics_of(scene),
             (value, own.coarse),
-            frozendict({theory: (families | alone)[theory] for theory in KINEMATICS if theory in families | alone}),
+            (fea.limits.answer, fea.limits.coarse),
             auto=own.answer if choices.formulation == "paper" else None,
+            other=other,
+            other_absence=other_absence,
             perturbed=None if driven is None else replace(cprbm, scene=driven, reference=None).at_last(),
             exact=exact,
             exact_absence=exact_absence,
-            settled=frozendict(
-                {"cprbm": own.uncertainties} | {f"fea {name}": each.uncertainties for name, each in fea.limits.items()}
-            ),
+            settled=frozendict({"cprbm": own.uncertainties, "fea": fea.limits.uncertainties}),
         )
     else:
-        at_last = replace(fea.choices_at(chosen, fea.n), links=cprbm.n, formulation=choices.formulation)
         runs = paired(scene, at_last, replace(solvers, solid=None), memory)
     found = cprbm.result(tolerance), fea.result(tolerance)
     if solvers.solid is None:
         return runs, found
-    solid = _Search(scene, "solid", ("bending",), choices, memory, reference if fea.limits else None)
+    solid = _Search(scene, "solid", choices, memory, reference if fea.limits else None)
     solid.run(tolerance)
-    return replace(runs, solid=tuple(solid.answers["bending"].values())), (*found, solid.result(tolerance))
+    return replace(runs, solid=tuple(solid.answers.values())), (*found, solid.result(tolerance))
 
 
 @dataclass(slots=True)
 class _Search:
-    """The search of one solver, in all ``theories`` at once.
+    """The search of one solver in one theory.
 
     Attributes:
         reference: the answer with the denominators; None for the solver's own answer.
-        n: the present N; answers: at the present N and coarser, by theory; limits: of the answers, empty in trouble.
+        n: the present N; answers: at the present N and coarser; limits: of the answers, None in trouble.
         level: result at the present N.
     """
 
     scene: Scene
     solver: SolverName
-    theories: tuple[Kinematics, ...]
     choices: Choices
     memory: AnswerMemory
     reference: Answer | None = None
     n: int = 0
-    answers: dict[Kinematics, dict[int, Answer]] = field(default_factory=dict)
-    limits: dict[Kinematics, Limits] = field(default_factory=dict)
+    answers: dict[int, Answer] = field(default_factory=dict)
+    limits: Limits | None = None
     level: Level = field(default_factory=lambda: Level(0, None))
 
     def run(self, tolerance: float) -> Answer:
-        """The answer in the last theory at the found N."""
+        """The answer at the found N."""
         self.n = 2 * FIRST[self.solver]
         while True:
             try:
@@ -149,62 +147,56 @@ class _Search:
         return self.level.end(tolerance, LARGEST_PAPER if self._paper else LARGEST[self.solver])
 
     def at_last(self) -> Answer:
-        """The answer in the last theory at the present N, with limits as values unless a run ended early."""
-        jobs = {(theory, size): self._job(theory, size) for theory in self.theories for size in self._sizes()}
-        paper = [(*self._job(self.theories[-1], self.n)[:2], self.choices_at(self.theories[-1], self.n))]
+        """The answer at the present N, with limits as values unless a run ended early."""
+        jobs = {size: self._job(size) for size in self._sizes()}
+        paper = [(*self._job(self.n)[:2], self.choices_at(self.n))]
         found = self.memory.answers([*jobs.values(), *(paper if self._paper else ())])
         value = found.pop() if self._paper else None
-        self.answers, self.limits, troubles = {theory: {} for theory in self.theories}, {}, list[str]()
-        for (theory, size), answer in zip(jobs, found, strict=True):
-            self.answers[theory][size] = answer
-        for theory, mine in self.answers.items():
-            problems = {size: next(iter(problem_sentences(self.scene, answer)), "") for size, answer in mine.items()}
-            complete = {size: answer for size, answer in mine.items() if not problems[size]}
-            if {self.n, self.n // 2} <= complete.keys():
-                self.limits[theory] = limits_of(self.scene, complete, self.solver)
-                self.answers[theory] = complete
-            troubles += [problems[size] for size in (self.n, self.n // 2) if problems[size]]
-        if troubles:
-            self.limits, self.level = {}, Level(self.n, None, troubles[0])
-            return value or self.answers[self.theories[-1]][self.n]
-        worst = [each for limits in self.limits.values() if (each := self._worst(limits, value)) is not None]
-        self.level = Level(self.n, max(worst, key=lambda stated: stated.fraction, default=None))
-        return value or self.limits[self.theories[-1]].answer
+        self.answers = dict(zip(jobs, found, strict=True))
+        problems = {n: next(iter(problem_sentences(self.scene, each)), "") for n, each in self.answers.items()}
+        trouble = problems[self.n // 2] or problems[self.n]
+        if trouble:
+            self.limits, self.level = None, Level(self.n, None, trouble)
+            return value or self.answers[self.n]
+        self.answers = {size: answer for size, answer in self.answers.items() if not problems[size]}
+        self.limits = limits_of(self.scene, self.answers, self.solver)
+        self.level = Level(self.n, self._worst(self.limits, value))
+        return value or self.limits.answer
 
     def result(self, tolerance: float) -> Tolerance:
         """Result of the search."""
-        probes = () if self._paper else tuple(dict.fromkeys(p for each in self.limits.values() for p in each.probes))
+        probes = () if self._paper or self.limits is None else self.limits.probes
         sizes = self.memory.sizes(getattr(self.memory.solvers, self.solver), self.scene)
         ended = "" if self.level.fraction <= tolerance else self.end(tolerance)
         return Tolerance(
             tolerance, self.solver, self.level, (self.n // 2, self.n) if probes else (), probes, sizes, ended
         )
 
-    def choices_at(self, theory: Kinematics, n: int) -> Choices:
+    def choices_at(self, n: int) -> Choices:
         """The choices at N."""
-        return replace(self.choices.within(theory).of_size(n), across=max(n // FIRST["solid"], 1))
+        return replace(self.choices.of_size(n), across=max(n // FIRST["solid"], 1))
 
     @property
     def _paper(self) -> bool:
         return self.solver == "cprbm" and self.choices.formulation == "paper"
 
     def _sizes(self) -> list[int]:
-        """N/4 unless below the first N, N/2 and N; of the CPRBM also N/2 + N/14 where the error may be uneven."""
+        """N/4 unless below the first N, N/2 and N; of the CPRBM also N/2 + N/14."""
         doubled = [self.n >> k for k in range(3) if self.n >> k >= FIRST[self.solver]]
-        uneven = self.solver == "cprbm" and may_be_uneven(self.scene)
-        return sorted([*doubled, *([self.n // 2 + max(1, round(self.n / 14))] if uneven else [])])
+        third = [self.n // 2 + max(1, round(self.n / 14))] if self.solver == "cprbm" else []
+        return sorted([*doubled, *third])
 
-    def _job(self, theory: Kinematics, size: int) -> Job:
-        even = replace(self.choices_at(theory, size), formulation="auto")
+    def _job(self, size: int) -> Job:
+        even = replace(self.choices_at(size), formulation="auto")
         return getattr(self.memory.solvers, self.solver), self.scene, even
 
     def _worst(self, limits: Limits, paper: Answer | None) -> Stated | None:
         """The row with the largest f, of a value in ``paper`` with the distance from ``auto``."""
         reference = self.reference or limits.answer
         runs = Runs(
-            "bending",
+            self.choices.kinematics_of(self.scene),
             (paper or limits.answer, limits.coarse),
-            frozendict({"bending": (reference, reference)}),
+            (reference, reference),
             auto=None if paper is None else limits.answer,
             settled=frozendict({"cprbm": limits.uncertainties}),
         )

@@ -3,7 +3,7 @@
 ======  ==========================================================================================
 symbol  meaning
 ======  ==========================================================================================
-e       true error |v − x| of the CPRBM or of the finite elements in ``bending``
+e       true error |v − x| of the CPRBM or of the finite elements, both in ``bending``
 u       stated uncertainty of the solver, with round-off and q
 q       uncertainty of the exact value (:mod:`comparisons.verdict.rows`)
 F       2, the factor beyond which a row differs
@@ -93,7 +93,7 @@ def true_errors(row: Row) -> Iterator[ErrorRatio]:
     bounds, true = row.bounds, row.true_errors
     floor = bounds.round_off + true.allowance
     yield ErrorRatio("cprbm", row, true.cprbm, bounds.cprbm + floor)
-    yield ErrorRatio("fea", row, true.bending, (bounds.fea if bounds.bending is None else bounds.bending) + floor)
+    yield ErrorRatio("fea", row, true.fea, bounds.fea + floor)
 
 
 def error_ratios(rows: Iterable[Row]) -> tuple[ErrorRatio, ...]:

@@ -3,9 +3,9 @@
 ======  ==========================================================================================
 symbol  meaning
 ======  ==========================================================================================
-λ_c     load of an event in the CPRBM, λ_f in the finite elements, λ_b in ``bending``
-U, U_b  stated uncertainty of λ_c − λ_f and of λ_c − λ_b (:mod:`comparisons.verdict.bounds`)
-θ       step of theory |λ_b − λ_f|
+λ_c     load of an event in the CPRBM, λ_f in the finite elements, λ_o in the CPRBM in the other theory
+U       stated uncertainty of λ_c − λ_f (:mod:`comparisons.verdict.bounds`)
+θ       step of theory |λ_o − λ_c|; infinite where the CPRBM has no such critical point in the other theory
 T       tolerance of an event on the load axis (:func:`comparisons.stages.event_tolerance`)
 W       ``verdict_limit`` of the scene times the span of the stage
 ======  ==========================================================================================
@@ -13,8 +13,8 @@ W       ``verdict_limit`` of the scene times the span of the stage
 A critical point
 
 * is undecided if a solver lacks it, since the run ended early before the load;
-* differs if a solver lacks it otherwise, if the mechanisms differ, or if |λ_c − λ_b| > max(T, U_b);
-* is undecided if runs of one solver disagree, or max(U − θ, U_b) > T, or U > max(T, W);
+* differs if a solver lacks it otherwise, if the mechanisms differ, or if |λ_c − λ_f| > max(T, U);
+* is undecided if runs of one solver disagree, or U > T, or, in ``bending``, θ > max(T, W);
 * agrees otherwise.
 
 The first critical point of a stage is compared with the first of the other runs, the second with the second.  In a
@@ -33,6 +33,7 @@ import numpy as np
 from comparisons.quantities import load_unit
 from comparisons.stages import event_tolerance, span_of
 from comparisons.verdict.bounds import Bounds, bounds_of
+from comparisons.verdict.completeness import ends_at_critical
 from comparisons.verdict.runs_table import RunsTable, solver_of
 from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Critical, Stage
@@ -46,11 +47,12 @@ class CriticalRow:
     Attributes:
         stage: name of the stage; place: number of the critical point in the stage, from 0; unit: SI unit of the loads.
         cprbm, fea: the solvers' critical points; None where a solver has none.
-        span: of the stage; allowed: T; largest: W.
+        span: of the stage; allowed: T; largest: max(T, W) in ``bending``, otherwise infinite.
         steady: whether all runs of each solver have it by one mechanism, or none has.
         ended_before: whether a run without the critical point ended early before the load.
-        difference, same_theory: distances of λ_c from λ_f and from λ_b; NaN where a run lacks it.
-        bounds: U and U_b; None where a run lacks it.
+        difference: |λ_c − λ_f|; NaN where a run lacks it.
+        theory: θ; NaN where it is not known.
+        bounds: U; None where a run lacks it.
         turned: rotation of the state that a run went on to, rad, by name of the run that passed the point.
     """
 
@@ -65,7 +67,7 @@ class CriticalRow:
     steady: bool
     ended_before: bool = False
     difference: float = math.nan
-    same_theory: float = math.nan
+    theory: float = math.nan
     bounds: Bounds | None = None
     turned: Mapping[str, float] = frozendict()
 
@@ -80,14 +82,13 @@ class CriticalRow:
             return Word.DIFFER, Reason.EVENTS
         if self.bounds is None:
             return Word.UNDECIDED, Reason.RUN_ENDED
-        if self.same_theory > max(self.allowed, self.bounds.same_theory):
+        if self.difference > max(self.allowed, self.bounds.total):
             return Word.DIFFER, Reason.EVENTS
         if self.turned:
             return Word.UNDECIDED, Reason.BRANCH
-        own = max(self.bounds.own, self.bounds.same_theory)
-        if own > self.allowed:
+        if self.bounds.total > self.allowed:
             return Word.UNDECIDED, Reason.COARSE
-        if self.bounds.total > max(self.allowed, self.largest):
+        if self.theory > self.largest:
             return Word.UNDECIDED, Reason.THEORY
         return Word.AGREE, None
 
@@ -105,11 +106,11 @@ class CriticalRow:
 
 @dataclass(frozen=True, slots=True)
 class ClosingRow:
-    """Closing of a contact at loads farther apart than max(T, U_b).
+    """Closing of a contact at loads farther apart than max(T, U).
 
     Attributes:
         stage, contact: names; unit: SI unit of the loads; cprbm, fea: the solvers' loads.
-        stated: U_b; allowed: T.
+        stated: U; allowed: T.
     """
 
     stage: str
@@ -186,7 +187,7 @@ def _with_passed_points(
 
 def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str, Critical | None]) -> CriticalRow:
     first, second = table.compared
-    span = span_of(table.scene, stage)
+    span, allowed = span_of(table.scene, stage), event_tolerance(table.scene, stage)
     mechanisms = {name: None if one is None else mechanism(one) for name, one in here.items()}
     row = CriticalRow(
         stage=stage.name,
@@ -195,8 +196,8 @@ def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str,
         cprbm=here[first],
         fea=here[second],
         span=span,
-        allowed=event_tolerance(table.scene, stage),
-        largest=table.scene.verdict_limit * span,
+        allowed=allowed,
+        largest=max(allowed, table.scene.verdict_limit * span) if table.runs.theory == "bending" else math.inf,
         steady=not disagree_within_a_solver(mechanisms),
         ended_before=_ended_before(table, here[first], here[second]),
     )
@@ -207,8 +208,18 @@ def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str,
         max(one.uncertainty for name, one in present.items() if solver_of(name) == solver)
         for solver in ("cprbm", "fea")
     )
-    difference, same_theory, bounds = _on_load_axis(table, {name: one.value for name, one in present.items()}, located)
-    return replace(row, difference=difference, same_theory=same_theory, bounds=bounds)
+    bounds = _on_load_axis(table, {name: one.value for name, one in present.items()}, located)
+    difference = abs(present[first].value - present[second].value)
+    return replace(row, difference=difference, theory=_step_of_theory(table, row), bounds=bounds)
+
+
+def _step_of_theory(table: RunsTable, row: CriticalRow) -> float:
+    """θ; NaN without a CPRBM's critical point, and where the run in the other theory ends early."""
+    other, own = table.runs.other, row.cprbm
+    if other is None or own is None or not (other.completed or ends_at_critical(other)):
+        return math.nan
+    mine = [one for one in other.critical if one.stage == row.stage][row.place :]
+    return abs(mine[0].value - own.value) if mine and mechanism(mine[0]) == mechanism(own) else math.inf
 
 
 def _ended_before(table: RunsTable, cprbm: Critical | None, fea: Critical | None) -> bool:
@@ -238,22 +249,16 @@ def closing_rows(table: RunsTable) -> tuple[ClosingRow, ...]:
     for (stage, contact, _), here in loads.items():
         if len(here) < len(table.following) or not set(table.compared) <= set(here):
             continue
-        _, same_theory, bounds = _on_load_axis(table, here, 0.0)
+        bounds = _on_load_axis(table, here, 0.0)
         allowed = event_tolerance(table.scene, stages[stage])
-        if bounds is not None and same_theory > max(allowed, bounds.same_theory):
-            cprbm, fea = (here[name] for name in table.compared)
+        cprbm, fea = (here[name] for name in table.compared)
+        if bounds is not None and abs(cprbm - fea) > max(allowed, bounds.total):
             unit = load_unit(table.scene, stages[stage])
-            found.append(ClosingRow(stage, contact, unit, cprbm, fea, bounds.same_theory, allowed))
+            found.append(ClosingRow(stage, contact, unit, cprbm, fea, bounds.total, allowed))
     return tuple(found)
 
 
-def _on_load_axis(table: RunsTable, loads: Mapping[str, float], round_off: float) -> tuple[float, float, Bounds | None]:
-    """|λ_c − λ_f|, |λ_c − λ_b| and the stated uncertainties of an event's loads."""
-    first, second = table.compared
+def _on_load_axis(table: RunsTable, loads: Mapping[str, float], round_off: float) -> Bounds | None:
+    """Stated uncertainties of an event's loads."""
     values = {name: np.array([load]) for name, load in loads.items()}
-    bounds = bounds_of(table.runs, values, lambda difference: float(np.abs(difference).max()), round_off)
-    return (
-        abs(loads[first] - loads[second]),
-        abs(loads[first] - loads.get("fea bending", loads[second])),
-        bounds,
-    )
+    return bounds_of(table.runs, values, lambda difference: float(np.abs(difference).max()), round_off)

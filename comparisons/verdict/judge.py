@@ -1,17 +1,18 @@
 """Word and reason of a row, and of all rows of a case.
 
-A row differs if |v_c − v_f| or |v_c − v_b| exceeds its stated uncertainty (:mod:`comparisons.verdict.bounds`), or if a
-true error beside the exact value exceeds twice the stated error.  A row is undecided if a stated uncertainty exceeds
-the scene's limit: such an uncertainty would excuse a wrong answer.  All other rows agree.
+A row differs if |v_c − v_f| exceeds its stated uncertainty (:mod:`comparisons.verdict.bounds`), or if a true error
+beside the exact value exceeds twice the stated error.  A row is undecided if the stated uncertainty exceeds the scene's
+limit: such an uncertainty would excuse a wrong answer (COARSE).  A row in ``bending`` is undecided as well if the step
+of theory θ exceeds the limit (THEORY): both solvers then agree on a number that the mechanism's stretch and shear
+change.  All other rows agree.
 
-A contradiction is no evidence against a solver, and the row is undecided, in five cases:
+A contradiction is no evidence against a solver, and the row is undecided, in four cases:
 
 * A contact presses in some runs only, and closes or opens in all runs of the stage (EVENT): the station lies between
   the runs' loads of one event.
 * A clamp or another contact shares the contact's force, and the sums of the shared forces agree (NOT_UNIQUE).
 * Runs are on mirror images of one branch, or a run has passed a critical point near by (BRANCH).
 * A contact presses in one solver only, and neither its force nor another probe differs notably (EVENT).
-* The finite elements have no value in ``bending``, and the step of theory is not known (RUN_ENDED).
 
 Rows with the reason NOT_UNIQUE take no case down.  Rows with the reasons COARSE and EVENT take no case down if the
 probe agrees at most of its stations.  The sentence of the verdict counts such rows.
@@ -58,17 +59,17 @@ def _judge(table: RunsTable, row: Row, *, faint: bool) -> Judged:
         return (None, None) if np.isnan(row.difference) else (Word.UNDECIDED, Reason.RUN_ENDED)
     if any(each.pressure > 1.0 for each in true_errors(row)):
         return Word.DIFFER, Reason.EXACT
-    if row.difference > bounds.total or row.same_theory > bounds.same_theory:
+    if row.difference > bounds.total:
         return _contradiction(table, row, faint=faint)
     limit = scene.limit(row.probe) * row.scale
-    if max(bounds.total, bounds.same_theory) <= limit:
+    by_theory = table.runs.theory == "bending" and row.theory > limit
+    if bounds.total <= limit and not by_theory:
         return Word.AGREE, None
     if row.shared is not None:
         return Word.UNDECIDED, Reason.NOT_UNIQUE
     if row.events.unsettled:
         return Word.UNDECIDED, _event_reason(row)
-    theory = bounds.theory > limit or max(bounds.own, bounds.same_theory) <= limit
-    return Word.UNDECIDED, Reason.THEORY if theory else Reason.COARSE
+    return Word.UNDECIDED, Reason.THEORY if by_theory else Reason.COARSE
 
 
 def judge_case(rows: Sequence[Row], judged: Sequence[Judged]) -> tuple[Word, Reason | None]:
@@ -103,15 +104,11 @@ def _is_notable(table: RunsTable, row: Row) -> bool:
 
 
 def _contradiction(table: RunsTable, row: Row, *, faint: bool) -> Judged:
-    bounds, events = row.bounds, row.events
-    assert bounds is not None
     if _same_resultant(table, row):
         return Word.UNDECIDED, Reason.NOT_UNIQUE
-    if bounds.bending is None and table.runs.kinematics != "bending":
-        return Word.UNDECIDED, Reason.RUN_ENDED
-    if events.unsettled:
+    if row.events.unsettled:
         return Word.UNDECIDED, _event_reason(row)
-    if not events.contradictory:
+    if not row.events.contradictory:
         return Word.DIFFER, Reason.VALUES
     return (Word.UNDECIDED, Reason.EVENT) if faint else (Word.DIFFER, Reason.EVENTS)
 
@@ -128,10 +125,7 @@ def _same_resultant(table: RunsTable, row: Row) -> bool:
     sums = {name: resultant(station, {row.probe.of, *others}, beam) for name, station in table.at(row.where).items()}
     bounds = bounds_of(table.runs, sums, lambda difference: float(np.linalg.norm(difference)), 0.0)
     v_c, v_f = (sums[name] for name in table.compared)
-    if bounds is None:
-        return False
-    same = np.linalg.norm(v_c - sums.get("fea bending", v_f)) <= bounds.same_theory
-    return bool(same and np.linalg.norm(v_c - v_f) <= bounds.total)
+    return bounds is not None and float(np.linalg.norm(v_c - v_f)) <= bounds.total
 
 
 def _decides(rows: Sequence[Row], judged: Sequence[Judged], reason: Reason) -> bool:

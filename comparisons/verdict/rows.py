@@ -3,8 +3,10 @@
 ======  ==========================================================================================
 symbol  meaning
 ======  ==========================================================================================
-v_c     value of the CPRBM, v_f of the finite elements in the chosen theory, v_b in ``bending``
-x       exact value in ``bending``, where the elastica reference has the station
+v_c     value of the CPRBM, v_f of the finite elements; v_a of the CPRBM in the formulation ``auto``
+v_o     value of the CPRBM in ``auto`` in the other theory
+θ       |v_o − v_a|, the step of theory, both at N links: their errors of discretisation cancel
+x       exact value, where the comparison is in ``bending`` and the elastica reference has the station
 q       uncertainty of x: its certificate's residual, at least 1e-9 of the scale
 ======  ==========================================================================================
 
@@ -30,7 +32,7 @@ from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.scales import denominator, probe_scales
 from comparisons.verdict.station_events import NO_EVENTS, Place, StationEvents, station_events
 from comparisons.verdict.uncertainty import largest
-from cprbm_scene import Probe, Scene, Stage, StationAnswer
+from cprbm_scene import Answer, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array, Flags
 from cprbm_scene.statement import STRESSES, Quantity
 
@@ -43,10 +45,10 @@ SHARED: frozenset[Quantity] = frozenset({"force", "centre", "ends", "reaction", 
 
 @dataclass(frozen=True, slots=True)
 class TrueErrors:
-    """Distances from the exact value in the probe's unit: of v_c, of v_b, and q."""
+    """Distances from the exact value in the probe's unit: of v_c, of v_f, and q."""
 
     cprbm: float
-    bending: float
+    fea: float
     allowance: float
 
 
@@ -61,7 +63,9 @@ class Row:
         scale: of the probe in the stage; denominator: divisor of shown fractions.
         events: events of the runs by the station.
         shared: a beam, and the sources that share a force with the probe's contact or joint; None without any.
-        difference, same_theory: distances of v_c from v_f and from v_b; NaN without a value.
+        difference: distance of v_c from v_f; NaN without a value.
+        other: v_o on the row's branch; None without such a value.
+        theory: θ; NaN without v_o, or with a v_o of another shape.
         bounds: stated uncertainties; None without the value of a needed run.
         missing: runs without the station; absent: runs without a value, since a contact is open.
         arc_length: places (k,) of a stress, m.
@@ -80,7 +84,8 @@ class Row:
     events: StationEvents = NO_EVENTS
     shared: tuple[str, frozenset[str]] | None = None
     difference: float = math.nan
-    same_theory: float = math.nan
+    other: Array | None = None
+    theory: float = math.nan
     bounds: Bounds | None = None
     missing: tuple[str, ...] = ()
     absent: tuple[str, ...] = ()
@@ -103,6 +108,13 @@ class Row:
     def where(self) -> tuple[str, float]:
         """Stage and station."""
         return self.stage, self.station
+
+    @property
+    def largest_difference(self) -> float:
+        """Difference of the largest stresses, Pa; NaN of other quantities and without a difference."""
+        if self.arc_length is None or self.counts is None:
+            return math.nan
+        return abs(norm(self.probe.quantity, self.cprbm) - norm(self.probe.quantity, self.fea))
 
     def fraction(self, value: float) -> float | None:
         """``value`` over the denominator; None without a finite quotient."""
@@ -128,14 +140,16 @@ def build_rows(table: RunsTable, events: Mapping[tuple[str, float], StationEvent
     first, second = table.compared
     for where in table.reached:
         stations = table.at(where)
-        exact = _exact_station(table.runs, where, events[where].branch)
+        exact, other = (
+            _station(answer, where, events[where].branch) for answer in (table.runs.exact, table.runs.other)
+        )
         missing = tuple(name for name in table.answers if name not in stations)
         for probe in scene.probes_in(where[0]):
             pair = stations[first], stations[second]
             row = bare_row(scene, pair, probe, stages[where[0]], where[1], scales[where[0], probe.name])
             shared = sharing_sources(scene, stations.values(), probe.of) if probe.quantity in SHARED else None
             row = replace(row, events=events[where], shared=shared, missing=missing)
-            found.append(_measured(table, row, stations, exact))
+            found.append(_measured(table, row, stations, exact, other))
     return _with_largest_uncertainties(found)
 
 
@@ -169,33 +183,38 @@ def bare_row(
     )
 
 
-def _measured(table: RunsTable, row: Row, stations: Mapping[str, StationAnswer], exact: StationAnswer | None) -> Row:
-    """The row with its difference, stated uncertainties and true errors."""
+def _measured(
+    table: RunsTable,
+    row: Row,
+    stations: Mapping[str, StationAnswer],
+    exact: StationAnswer | None,
+    other: StationAnswer | None,
+) -> Row:
+    """The row with its difference, step of theory, stated uncertainties and true errors."""
     runs, probe = table.runs, row.probe
     values = {name: station.values[probe.name] for name, station in stations.items()}
     row = replace(
         row,
         exact=None if exact is None else exact.values[probe.name],
+        other=None if other is None else other.values.get(probe.name),
         absent=tuple(name for name, value in values.items() if value.size == 0),
     )
     if row.fea.size == 0 or any(value.shape != row.fea.shape for value in values.values()):
         return row
     counts = np.ones(row.fea.shape, dtype=bool)
     if row.arc_length is not None:
-        counts = away_from_point_forces(table.scene, probe.of, row.arc_length, tuple(stations.values()))
+        every = (*stations.values(), *(() if other is None else (other,)))
+        counts = away_from_point_forces(table.scene, probe.of, row.arc_length, every)
     if not counts.any():
         return row
 
     def size(difference: Array) -> float:
         return norm(probe.quantity, difference[counts])
 
-    v_b = values.get("fea bending")
-    row = replace(
-        row,
-        counts=counts,
-        difference=size(row.cprbm - row.fea),
-        same_theory=size(row.cprbm - (row.fea if v_b is None else v_b)),
-    )
+    row = replace(row, counts=counts, difference=size(row.cprbm - row.fea))
+    if row.other is not None and row.other.shape == row.fea.shape:
+        even = "cprbm finer" if "cprbm" in runs.settled else "cprbm auto"  # settled values have the answer at N there
+        row = replace(row, theory=size(row.other - values.get(even, row.cprbm)))
     if row.place is Place.BETWEEN:
         return row
     is_open = probe.quantity in OPEN_AT_ZERO and not any(value.any() for value in values.values())
@@ -207,25 +226,23 @@ def _measured(table: RunsTable, row: Row, stations: Mapping[str, StationAnswer],
     return replace(
         row,
         bounds=bounds_of(runs, masked, lambda difference: norm(probe.quantity, difference), floor, known),
-        true_errors=_true_errors(row, exact, v_b, size),
+        true_errors=_true_errors(row, exact, size),
     )
 
 
-def _true_errors(
-    row: Row, exact: StationAnswer | None, v_b: Array | None, size: Callable[[Array], float]
-) -> TrueErrors | None:
-    if exact is None or v_b is None or row.exact is None or row.exact.shape != row.fea.shape:
+def _true_errors(row: Row, exact: StationAnswer | None, size: Callable[[Array], float]) -> TrueErrors | None:
+    if exact is None or row.exact is None or row.exact.shape != row.fea.shape:
         return None
     residual = max(exact.certificate.residual, exact.certificate.residual_floor, ROUND_OFF)
-    return TrueErrors(size(row.cprbm - row.exact), size(v_b - row.exact), residual * row.scale)
+    return TrueErrors(size(row.cprbm - row.exact), size(row.fea - row.exact), residual * row.scale)
 
 
-def _exact_station(runs: Runs, where: tuple[str, float], branch: int | None) -> StationAnswer | None:
-    """The exact answer's station on a branch."""
-    if runs.exact is None or branch is None:
+def _station(answer: Answer | None, where: tuple[str, float], branch: int | None) -> StationAnswer | None:
+    """The station of an answer on a branch."""
+    if answer is None or branch is None:
         return None
     try:
-        found = station_of(runs.exact, *where)
+        found = station_of(answer, *where)
     except KeyError:
         return None
     return found if found.branch == branch else None
@@ -236,25 +253,21 @@ def _with_largest_uncertainties(rows: Sequence[Row]) -> tuple[Row, ...]:
 
     A contact that is open in all runs has no force and no uncertainty.
     """
-    names = ("cprbm", "fea", "bending")
 
     def key(row: Row) -> tuple[object, ...]:
         return row.probe.name, row.stage, row.branch, row.shared is None
 
     stated = {
         name: largest(
-            (key(row), getattr(row.bounds, name) or 0.0)
-            for row in rows
-            if row.bounds is not None and not row.events.unsettled
+            (key(row), getattr(row.bounds, name)) for row in rows if row.bounds is not None and not row.events.unsettled
         )
-        for name in names
+        for name in ("cprbm", "fea")
     }
 
     def widened(row: Row) -> Row:
         if row.bounds is None or row.bounds.total == 0.0:
             return row
-        own = {name: max(getattr(row.bounds, name) or 0.0, each.get(key(row), 0.0)) for name, each in stated.items()}
-        bending = None if row.bounds.bending is None else own["bending"]
-        return replace(row, bounds=replace(row.bounds, cprbm=own["cprbm"], fea=own["fea"], bending=bending))
+        own = {name: max(getattr(row.bounds, name), each.get(key(row), 0.0)) for name, each in stated.items()}
+        return replace(row, bounds=replace(row.bounds, **own))
 
     return tuple(map(widened, rows))

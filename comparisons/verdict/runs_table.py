@@ -26,7 +26,7 @@ class RunsTable:
     @property
     def compared(self) -> tuple[str, str]:
         """Names of the two compared runs."""
-        return "cprbm", f"fea {self.runs.kinematics}"
+        return "cprbm", "fea"
 
     @property
     def pair(self) -> tuple[Answer, Answer]:

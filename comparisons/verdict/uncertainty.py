@@ -26,7 +26,8 @@ from q = 1.5 on.  Where changes do not fall, p is 1.  Where they are round-off o
 order, p is 2.  (L. Eça and M. Hoekstra, *J. Comput. Phys.* 262 (2014) 104-130, likewise keep the theoretical order and
 widen the uncertainty where the observed order departs from it.)
 
-*Value.*  u_i = S (|E_i| + max_j |d_j| (N_j/N_i)^p).  The grid at 8/7 N between N and 2N moves every node.  An error
+*Value.*  u_i = S (|E_i| + max_j |d_j| (N_j/N_i)^p).  |E_i| is the larger of the errors by p and, where q is smaller,
+by q: an order above q would leave |E_i| too small.  The grid at 8/7 N between N and 2N moves every node.  An error
 that depends on the place of a contact between nodes is uneven in N: values on two grids may coincide by accident, E is
 then nothing, and d_j shows the error.  The factor (N_j/N_i)^p transfers d_j to N_i, since an uneven error falls as an
 even error does.
@@ -133,10 +134,13 @@ def error(sizes: Sequence[float], values: Sequence[Array], at: int = 0, order: f
         ValueError: as :func:`limit`.
     """
     n, v = _checked(sizes, values)
-    p, *_ = _assumed(n, v, order, 0.0)
+    p, q, _ = _assumed(n, v, order, 0.0)
     _, errors, beyond = _law(n, v, p)
+    even = np.abs(errors[at])
+    if q is not None and q < p:
+        even = np.maximum(even, np.abs(_law(n, v, q)[1][at]))
     uneven = ((n / n[at]) ** p)[:, None] * np.abs(beyond)
-    return Error(SAFETY * np.abs(errors[at]), SAFETY * uneven.max(axis=0))
+    return Error(SAFETY * even, SAFETY * uneven.max(axis=0))
 
 
 def limit(sizes: Sequence[float], values: Values, order: float = STANDARD, floor: float = 0.0) -> Limit:

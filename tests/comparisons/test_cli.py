@@ -18,7 +18,7 @@ from comparisons.cli.main import run
 from comparisons.pairing import Solvers
 from cprbm_scene import Ending
 from tests.verdict.jumping import FORWARD, Jumping
-from tests.verdict.made_up import MadeUp
+from tests.verdict.made_up import THEORY, MadeUp
 
 HINGE = Path(cases.__file__).parent / "hinge.toml"
 ROOT = Path(__file__).parents[2]
@@ -132,9 +132,50 @@ def test_options_reach_the_solvers(right, capsys):
     assert (asked[0].formulation, asked[0].elements, asked[0].penetration) == ("paper", 60, 1e-6)
 
 
-def test_kinematics_reach_the_table(right, capsys):
-    assert run(["compare", "hinge", "--kinematics", "bending", "-v"], right) == 0
-    assert "theory bending" in capsys.readouterr().out
+@pytest.mark.parametrize(
+    ("options", "theory"),
+    [
+        ((), "bending"),
+        (("--theory", "stretch"), "stretch"),
+        (("--theory", "bending", "--kinematics", "shear"), "shear"),
+    ],
+)
+def test_the_theory_of_the_options_reaches_both_solvers_and_the_table(right, capsys, options, theory):
+    asked = []
+
+    def noting(name, theory_of):
+        def answer(scene, choices):
+            asked.append((name, theory_of(choices)(scene)))
+            return getattr(right, name)(scene, choices)
+
+        return answer
+
+    solvers = Solvers(noting("cprbm", lambda its: its.theory_of), noting("fea", lambda its: its.kinematics_of))
+    assert run(["compare", "hinge", "-v", *options], solvers) == 0
+    assert f"both in the theory {theory}" in capsys.readouterr().out
+    other = "shear" if theory == "bending" else "bending"
+    assert {found for name, found in asked if name == "fea"} == {theory}
+    assert {found for name, found in asked if name == "cprbm"} == {theory, other}
+
+
+@pytest.mark.parametrize(
+    ("solver", "options", "theory"),
+    [
+        ("cprbm", (), "bending"),
+        ("cprbm", ("--theory", "shear"), "shear"),
+        ("cprbm", ("--kinematics", "shear"), "bending"),
+        ("fea", ("--theory", "stretch"), "stretch"),
+        ("fea", ("--theory", "stretch", "--kinematics", "shear"), "shear"),
+    ],
+)
+def test_a_solver_answers_in_the_theory_of_its_options(hinge, right, solver, options, theory, capsys):
+    """The made-up rotation before contact is 0.9 of the load, with the error of the size and the theory's share."""
+    assert run(["solve", "hinge", "--solver", solver, "--json", "-", *options], right) == 0
+    (row, *_) = (
+        one for one in json.loads(capsys.readouterr().out)["cases"][0]["rows"] if one["probe"] == "BD.rotation"
+    )
+    error = {"cprbm": 2e-3, "fea": -5e-4 / 4.0}[solver]
+    assert row[solver] == pytest.approx(0.9 * row["station"] * (1.0 + error + THEORY[theory]), rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -42,9 +42,10 @@ def test_an_answer_survives(hinge, right):
 def test_a_verdict_needs_no_second_solve(hinge, right):
     runs = paired(hinge, Choices(), right)
     back = Runs(
-        runs.kinematics,
+        runs.theory,
         (there_and_back(runs.cprbm[0]), there_and_back(runs.cprbm[1])),
-        {theory: tuple(there_and_back(one) for one in fea) for theory, fea in runs.fea.items()},
+        tuple(there_and_back(one) for one in runs.fea),
+        other=there_and_back(runs.other),
     )
     assert compare(hinge, back).verdict == compare(hinge, runs).verdict
 

@@ -38,7 +38,7 @@ class Noting:
     def __call__(self, scene, choices):
         one = self.solver.solver == "cprbm"
         mine = (choices.links, choices.formulation) if one else (choices.elements, choices.kinematics)
-        self.asked.append((scene.name, *mine, None if one else choices.penetration))
+        self.asked.append((scene.name, choices.theory, *mine, None if one else choices.penetration))
         return self.solver(scene, choices)
 
 

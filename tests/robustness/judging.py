@@ -7,11 +7,7 @@ what is stated promises to become little enough by that, and once where it is so
 runs of one size are then the coarser ones of the next, and nothing is solved twice.  The verdict compares the stations
 that both reached, also where the answers end early at every size.
 
-Where the theories of ``bending`` and ``shear`` alone are further apart than may be stated, that is a property of the
-mechanism and no doubt about either solver, both of which can be asked in ``bending``: there the scene is judged once
-more, by the same rules, with the chosen theory left out.  It has then agreed in ``bending`` alone, which the outcome
-says together with how far the theories are apart; what the finite elements make of stretch and shear in it nothing
-has told.  What differs in the chosen theory is wrong all the same, and so is what differs in ``bending``.
+All runs have one theory, the scene's or that of the choices; no step of theory leaves a scene undecided.
 
 An answer is *wrong* if it is certified and
 
@@ -71,7 +67,7 @@ class Effort:
 class _Finding:
     """What one size says: a way, why, and the rows on which it rests; whether an audit ``doubts`` an answer; of answers
     that ended, whose they are (``early``), how many stations they reached, and whether in all of them the branch is
-    ``over``, or was left where it is in others; ``apart`` as an outcome has it.
+    ``over``, or was left where it is in others.
     """
 
     way: Way
@@ -84,7 +80,6 @@ class _Finding:
     early: frozenset[str] = frozenset()
     doubts: bool = False
     over: bool = False
-    apart: float | None = None
 
 
 def judged(scene: Scene, solvers: Solvers, effort: Effort) -> Outcome:
@@ -118,14 +113,10 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Auditing) -> 
     finding, left = _at_one_size(scene, effort.first, memory), effort.sizes - 1
     while finding.way in (Way.UNDECIDED, Way.ENDED):
         worth = left > 0 and _worth_while(scene, finding, left, first=left == effort.sizes - 1)
-        if _for_the_theorys_sake(scene, finding, last=not worth):
-            finding = _in_bending(scene, finding, memory)
-        elif not worth:
+        if not worth:
             break
-        else:
-            finer = _at_one_size(scene, _finer(scene, finding, left), memory)
-            finer = finer if finer.way is Way.WRONG else _beside(scene, finding, finer)
-            finding, left = replace(finer, apart=finding.apart), left - 1
+        finer = _at_one_size(scene, _finer(scene, finding, left), memory)
+        finding, left = finer if finer.way is Way.WRONG else _beside(scene, finding, finer), left - 1
     if finding.runs is None:
         return _as_far_as_it_goes(scene, finding, memory)
     if solvers.exact is None or finding.way not in (Way.AGREE, Way.UNDECIDED):
@@ -134,7 +125,7 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Auditing) -> 
     if not exact.stations:
         return finding
     comparison = compare(scene, replace(finding.runs, exact=exact), memory.audit)
-    return replace(_of_comparison(finding.choices, comparison), apart=finding.apart)
+    return _of_comparison(finding.choices, comparison)
 
 
 def _at_one_size(scene: Scene, choices: Choices, memory: Auditing) -> _Finding:
@@ -198,7 +189,7 @@ def _finer(scene: Scene, finding: _Finding, left: int) -> Choices:
     """
     choices, finer = finding.choices, finding.choices.finer()
     found = [(row.bounds, scene.limit(row.probe) * row.scale) for row in finding.rows if row.bounds is not None]
-    vague = [(bounds, allowed) for bounds, allowed in found if max(bounds.total, bounds.same_theory) > allowed > 0.0]
+    vague = [(bounds, allowed) for bounds, allowed in found if bounds.total > allowed > 0.0]
     cprbm, fea = (sum(getattr(bounds, solver) / allowed for bounds, allowed in vague) for solver in ("cprbm", "fea"))
 
     def room(mine: str) -> bool:
@@ -224,37 +215,7 @@ def _worth_while(scene: Scene, finding: _Finding, left: int, *, first: bool) -> 
     if finding.way is Way.ENDED or finding.doubts or not vague:
         return first
     smaller = PROMISING * 4.0**left
-    return all(
-        (bounds.total - bounds.theory) / smaller + bounds.theory <= allowed
-        for bounds, allowed in vague
-        if allowed > 0.0
-    )
-
-
-def _for_the_theorys_sake(scene: Scene, finding: _Finding, *, last: bool) -> bool:
-    """Whether nothing but what lies between the theories keeps a scene from being told.
-
-    So it does where that alone is more than may be stated, which no finer size makes smaller; and at the ``last`` size
-    that is worth while, where no row states too much without it.  An audit that doubts an answer is another reason.
-    """
-    if finding.way is not Way.UNDECIDED or finding.doubts or finding.choices.kinematics == "bending":
-        return False
-    found = [(row.bounds, scene.limit(row.probe) * row.scale) for row in finding.rows if row.bounds is not None]
-    if any(bounds.theory > allowed for bounds, allowed in found):
-        return True
-    vague = [(bounds, allowed) for bounds, allowed in found if bounds.total > allowed]
-    return last and bool(vague) and all(bounds.total - bounds.theory <= allowed for bounds, allowed in vague)
-
-
-def _in_bending(scene: Scene, finding: _Finding, memory: Auditing) -> _Finding:
-    """What the same size says in the theory ``bending``, which has been solved already.
-
-    Raises:
-        SceneError: a solver refuses the scene.
-    """
-    shares = [row.bounds.theory / row.scale for row in finding.rows if row.bounds is not None and row.scale > 0.0]
-    apart = max(shares, default=0.0)
-    return replace(_at_one_size(scene, finding.choices.within("bending"), memory), apart=apart)
+    return all(bounds.total / smaller <= allowed for bounds, allowed in vague if allowed > 0.0)
 
 
 def _why(early: Iterable[tuple[str, Answer]]) -> str:
@@ -298,7 +259,7 @@ def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]
         return
     for solver, mine, answer, own in (
         ("cprbm", row.cprbm, finer.cprbm[1], row.bounds.cprbm),
-        ("fea", row.fea, finer.fea[finer.kinematics][1], row.bounds.fea),
+        ("fea", row.fea, finer.fea[1], row.bounds.fea),
     ):
         try:
             station = station_of(answer, row.stage, row.station)
@@ -321,9 +282,8 @@ def _outcome(scene: Scene, finding: _Finding) -> Outcome:
         finding.sentence,
         finding.ending,
         difference=max((_pressure(row, bounds) for row, bounds in rows), default=None),
-        uncertainty=max((max(bounds.total, bounds.same_theory) / row.scale for row, bounds in rows), default=None),
+        uncertainty=max((bounds.total / row.scale for row, bounds in rows), default=None),
         beyond=max((each.ratio for row, _ in rows for each in true_errors(row)), default=None),
-        apart=finding.apart,
         links=links,
         elements=elements,
         met=() if finding.runs is None else tuple(sorted(met(scene, finding.runs.reference))),
@@ -331,9 +291,10 @@ def _outcome(scene: Scene, finding: _Finding) -> Outcome:
 
 
 def _pressure(row: Row, bounds: Bounds) -> float:
-    """The larger of a row's two differences over what is stated of each."""
-    pairs = ((row.difference, bounds.total), (row.same_theory, bounds.same_theory))
-    return max(off / allowed if allowed > 0.0 else (float("inf") if off else 0.0) for off, allowed in pairs)
+    """A row's difference over what is stated of it."""
+    if bounds.total > 0.0:
+        return row.difference / bounds.total
+    return float("inf") if row.difference else 0.0
 
 
 def _iterations(answers: Iterable[Answer]) -> Iterator[int]:

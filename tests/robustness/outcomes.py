@@ -45,8 +45,6 @@ class Outcome:
         stated: features that the scene has.
         met: features that its answer has.
         warnings: what the numerical libraries complained of.
-        apart: how far the chosen theory is from ``bending``, largest of all rows, a fraction of the probe's scale, of
-            a scene that was judged in ``bending`` alone for that; None of all others.
     """
 
     name: str
@@ -63,7 +61,6 @@ class Outcome:
     stated: tuple[str, ...] = ()
     met: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
-    apart: float | None = None
 
     @property
     def kind(self) -> tuple[Way, str]:
@@ -97,11 +94,6 @@ def totals(outcomes: Iterable[Outcome]) -> dict[Way, int]:
     """How many ended in each way, in the order of the ways."""
     ended = [outcome.way for outcome in outcomes]
     return {way: ended.count(way) for way in Way}
-
-
-def in_bending(outcomes: Iterable[Outcome]) -> int:
-    """How many agree that were judged in the theory ``bending`` alone."""
-    return sum(outcome.way is Way.AGREE and outcome.apart is not None for outcome in outcomes)
 
 
 def shares(outcomes: Iterable[Outcome]) -> dict[str, float]:

@@ -7,14 +7,13 @@ from collections.abc import Callable, Iterable
 from comparisons.formats import number, percent
 from comparisons.plain import Plain, plain
 from comparisons.present.columns import Table
-from tests.robustness.outcomes import Outcome, Way, in_bending, packed, shares, totals
+from tests.robustness.outcomes import Outcome, Way, packed, shares, totals
 from tests.robustness.running import Stress
 
 _WORST: dict[str, Callable[[Outcome], float | None]] = {
     "difference": lambda outcome: outcome.difference,
     "uncertainty": lambda outcome: outcome.uncertainty,
     "beyond": lambda outcome: outcome.beyond,
-    "apart": lambda outcome: outcome.apart,
     "seconds": lambda outcome: outcome.seconds,
     "iterations": lambda outcome: float(outcome.iterations),
 }
@@ -22,12 +21,10 @@ _WHAT = {
     "difference": "difference over what is stated",
     "uncertainty": "stated uncertainty, of the scale",
     "beyond": "distance from the exact answer over what is stated",
-    "apart": "step between the theories, of the scale, where bending alone was judged",
     "seconds": "seconds of the processor",
     "iterations": "iterations of all runs",
 }
-_ALONE = "of these in the theory of bending alone"
-_OF_AGREEMENT = frozenset({"difference", "uncertainty", "beyond", "apart"})
+_OF_AGREEMENT = frozenset({"difference", "uncertainty", "beyond"})
 
 
 def document(there: Stress) -> Plain:
@@ -36,7 +33,6 @@ def document(there: Stress) -> Plain:
     found: Plain = {"scenes": len(outcomes), **{way.value: count for way, count in totals(outcomes).items()}}
     return {
         **found,
-        "agree_in_bending": in_bending(outcomes),
         "strata": shares(outcomes),
         "worst": {
             name: None if worst is None else {"scene": worst.name, "value": plain(_WORST[name](worst))}
@@ -55,7 +51,6 @@ def sheets_of(there: Stress) -> tuple[Table, ...]:
     outcomes = list(there.outcomes.values())
     every = max(len(outcomes), 1)
     counts = {way.words: count for way, count in totals(outcomes).items()}
-    counts = {"agree": counts.pop("agree"), _ALONE: in_bending(outcomes), **counts}
     ways = tuple((said, str(count), percent(count / every)) for said, count in counts.items() if outcomes)
     worst = tuple(
         (_WHAT[name], number(value), outcome.name)
@@ -70,7 +65,7 @@ def sheets_of(there: Stress) -> tuple[Table, ...]:
     strata = tuple((feature, percent(share)) for feature, share in shares(outcomes).items())
     sheets = [
         Table(f"{len(outcomes)} scenes of seed {there.plan.seed}", ("ended", "scenes", "share"), ways),
-        Table("The largest of", ("what", "", "scene"), worst, note="The first four of the scenes that agree."),
+        Table("The largest of", ("what", "", "scene"), worst, note="The first three of the scenes that agree."),
         Table(
             "What the scenes have", ("feature", "share"), strata, note="What only answers show, of those that agree."
         ),
@@ -83,25 +78,14 @@ def sheets_of(there: Stress) -> tuple[Table, ...]:
 def sentence(there: Stress) -> str:
     """The run in a line."""
     counts = totals(there.outcomes.values())
-    said = ", ".join(f"{count} {way.words}{_alone(there, way)}" for way, count in counts.items() if count)
+    said = ", ".join(f"{count} {way.words}" for way, count in counts.items() if count)
     before = f" ({there.before} of them in a run before)" if there.before else ""
     return f"{len(there.outcomes)} scenes{before}: {said or 'none'}."
 
 
 def text_of(outcome: Outcome) -> str:
     """One scene in a line."""
-    apart = "" if outcome.apart is None else f" Judged in the theory of bending alone: {_too_far(outcome.apart)}."
-    return f"{outcome.name}: {_way(outcome)}. {outcome.sentence}{apart}"
-
-
-def _too_far(apart: float) -> str:
-    return f"stretch and shear make {percent(apart)} of a probe's scale"
-
-
-def _alone(there: Stress, way: Way) -> str:
-    """Of those that agree how many in bending alone."""
-    count = in_bending(there.outcomes.values()) if way is Way.AGREE else 0
-    return f" ({count} of them in the theory of bending alone)" if count else ""
+    return f"{outcome.name}: {_way(outcome)}. {outcome.sentence}"
 
 
 def _way(outcome: Outcome) -> str:

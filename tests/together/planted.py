@@ -12,12 +12,13 @@ from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
 
-COARSE = Choices(elements=20, kinematics="bending")
+COARSE = Choices(elements=20)
 
 
 def remembered(runs: Runs) -> Solvers:
     """Solvers that hand out answers which are there already."""
-    cprbm = [*runs.cprbm, *(answer for answer in (runs.beside, runs.perturbed) if answer is not None)]
+    further = runs.beside, runs.perturbed, runs.other
+    cprbm = [*runs.cprbm, *(answer for answer in further if answer is not None)]
 
     def by_cprbm(scene: Scene, choices: Choices) -> Answer:
         asked = {(stage.name, value) for stage in scene.stages for value in stage.stations}
@@ -25,11 +26,12 @@ def remembered(runs: Runs) -> Solvers:
             answer
             for answer in cprbm
             if answer.settings["links"] == choices.links
+            and answer.settings["kinematics"] == choices.theory_of(scene)
             and {(station.stage, station.value) for station in answer.stations} == asked
         )
 
     def by_fea(scene: Scene, choices: Choices) -> Answer:
-        answers = (*runs.fea[choices.kinematics], *(() if runs.fea_beside is None else (runs.fea_beside,)))
+        answers = (*runs.fea, *(() if runs.fea_beside is None else (runs.fea_beside,)))
         return next(answer for answer in answers if answer.settings["elements"] == choices.elements)
 
     return Solvers(by_cprbm, by_fea)

@@ -40,9 +40,9 @@ from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
 from tests.together.planted import remembered, stiffer, without_contact
 
-CHOICES = Choices(links=44, elements=20, kinematics="bending")  # of 40 links three grids of `five-bar` show order 1.4
+CHOICES = Choices(links=44, elements=20).within("bending")  # of 40 links three grids of `five-bar` show order 1.4
 FIRST_LOOK = Choices(links=14)
-ROUGH = Choices(links=16, elements=18, kinematics="bending")
+ROUGH = Choices(links=16, elements=18)
 SOME = 0.25  # of a contact's largest force
 REAL: dict[str, Solver] = {"cprbm": cprbm_answer, "fea": fea_answer}
 SIGNED = ("displacement", "rotation", "bending_stress", "reaction", "reaction_moment", "potential_energy")
@@ -83,7 +83,7 @@ def thinned(case: str) -> Scene:
 
 @cache
 def right(case: str) -> Runs:
-    return paired(thinned(case), CHOICES, Solvers())
+    return paired(thinned(case), CHOICES, Solvers(), bare=True)
 
 
 def word(case: str, solver: str, wrong: Answer) -> Word:
@@ -104,7 +104,8 @@ def word(case: str, solver: str, wrong: Answer) -> Word:
         stations = zip(own.stations, base.stations, wrong.stations, strict=True)
         return replace(wrong, stations=tuple(_as_wrong(*three) for three in stations))
 
-    return compare(thinned(case), paired(thinned(case), CHOICES, replace(true, **{solver: answer}))).verdict.word
+    planted = replace(true, **{solver: answer})
+    return compare(thinned(case), paired(thinned(case), CHOICES, planted, bare=True)).verdict.word
 
 
 def _as_wrong(own: StationAnswer, base: StationAnswer, wrong: StationAnswer) -> StationAnswer:

@@ -23,7 +23,6 @@ import numpy as np
 import pytest
 
 import cprbm.chain.beam
-import cprbm.nearest
 from comparisons import cases
 from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
@@ -100,7 +99,7 @@ def tapered() -> Scene:
 
 def in_bending(scene: Scene, solvers: Solvers) -> Word:
     """The verdict in one theory, in which nothing excuses a difference."""
-    return compare(scene, paired(scene, Choices(kinematics="bending"), solvers)).verdict.word
+    return compare(scene, paired(scene, Choices(), solvers)).verdict.word
 
 
 def test_the_right_ones_agree_on_the_tapered_beam(tapered):

@@ -67,11 +67,6 @@ def only(solver: Solver, other: Solver, when: Callable[[Choices], bool]) -> Solv
     return lambda scene, choices: (other if when(choices) else solver)(scene, choices)
 
 
-def in_bending(solver: Solver) -> Solver:
-    """A solver of finite elements in ``bending`` for every chosen theory: the step of theory is 0."""
-    return lambda scene, choices: solver(scene, choices.within("bending"))
-
-
 def ending(solver: Solver, stations: int) -> Solver:
     """A solver that ends early, after some stations."""
 

@@ -55,7 +55,7 @@ class Jumping:
     def __call__(self, scene: Scene, choices: Choices) -> Answer:
         count = choices.links if self.solver == "cprbm" else choices.elements
         n = count if isinstance(count, int) else min(count.values())
-        theory = 0.0 if self.solver == "cprbm" else THEORY[choices.kinematics]
+        theory = THEORY[choices.theory_of(scene) if self.solver == "cprbm" else choices.kinematics_of(scene)]
         factor = (1.0 + self.error * (40.0 / n) ** 2 + theory) / self.stiffness
         shift = self.late + self.critical_error * (40.0 / n) ** 2 + 0.1 * theory
         base = MadeUp(self.solver, 0.0, contact=False)(scene, choices)

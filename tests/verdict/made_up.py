@@ -1,6 +1,6 @@
 """Solvers that solve nothing: plausible answers by hand, so that the harness is tested without mechanics.
 
-The numbers follow smooth laws with a discretisation error C/N² and, for finite elements, a step per theory.
+The numbers follow smooth laws with a discretisation error C/N² and a step per theory.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ class MadeUp:
     def __call__(self, scene: Scene, choices: Choices) -> Answer:
         count = choices.links if self.solver == "cprbm" else choices.elements
         n = count if isinstance(count, int) else min(count.values())
-        variant = self.paper * (choices.formulation == "paper")
-        theory = variant if self.solver == "cprbm" else THEORY[choices.kinematics]
+        variant = self.paper * (self.solver == "cprbm" and choices.formulation == "paper")
+        theory = THEORY[choices.theory_of(scene) if self.solver == "cprbm" else choices.kinematics_of(scene)]
         factor = (
-            1.0 + self.error * (40.0 / n) ** 2 + theory + self.penalty * choices.penetration / 1e-4
+            1.0 + self.error * (40.0 / n) ** 2 + variant + theory + self.penalty * choices.penetration / 1e-4
         ) / self.stiffness
         stations = [
             self._station(scene, stage.name, value, factor) for stage in scene.stages for value in stage.stations

@@ -51,11 +51,10 @@ def criticals(scene, cprbm=C, fea=F):
 def test_differences_and_uncertainties_of_critical_points_are_planted(crank):
     forward, back = criticals(crank)
     assert (forward.stage, back.stage, forward.unit) == ("forward", "back", "rad")
-    assert forward.difference == pytest.approx(5e-4 - 0.75e-4, rel=1e-6)
-    assert forward.same_theory == pytest.approx(0.75e-4, rel=1e-6)
+    assert forward.difference == pytest.approx(0.75e-4, rel=1e-6)
     assert forward.bounds.cprbm == pytest.approx(1.25e-4, rel=1e-6)
-    assert (forward.bounds.fea, forward.bounds.bending) == pytest.approx((1.25e-4 / 4.0,) * 2, rel=1e-6)
-    assert forward.bounds.theory == pytest.approx(5e-4, rel=1e-6)
+    assert forward.bounds.fea == pytest.approx(1.25e-4 / 4.0, rel=1e-6)
+    assert forward.theory == pytest.approx(5e-4, rel=1e-6)
     assert forward.bounds.round_off == pytest.approx(2e-6, rel=1e-9)
     assert forward.station == pytest.approx(FORWARD + 1e-4, abs=1e-9)
 
@@ -64,8 +63,8 @@ def unsure(scene, choices):
     return replace(C, loss=Loss.FOLD if choices.links == 40 else Loss.BIFURCATION)(scene, choices)
 
 
-def late_in_theory(off):
-    return only(replace(F, late=radians(off)), F, lambda choices: choices.kinematics == "bending")
+def in_shear(**change):
+    return only(C, replace(C, **change), lambda choices: choices.theory == "shear")
 
 
 @pytest.mark.parametrize(
@@ -86,8 +85,10 @@ def late_in_theory(off):
         (only(C, replace(C, jumps=False), lambda choices: choices.links == 80), F, "UNDECIDED BRANCH"),
         (C, only(F, replace(F, jumps=False), lambda choices: choices.elements == 160), "UNDECIDED BRANCH"),
         (replace(C, critical_error=radians(0.5)), F, "UNDECIDED COARSE"),
-        (C, late_in_theory(1.0), "AGREE"),
-        (C, late_in_theory(1.5), "UNDECIDED THEORY"),
+        (in_shear(late=radians(1.0)), F, "AGREE"),
+        (in_shear(late=radians(1.5)), F, "UNDECIDED THEORY"),
+        (in_shear(jumps=False), F, "UNDECIDED THEORY"),
+        (in_shear(**BIFURCATES), F, "UNDECIDED THEORY"),
     ],
     ids=[
         "same",
@@ -107,6 +108,8 @@ def late_in_theory(off):
         "coarse",
         "theory within 1.5 % of the span",
         "theory beyond",
+        "missing in shear",
+        "mechanism in shear",
     ],
 )
 def test_the_word_of_a_critical_point(crank, cprbm, fea, word):
@@ -158,7 +161,7 @@ def test_of_a_load_one_per_cent_of_the_span_is_allowed_and_the_first_is_compared
 ):
     """The span is 0.67 N·m."""
     first, second = loads("cprbm", *cprbm), loads("fea", *fea)
-    rows = critical_rows(RunsTable(hinge, Runs("bending", (first,) * 2, frozendict(bending=(second,) * 2))))
+    rows = critical_rows(RunsTable(hinge, Runs("bending", (first,) * 2, (second,) * 2)))
     assert [row.word for row in rows] == words
     assert [row.place for row in rows] == list(range(len(words)))
 

@@ -1,4 +1,4 @@
-"""Rows of made-up answers: differences, stated uncertainties, steps and divisors.
+"""Rows of made-up answers: differences, stated uncertainties, steps of theory and divisors.
 
 Expected numbers follow from the planted law: a rotation of 0.9·m·f before contact at the moment m, with
 f = 1 + e (40/N)² + theory.  Once the contact is closed the rotation is 0.8·m·f and a constant.
@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from comparisons.choices import Choices
+from comparisons.contact_model import contact_model
 from comparisons.pairing import Solvers, paired
-from comparisons.steps import contact_model, steps_of
 from comparisons.verdict.rows import rows_of
-from cprbm_scene import Probe, Stage
-from tests.verdict.comparing import altered, compared, counted, ending, in_bending, only, row_of, said_of, word_of
-from tests.verdict.made_up import CLOSES, MadeUp, with_value
+from cprbm_scene import Mistake, Probe, SceneError, Stage
+from tests.verdict.comparing import altered, compared, counted, ending, only, row_of, said_of, word_of
+from tests.verdict.made_up import CLOSES, THEORY, MadeUp, with_value
 
 S = 1.25
 C, F = MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4)
@@ -46,12 +46,10 @@ def test_planted_second_order_errors_are_stated_with_a_quarter_more(first):
     row = row_of(compared(first, MadeUp("cprbm", 4e-3), MadeUp("fea", -8e-3)), ROTATION, 0.067)
     rotation, fea_error = 0.9 * 0.067, -8e-3 / 4  # at 80 elements a quarter of the error at 40
     assert row.bounds.cprbm == pytest.approx(S * rotation * 4e-3, rel=1e-9)
-    assert row.bounds.bending == pytest.approx(S * rotation * 2e-3, rel=1e-9)
-    assert row.bounds.fea == pytest.approx(row.bounds.bending, rel=1e-9)
-    assert row.bounds.theory == pytest.approx(rotation * 0.005, rel=1e-9)
-    assert row.difference == pytest.approx(rotation * abs(4e-3 - 0.005 - fea_error), rel=1e-9)
-    assert row.same_theory == pytest.approx(rotation * (4e-3 - fea_error), rel=1e-9)
-    assert row.fraction(row.bounds.theory) == pytest.approx(0.005 / (1.005 + fea_error), rel=1e-9)
+    assert row.bounds.fea == pytest.approx(S * rotation * 2e-3, rel=1e-9)
+    assert row.difference == pytest.approx(rotation * (4e-3 - fea_error), rel=1e-9)
+    assert row.theory == pytest.approx(rotation * 0.005, rel=1e-9)
+    assert row.fraction(row.theory) == pytest.approx(0.005 / (1.0 + fea_error), rel=1e-9)
 
 
 @pytest.mark.parametrize("solver", ["cprbm", "fea"])
@@ -60,31 +58,16 @@ def test_an_uneven_error_is_stated_though_two_grids_meet(last, solver):
     right, other = (replace(each, solver=solver) for each in UNEVEN)
     planted = only(right, other, lambda choices: 46 in (choices.links, choices.elements))
     pair = {"cprbm": C, "fea": F, solver: planted}
-    found = compared(last, pair["cprbm"], pair["fea"], Choices(elements=40, kinematics="bending"))
+    found = compared(last, pair["cprbm"], pair["fea"], Choices(elements=40))
     stated = S * 0.8 * 0.67 * (1.0 - 1.0 / 1.01) * (46 / 40) ** 2
     assert getattr(row_of(found, ROTATION).bounds, solver) == pytest.approx(stated, rel=1e-9)
-
-
-def test_the_third_grid_in_the_chosen_theory_counts_in_bending(last):
-    exact = MadeUp("fea", 0.0)
-    fea = only(exact, replace(exact, stiffness=1.01), lambda choices: choices.elements == 46)
-    bounds = row_of(compared(last, C, fea, Choices(elements=40)), ROTATION).bounds
-    stated = S * 0.8 * 0.67 * 1.005 * (1.0 - 1.0 / 1.01) * (46 / 40) ** 2
-    assert bounds.bending == pytest.approx(stated, rel=1e-9)
-    assert bounds.fea == pytest.approx(stated, rel=1e-9)
-
-
-def test_a_larger_error_in_bending_counts_in_the_chosen_theory(first):
-    fea = only(MadeUp("fea", -1e-4), MadeUp("fea", -2e-3), lambda choices: choices.kinematics == "bending")
-    bounds = row_of(compared(first, C, fea, Choices(elements=40)), ROTATION, 0.067).bounds
-    assert bounds.fea == bounds.bending == pytest.approx(S * 0.9 * 0.067 * 2e-3, rel=1e-9)
 
 
 def test_a_stage_states_one_uncertainty_of_a_probe_though_two_grids_meet_at_a_station(hinge):
     """The change between both grids vanishes at 0.335: the statement is that of the last station all the same."""
     at = 0.8 * 0.335 * 1.002 + 0.1 * CLOSES
     meeting = altered(C, with_value(ROTATION, [at]), 0.335)
-    found = compared(hinge, meeting, F, Choices(kinematics="bending"))
+    found = compared(hinge, meeting, F)
     stated = [row.bounds.cprbm for row in found.rows if row.probe.name == ROTATION]
     assert stated == pytest.approx([S * 0.8 * 0.67 * 2e-3] * 10, rel=1e-9)
 
@@ -99,31 +82,29 @@ def test_an_even_error_is_stated_alike_with_and_without_a_third_grid(hinge):
             assert own == pytest.approx(without, rel=0.02, abs=1e-12 * row.scale)
 
 
-@pytest.mark.parametrize(("formulation", "step"), [("auto", 0.0), ("paper", -1e-3)])
-def test_steps_are_planted_and_add_up(hinge, formulation, step):
-    """f is 1.002 in ``auto``, 1.003 in ``paper``, 1 and 1.005 in the finite elements: steps along v_c − v_f < 0."""
-    found = compared(hinge, replace(C, paper=1e-3), MadeUp("fea", 0.0), Choices(formulation=formulation))
-    rotation, row = 0.9 * 0.067, row_of(found, ROTATION, 0.067)
-    assert contact_model(found.runs, row) == pytest.approx(1e-3 * rotation, rel=1e-9)
-    expected = [part * rotation for part in (step, -2e-3, 2e-3, 3e-3)]
-    assert parts_of(steps_of(found.runs, row)) == pytest.approx(expected, rel=1e-9)
-    steps = [(row, steps_of(found.runs, row)) for row in found.rows]
-    assert sum(each is not None for _, each in steps) > 100
-    for row, each in steps:
-        if each is not None:
-            assert sum(parts_of(each)) == pytest.approx(row.difference, rel=1e-9)
+@pytest.mark.parametrize("theory", ["bending", "stretch", "shear"])
+def test_both_formulations_and_both_theories_are_planted(hinge, theory):
+    """f is 1e-3 larger in ``paper``, and 0, 0.002 and 0.005 larger in the three theories."""
+    for formulation in ("auto", "paper"):
+        choices = Choices(formulation=formulation, theory=theory)
+        found = compared(hinge, replace(C, paper=1e-3), MadeUp("fea", 0.0), choices)
+        rotation, row = 0.9 * 0.067, row_of(found, ROTATION, 0.067)
+        assert contact_model(found.runs, row) == pytest.approx(1e-3 * rotation, rel=1e-9)
+        assert row.theory == pytest.approx(rotation * abs(THEORY[found.runs.other_theory] - THEORY[theory]), rel=1e-9)
 
 
-def parts_of(steps):
-    return [steps.contact, steps.own, steps.stretch, steps.shear]
-
-
-@pytest.mark.parametrize(("kinematics", "theories"), [("bending", 1), ("stretch", 2), ("shear", 3)])
-def test_right_solvers_agree_in_every_theory(hinge, kinematics, theories):
-    found = compared(hinge, C, F, Choices(kinematics=kinematics))
-    assert (word_of(found), len(found.runs.fea)) == ("AGREE", theories)
-    if kinematics == "bending":
-        assert all(row.bounds.theory == 0.0 for row in found.rows if row.bounds is not None)
+@pytest.mark.parametrize("option", ["theory", "kinematics"])
+@pytest.mark.parametrize("theory", ["bending", "stretch", "shear"])
+def test_right_solvers_agree_in_every_theory(hinge, theory, option):
+    """The scene's theory, or the option's: both solvers answer in this theory, and the chain also in another one."""
+    for scene, choices in (
+        (hinge.model_copy(update={"theory": theory}), Choices()),
+        (hinge, Choices(**{option: theory})),
+    ):
+        found = compared(scene, C, F, choices)
+        assert (word_of(found), found.runs.theory) == ("AGREE", theory)
+        assert found.runs.other_theory == ("shear" if theory == "bending" else "bending")
+        assert row_of(found, ROTATION, 0.067).fea == pytest.approx([0.9 * 0.067 * (1.0 - 1.25e-4 + THEORY[theory])])
 
 
 def test_an_open_contact_has_no_force_no_place_and_no_uncertainty(hinge):
@@ -136,22 +117,15 @@ def test_an_open_contact_has_no_force_no_place_and_no_uncertainty(hinge):
 
 
 @pytest.mark.parametrize(
-    ("solver", "missing", "agreeing"),
-    [
-        ("cprbm", lambda choices: choices.links == 80, False),
-        ("cprbm", lambda choices: choices.links == 46, True),
-        ("fea", lambda choices: choices.kinematics == "shear" and choices.elements == 160, False),
-        ("fea", lambda choices: choices.kinematics == "shear" and choices.elements == 91, True),
-        ("fea", lambda choices: choices.kinematics == "stretch", True),
-        ("fea", lambda choices: choices.kinematics == "bending" and choices.elements == 160, True),
-        ("fea", lambda choices: choices.kinematics == "bending", False),
-    ],
-    ids=["2N", "8/7 N", "2n", "8/7 n", "stretch", "2n in bending", "bending"],
+    ("solver", "size", "agreeing"),
+    [("cprbm", 80, False), ("cprbm", 46, True), ("fea", 160, False), ("fea", 91, True)],
+    ids=["2N", "8/7 N", "2n", "8/7 n"],
 )
-def test_a_helper_run_that_ends_early_leaves_both_values(hinge, solver, missing, agreeing):
-    """Without a run at 2N no uncertainty is known, without ``bending`` no step of theory, here half a per cent."""
+def test_a_helper_run_that_ends_early_leaves_both_values(hinge, solver, size, agreeing):
+    """Without a run at 2N no uncertainty is known."""
     pair = {"cprbm": C, "fea": F}
-    pair[solver] = only(pair[solver], ending(pair[solver], 4), missing)
+    kind = "links" if solver == "cprbm" else "elements"
+    pair[solver] = only(pair[solver], ending(pair[solver], 4), lambda choices: getattr(choices, kind) == size)
     found = compared(hinge, pair["cprbm"], pair["fea"])
     assert found.verdict.completed
     assert word_of(found) == ("AGREE" if agreeing else "UNDECIDED RUN_ENDED"), found.verdict.sentence
@@ -160,16 +134,32 @@ def test_a_helper_run_that_ends_early_leaves_both_values(hinge, solver, missing,
     assert all(name.startswith(solver) for name in row.missing)
     assert row.difference == pytest.approx(abs(float(row.cprbm[0] - row.fea[0])), rel=1e-12)
     assert found.verdict.sentence.count("It stuck.") == 1
-    if not agreeing and row.bounds is None:
+    if row.bounds is None:
         assert said_of(found, "scene.potential_energy") == "UNDECIDED RUN_ENDED"
     assert said_of(found, "scene.potential_energy", 0.067) == "AGREE"
 
 
-def test_without_bending_a_row_agrees_if_the_values_do(hinge):
-    same = in_bending(F)
-    fea = only(same, ending(same, 0), lambda choices: choices.kinematics == "bending")
-    found = compared(hinge, C, fea)
-    assert (word_of(found), row_of(found, ROTATION).bounds.bending) == ("AGREE", None)
+@pytest.mark.parametrize("stations", [0, 4])
+def test_a_chain_that_ends_early_in_the_other_theory_leaves_the_verdict(hinge, stations):
+    cprbm = only(C, ending(C, stations), lambda choices: choices.theory == "shear")
+    found = compared(hinge, cprbm, F)
+    assert word_of(found) == "AGREE"
+    assert "In shear the CPRBM has no complete answer: it ended early: It stuck." in found.verdict.sentence
+    assert math.isnan(row_of(found, ROTATION).theory)
+    assert math.isfinite(row_of(found, ROTATION, 0.067).theory) is (stations == 4)
+
+
+def test_a_chain_that_refuses_the_other_theory_leaves_the_verdict_and_is_named(hinge):
+    def refusing(scene, choices):
+        if choices.theory == "shear":
+            raise SceneError([Mistake("theory", "'shear'", "'bending'", "file.toml")])
+        return C(scene, choices)
+
+    found = compared(hinge, refusing, F)
+    assert (word_of(found), found.runs.other) == ("AGREE", None)
+    absence = "The CPRBM does not answer in shear: file.toml: theory: found 'shear'; allowed: 'bending'."
+    assert absence in found.verdict.sentence
+    assert all(math.isnan(row.theory) for row in found.rows)
 
 
 @pytest.mark.parametrize(("off", "word"), [(1e-9, "AGREE"), (1e-8, "DIFFER VALUES")])
@@ -193,7 +183,7 @@ def test_a_stress_differs_by_the_place_that_is_worst(last):
         stress[20] -= 5e6  # away from clamps and contact, and not the largest stress
         return with_value("beam1.bending_stress", stress)(station)
 
-    row = row_of(compared(last, altered(C, spoilt), F, Choices(kinematics="bending")), "beam1.bending_stress")
+    row = row_of(compared(last, altered(C, spoilt), F), "beam1.bending_stress")
     assert row.difference == pytest.approx(5e6, rel=0.02)
 
 
@@ -203,7 +193,7 @@ def test_shown_fractions_are_of_the_value_of_a_displacement_and_of_the_scale_of_
     assert early.denominator == pytest.approx(float(np.linalg.norm(early.fea)))
     assert early.denominator < early.scale
     force = row_of(found, "contact.force", 0.268)
-    assert force.denominator == force.scale == pytest.approx(float(row_of(found, "contact.force").fea[0]))
+    assert force.denominator == force.scale == pytest.approx(float(row_of(found, "contact.force").cprbm[0]))
     vanishing = compared(hinge, C, altered(F, with_value("B.displacement", [1e-7, 0.0]), 0.067))
     row = row_of(vanishing, "B.displacement", 0.067)
     assert row.denominator == row.scale
