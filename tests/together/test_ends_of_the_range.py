@@ -61,14 +61,17 @@ def test_the_fewest_and_the_most_elements(solver, elements, allowed):
 @pytest.mark.parametrize("solver", ["cprbm", "fea"])
 @pytest.mark.parametrize(("slender", "loads"), [(1.1e-5, (9.1, 23.3)), (0.19, (3.1,))])
 def test_the_most_slender_and_the_thickest_beam_on_a_circle(solver, slender, loads):
-    # reference: the wrapped elastica's closed form; what touches at rest is what the clamp holds there
+    # reference: the wrapped elastica's closed form; what touches at rest is what the clamp holds there.
+    # Clamp and zone share the force to first order in the link (docs/contact-rules.md, 1): the thick beam's short zone
+    # needs 80 links
+    links = 80 if solver == "cprbm" else 40
     thickness = slender * LENGTH
     rigidity = MODULUS * WIDTH * thickness**3 / 12.0
     data = cantilever_data(DOWN, [load * rigidity / LENGTH**2 for load in loads])
     data["beams"]["beam"]["thickness"] = thickness
     data["contacts"] = {"round": circle(0.0, RADIUS, thickness=thickness)}
     data["probes"] += [{"of": "round", "quantity": "force"}]
-    for station in solved(solver, data, 40):
+    for station in solved(solver, data, links):
         truth = Wrapped(LENGTH, RADIUS, thickness, WIDTH, MODULUS, station.value)
         assert truth.wrapped
         assert station.values["tip.rotation"][0] == pytest.approx(truth.rotation, rel=1e-3)
@@ -117,7 +120,8 @@ def test_beams_that_are_parallel_but_for_round_off_of_a_drawing(gap, slope):
     truth = elastica_reference.answer(scene_from(data))
     assert truth.completed, truth.sentence
     data["stages"][0]["stations"].append(3.1 * unit)
-    answers = [solved("cprbm", data, 80), solved("fea", data, 40)]
+    # more than 60 links: all joints overlap by the round-off at once, and the set of closed places does not settle
+    answers = [solved("cprbm", data, 60), solved("fea", data, 40)]
     for ends_touch, _ in answers:
         for probe, allowed in (("T.displacement", 2e-4), ("lap.force", 3e-4), ("lap.centre", 1e-4)):
             assert ends_touch.values[probe] == pytest.approx(truth.stations[0].values[probe], rel=allowed)

@@ -69,21 +69,20 @@ def sweep(links):
     return answer
 
 
-def test_places_of_contact_converge_with_order_two_however_near_the_clamp_they_are():
-    # a convergence study, with 320 links in the place of the limit
+def test_places_of_contact_converge_however_near_the_clamp_they_are():
+    # a convergence study, with 320 links in the place of the limit.  Theory: order 4 but for the link on which the
+    # circle presses, over whose length h the curvature has a kink: h² times h, so at least order 3 less what the place
+    # of contact within a link makes uneven, even at 6.4 N, where the circle is touched 3.4 mm from the clamp
     limit = sweep(320)
     errors = {}
-    for n in (40, 80):
+    for n in (40, 160):
         for mine, its in zip(sweep(n).stations, limit.stations, strict=True):
             assert mine.values["circle.ends"][0] == mine.values["circle.ends"][1], "a point, not a zone"
             for probe in ("circle.force", "circle.centre", "A.displacement"):
                 errors[n, probe, mine.value] = abs(mine.values[probe] - its.values[probe]).max()
-    for n, probe, station in list(errors):
-        if probe == "circle.force":  # at 6.4 N the circle is touched 3.4 mm from the clamp, two of forty even elements
-            force = next(its.values[probe][0] for its in limit.stations if its.value == station)
-            assert errors[n, probe, station] < 16.0 / n**2 * force, (n, station)
-        if n == 40 and station > 6.5:
-            assert errors[40, probe, station] > 2.5 * errors[80, probe, station], (probe, station)
+    for (n, probe, station), error in errors.items():
+        if n == 40:
+            assert error > 4.0**2.5 * errors[160, probe, station], (probe, station)
 
 
 @pytest.mark.parametrize("links", [(30, 40), (60, 80), (120, 160), (300, 400)])

@@ -79,13 +79,29 @@ def three_points():
     return edited(*changes, ("loads", {}), ("drives", {"d": drive}), ("stages/0/steps", "d"), base=data)
 
 
-@pytest.mark.parametrize(("data", "key"), [(resting(), "bodies.slider"), (three_points(), "beams.beam")])
-def test_parts_that_contacts_and_loads_hold_are_read_and_refused(data, key):
+@pytest.mark.parametrize(
+    ("data", "key", "solvers"),
+    [
+        (resting(), "bodies.slider", (fea_reference, solid)),
+        (three_points(), "beams.beam", (cprbm, fea_reference, solid)),
+    ],
+    ids=["slider", "beam"],
+)
+def test_parts_that_contacts_and_loads_hold_are_read_and_refused(data, key, solvers):
     scene = scene_from(data)
-    for solver in (cprbm, fea_reference, solid):
+    for solver in solvers:
         with pytest.raises(SceneError, match=rf"^{re.escape(key)}: found .* hold it, for the "):
             solver.answer(scene)
     assert key in elastica_reference.answer(scene).sentence
+
+
+def test_the_cprbm_answers_a_slider_that_a_contact_holds():
+    # reference: statics.  The slide has no friction, so the wall carries all of the weight and what the nose pushes
+    scene = scene_from(resting())
+    (station,) = cprbm.answer(scene).stations
+    reaction = station.values["R.reaction"]
+    assert reaction[1] == pytest.approx(station.value, rel=1e-9)
+    assert station.values["c.force"][0] == pytest.approx(hypot(*reaction), rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -97,9 +113,13 @@ def test_parts_that_contacts_and_loads_hold_are_read_and_refused(data, key):
     ],
     ids=["inside", "ellipse", "spline"],
 )
-def test_edges_that_no_solver_answers_yet(edge):
+def test_edges_that_the_cprbm_alone_answers(edge):
     scene = scene_from(held_by(edge))
-    for solver in (cprbm, fea_reference, solid):
+    # reference: statics, as of the slider; a force on nothing but the wall is the edge's
+    (station,) = cprbm.answer(scene).stations
+    x, y = station.values["R.reaction"]
+    assert station.values["c.force"][0] == pytest.approx(hypot(x, y - station.value), abs=1e-9 * station.value)
+    for solver in (fea_reference, solid):
         with pytest.raises(SceneError, match=rf"^contacts\.c: found '{edge['kind']}'.* or a function, for the "):
             solver.answer(scene)
     assert "contacts.c" in elastica_reference.answer(scene).sentence
