@@ -14,7 +14,7 @@ From Python it is :func:`open` for a mechanism with all that the program does::
     >>> hinge = cprbm_scene.read("comparisons/cases/hinge.toml")
     >>> answer = cprbm.answer(hinge, cprbm.Settings(links=20))
     >>> answer.stations[-1].values["BD.rotation"].round(3)
-    array([0.782])
+    array([0.785])
     >>> len(comparisons.records(hinge, answer)) == sum(
     ...     station.values[probe.name].size for station in answer.stations for probe in hinge.probes
     ... )
@@ -105,6 +105,8 @@ def sweep(
     out: str | Path | None = None,
 ) -> Sweep:
     """A scene at all combinations of values of its parameters.
+
+    Points are solved in processes: a script calls this function below ``if __name__ == "__main__":``.
 
     Args:
         scene: the question, read from a file with parameters.

@@ -74,8 +74,10 @@ class Settings(BaseModel):
             raise SceneError(
                 [Mistake(f"settings.links.{beam}", found, allowed, scene.file) for beam, found, allowed in wrong]
             )
-        met: tuple[Requirement, ...] = ("support",) if scene.contacts and contacts_may_hold(scene) else ()
-        refuse(scene, "the CPRBM", "overlap at rest", "theory", "edge", *met)
+        met: tuple[Requirement, ...] = ("overlap at rest", "theory", "edge")
+        if scene.contacts and self.formulation == "auto" and contacts_may_hold(scene):
+            met += ("support",)
+        refuse(scene, "the CPRBM", *met)
 
 
 def _doubled(links: int | Mapping[str, int]) -> int | Mapping[str, int]:

@@ -30,7 +30,7 @@ def start(
     out: Path | None,
 ) -> Sweep:
     """The finished sweep; arguments and errors as of :func:`comparisons.sweep`."""
-    points = tuple(dict(zip(vary, values, strict=True)) for values in product(*vary.values()))
+    points = tuple(dict(zip(vary, map(float, values), strict=True)) for values in product(*vary.values()))
     chosen = choices or Choices()
     axes = [Axis(name, min(each), max(each), len(each)) for name, each in vary.items()]
     tasks = tasks_of(scene, points, asked, chosen_for_check(points, axes, check), chosen)

@@ -93,7 +93,7 @@ def polygon(pieces):
 def test_a_polygon_through_points_of_a_circle_presses_by_a_corner_and_tends_to_the_circle(thick):
     # reference: shooting of the elastica over the corner on top; with pieces far below a link, the circle
     exact = Cornered(FORCE, AT, 0.5 * T if thick else 0.0)
-    assert over(polygon(16), thick)["edge.force"][0] == pytest.approx(exact.pressed, rel=1e-6)
+    assert over(polygon(8), thick)["edge.force"][0] == pytest.approx(exact.pressed, rel=1e-6)
     circle = over({"kind": "beam-circle", "center": (0.5, -0.12), "radius": 0.1}, thick)
     assert over(polygon(256), thick)["edge.force"] == pytest.approx(circle["edge.force"], rel=1e-2)
 
