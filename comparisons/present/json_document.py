@@ -26,7 +26,6 @@ def comparison(compared: Comparison) -> Plain:
     """One case of ``compare``."""
     scene, runs, verdict = compared.scene, compared.runs, compared.verdict
     answers = {"cprbm": runs.cprbm[0], "fea": runs.reference, "exact": runs.exact}
-    answers["cprbm_other_theory"] = runs.other
     answers["solid"] = None if runs.solid is None else runs.solid[-1]  # its finest mesh
     judged = zip(compared.rows, verdict.words, verdict.reasons, strict=True)
     return {
@@ -35,6 +34,7 @@ def comparison(compared: Comparison) -> Plain:
         "reason": name_of(verdict.reason),
         "sentence": verdict.sentence,
         "theory": runs.theory,
+        "other_theory": None if runs.other is None else solver(runs.other),
         "solvers": {
             name: {**solver(answer, compared.audits.get(name)), **_search(compared.tolerances, name)}
             for name, answer in answers.items()

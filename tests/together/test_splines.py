@@ -95,10 +95,13 @@ def test_contact(scene_of):
     for name in ("T.displacement", "tip.rotation", "touch.force"):
         size = np.linalg.norm(smooth[name])
         assert np.linalg.norm(reference[name] - smooth[name]) < 2e-5 * size, name
-        found = [values(cprbm_answer, data, n)[name] for n in (20, 40, 80)]
-        assert np.linalg.norm(found[-1] - reference[name]) < 1e-3 * size, name
-        steps = [np.linalg.norm(b - a) for a, b in pairwise(found)]
-        assert np.log2(steps[0] / steps[1]) == pytest.approx(2.0, abs=0.35), name
+        found = [values(cprbm_answer, data, n)[name] for n in (20, 40, 80, 160)]
+        # reference: the finite elements, whose penetration of 1e-4 thicknesses leaves 4e-5 of the force
+        assert all(np.linalg.norm(value - reference[name]) < 1e-4 * size for value in found), name
+        if name != "touch.force":
+            # theory: as without contact, kinks of the spline's curvature leave the third order, unevenly
+            steps = [np.linalg.norm(b - a) for a, b in pairwise(found)]
+            assert np.log2(steps[0] / steps[-1]) / 2.0 > 2.5, name
 
 
 def test_the_third_solver_covers_contact_in_a_point():
