@@ -183,7 +183,7 @@ def _mistake(details: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Mistake:
             found = "nothing" if kind == "union_tag_not_found" else shown(value)
             found += hint(value, tags) if isinstance(value, str) else ""
             allowed = f"one of {', '.join(map(repr, tags))}"
-        case "model_type" if loc == ("units",):
+        case "model_type" if "stress" in fields:  # of the record of units
             allowed += f", as {_UNITS}"
     return Mistake(key, found, allowed)
 

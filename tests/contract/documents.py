@@ -2,10 +2,8 @@
 
 from collections.abc import Iterator, Mapping, Set
 
-SOLVERS = frozenset(
-    {"cprbm", "cprbm_other_theory", "fea", "exact", "solid", "auto", "paper", "slsqp", "trust-constr", "ipopt"}
-)
-"""Names of solvers and of runs beside them, and of the methods in ``bench``."""
+SOLVERS = frozenset({"cprbm", "fea", "exact", "solid", "auto", "paper", "slsqp", "trust-constr", "ipopt"})
+"""Names of solvers, and of the methods in ``bench``."""
 
 FREE = frozenset({"strata", "machine"})
 """Keys of mappings by free texts: features of scenes, libraries of the machine."""
