@@ -25,8 +25,9 @@ from cprbm.contact.gap import Places, gap_frame
 from cprbm.contact.law import Law
 from cprbm.contact.pairs import Pair, contact_pairs
 from cprbm.contact.settling import find_feet, settle
-from cprbm_scene import FreeEnd, WeldedEnd
+from cprbm_scene import FreeEnd, Scene, WeldedEnd
 from cprbm_scene.answer import Array, Flags, Ints
+from cprbm_scene.statement import Body, RotationDrive, SlidingBody
 
 FREE = -1
 """Number in place of a body's for a free end of a beam."""
@@ -173,8 +174,10 @@ def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:
 
 
 def _ends(m: Mechanism, curves: list[Curve]) -> Ends:
-    """Numbers of bodies in the scene's order."""
-    number = {name: k for k, name in enumerate(m.scene.bodies)}
+    """Numbers of bodies in the scene's order; all bodies at rest have the number of the first."""
+    still = _bodies_at_rest(m.scene)
+    order = list(m.scene.bodies)
+    number = {name: order.index(still[0] if name in still else name) for name in order}
     body = np.full((len(curves), 2), FREE, dtype=np.int64)
     welded = np.zeros((len(curves), 2), dtype=bool)
     for k, curve in enumerate(curves):
@@ -187,6 +190,24 @@ def _ends(m: Mechanism, curves: list[Curve]) -> Ends:
                 body[k, side] = number[m.scene.body_of(joint.point)]
                 welded[k, side] = isinstance(joint, WeldedEnd)
     return Ends(body, welded, np.array([not curve.beam for curve in curves]))
+
+
+def _bodies_at_rest(scene: Scene) -> list[str]:
+    """Fixed bodies, and bodies with all motions held by drives that no stage steps."""
+    stepped = {stage.steps for stage in scene.stages}
+    holding = [
+        drive.body if isinstance(drive, RotationDrive) else scene.body_of(drive.point)
+        for name, drive in scene.drives.items()
+        if name not in stepped and drive.begins is None
+    ]
+    return [name for name, body in scene.bodies.items() if holding.count(name) >= _motions(body)]
+
+
+def _motions(body: Body) -> int:
+    """Number of motions of a body without beams and drives."""
+    if isinstance(body, SlidingBody):
+        return 2 if body.turns else 1
+    return {"fixed": 0, "turns": 1, "free": 3}[body.motion]
 
 
 def _possible(arrays: CurveArrays, ends: Ends, pairs: list[Pair]) -> tuple[Places, Ints]:

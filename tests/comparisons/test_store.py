@@ -43,7 +43,7 @@ def test_a_verdict_needs_no_second_solve(hinge, right):
     runs = paired(hinge, Choices(), right)
     back = Runs(
         runs.theory,
-        (there_and_back(runs.cprbm[0]), there_and_back(runs.cprbm[1])),
+        tuple(there_and_back(one) for one in runs.cprbm),
         tuple(there_and_back(one) for one in runs.fea),
         other=there_and_back(runs.other),
     )
