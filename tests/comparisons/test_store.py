@@ -2,6 +2,7 @@
 
 import gzip
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from comparisons import store
 from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.pairing import Runs, Solvers, paired
+from comparisons.pairing import Solvers, paired
 from comparisons.plain import text_of
 from tests.verdict.made_up import MadeUp
 
@@ -41,12 +42,11 @@ def test_an_answer_survives(hinge, right):
 
 def test_a_verdict_needs_no_second_solve(hinge, right):
     runs = paired(hinge, Choices(), right)
-    back = Runs(
-        runs.theory,
-        tuple(there_and_back(one) for one in runs.cprbm),
-        tuple(there_and_back(one) for one in runs.fea),
-        other=there_and_back(runs.other),
-    )
+    single = {
+        name: there_and_back(getattr(runs, name)) for name in ("beside", "fea_beside", "other") if getattr(runs, name)
+    }
+    several = {name: tuple(map(there_and_back, getattr(runs, name))) for name in ("cprbm", "fea")}
+    back = replace(runs, **single, **several)
     assert compare(hinge, back).verdict == compare(hinge, runs).verdict
 
 

@@ -31,7 +31,7 @@ def marked(name):
 
 
 @pytest.mark.rare
-@pytest.mark.parametrize("name", map(marked, EXPECTED))
+@pytest.mark.parametrize("name", [marked(name) for name in EXPECTED])
 def test_a_rare_scene_gives_its_expected_result(name):
     expected = EXPECTED[name]
     assert departures(expected, result(scene(name), expected)) == []
