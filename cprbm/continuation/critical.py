@@ -15,7 +15,9 @@ minimum: κ is positive just before, and the moment or the force vanishes.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -87,8 +89,7 @@ def contact_opens(trail: list[Reached], beyond: float) -> CriticalPoint | None:
     if geometry is None or earlier is None:
         return None
     for lifted in may_lift(last.solved):
-        now, before = lifted.force(last.solved), lifted.force(earlier.solved)
-        zero = last.t + now * (last.t - earlier.t) / (before - now) if now < before else np.inf
+        zero = _vanishes(lifted.force, earlier, last)
         if zero - last.t <= NEAR * width:
             after = without(last.solved, lifted)
             if after.lost:
@@ -108,12 +109,17 @@ def contact_slips(trail: list[Reached], beyond: float) -> CriticalPoint | None:
     if geometry is None or earlier is None:
         return None
     for pair in sorted(pressing(last.solved)):
-        now, before = _to_end(last.solved, pair), _to_end(earlier.solved, pair)
-        zero = last.t + now * (last.t - earlier.t) / (before - now) if now < before < np.inf else np.inf
+        zero = _vanishes(partial(_to_end, pair=pair), earlier, last)
         if zero - last.t <= NEAR * width:
             name = geometry.pairs[pair].name
             return opened(last.solved, without(last.solved, Pressed(pair)), zero, Loss.SLIP, name, width)
     return None
+
+
+def _vanishes(value: Callable[[Solved], float], earlier: Reached, last: Reached) -> float:
+    """Fraction of the way at which a value of two states, continued linearly, is zero; inf without a decrease."""
+    now, before = value(last.solved), value(earlier.solved)
+    return last.t + now * (last.t - earlier.t) / (before - now) if now < before < np.inf else np.inf
 
 
 def _to_end(solved: Solved, pair: int) -> float:

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -157,12 +157,13 @@ class Driver:
         begin = self.reached
         largest = min(CAREFUL_TURN, self.settings.largest_turn) if careful else self.settings.largest_turn
 
-        def solve(share: float, pairs: frozenset[int] = frozenset()) -> Solved:
+        @cache  # events ask again for the states at the ends of the step and at the located share
+        def solve(share: float, pairs: frozenset[int]) -> Solved:
             target = self._held(way.target(begin + share * (t - begin)))
             return self._equilibrium(kept_open(under(self.solved.state, target), pairs))
 
         try:
-            solved = solve(1.0)
+            solved = solve(1.0, frozenset())
             # an event is not sought in a step that is too long
             self._check_turn(solved, largest)
             change, at = self._first_event(solved, solve), t

@@ -44,30 +44,28 @@ class StopChange(NamedTuple):
 
 def event_values(solved: Solved, acting: Flags) -> Array:
     """e of all rows; infinite for all rows but acting stops."""
-    state = solved.state
-    values = np.where(state.driven, -state.multipliers(solved.system), solved.values)
+    values = np.where(solved.state.driven, -solved.state.multipliers(solved.system), solved.values)
     return np.where(solved.system.limits & acting, values, np.inf)
 
 
-def first_event(before: Solved, after: Solved, acting: Flags, solve: Callable[[float], Solved]) -> StopChange | None:
+def first_event(
+    before: Solved, after: Solved, acting: Flags, solve: Callable[[float, frozenset[int]], Solved]
+) -> StopChange | None:
     """The first stop that closes or opens in a step; None without any.
 
     Args:
         before, after: the step.
         acting: which stops act.
-        solve: state at a fraction of the step.
+        solve: state at a fraction of the step, with pairs kept open.
     """
     begin, end = event_values(before, acting), event_values(after, acting)
+
+    def value(row: int, share: float) -> float:
+        return float(event_values(solve(share, frozenset()), acting)[row])
+
     happened = np.flatnonzero(end < -TOUCHING).tolist()
-    for row in happened:
-        if begin[row] <= TOUCHING:
-            return StopChange(0.0, row)
-    return min((StopChange(located(partial(_event_value, solve, acting, row)), row) for row in happened), default=None)
-
-
-def _event_value(solve: Callable[[float], Solved], acting: Flags, row: int, share: float) -> float:
-    """e of a row at a fraction of the step."""
-    return float(event_values(solve(share), acting)[row])
+    shares = [0.0 if begin[row] <= TOUCHING else located(partial(value, row)) for row in happened]
+    return min((StopChange(*change) for change in zip(shares, happened, strict=True)), default=None)
 
 
 def located(event: Callable[[float], float]) -> float:
