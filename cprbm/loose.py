@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from cprbm_scene import Scene
-from cprbm_scene.freedoms import Freedoms, unsupported
-from cprbm_scene.statement import SlidingBody, TurningBody
+from cprbm_scene.freedoms import FREEDOMS, Freedoms, unsupported
 
 
 def loose_bodies(scene: Scene) -> list[str]:
     """Bodies with a single motion that no beam, pin or drive resists: only contacts may hold them."""
-    loose = [(mistake.key, names) for mistake, names in unsupported(scene, Freedoms(scene))]
-    return [name for name in scene.bodies if (f"bodies.{name}", {name}) in loose and _has_one_motion(scene, name)]
+    return [name for name in _unsupported_parts(scene) if name]
 
 
 def contacts_may_hold(scene: Scene) -> bool:
     """True if every part without support is such a body."""
-    loose = {f"bodies.{name}" for name in loose_bodies(scene)}
-    return all(mistake.key in loose for mistake, _ in unsupported(scene, Freedoms(scene)))
+    return all(_unsupported_parts(scene))
 
 
-def _has_one_motion(scene: Scene, name: str) -> bool:
-    body = scene.bodies[name]
-    return isinstance(body, TurningBody) or (isinstance(body, SlidingBody) and not body.turns)
+def _unsupported_parts(scene: Scene) -> Iterator[str]:
+    """For every part without support the name of the body, if the part is a body with a single motion, else empty."""
+    freedoms = Freedoms(scene)
+    for mistake, names in unsupported(scene, freedoms):
+        name = mistake.key.removeprefix("bodies.")
+        yield name if names == {name} and len(freedoms.guide(name)) == FREEDOMS - 1 else ""

@@ -14,6 +14,7 @@ from cprbm.contact.candidates import (
     Geometry,
     contact_geometry,
     fixed_places,
+    half_thicknesses,
     joined,
     may_move,
     on_edge,
@@ -42,6 +43,7 @@ from cprbm.contact.law import Columns, Law
 from cprbm.contact.pairs import Pair
 from cprbm.contact.settling import (
     BOX_TESTS,
+    FINDING,
     GAPS,
     SEARCHES,
     choose_sides,
@@ -61,6 +63,7 @@ __all__ = [
     "BOX_TESTS",
     "CORNER",
     "COUPLING",
+    "FINDING",
     "GAPS",
     "GRADIENT",
     "LOCAL",
@@ -91,6 +94,7 @@ __all__ = [
     "fixed_places",
     "gap_frame",
     "gap_row",
+    "half_thicknesses",
     "is_left",
     "joined",
     "left_corner",

@@ -27,7 +27,7 @@ from cprbm.contact.pairs import Pair, contact_pairs
 from cprbm.contact.settling import find_feet, settle
 from cprbm_scene import FreeEnd, Scene, WeldedEnd
 from cprbm_scene.answer import Array, Flags, Ints
-from cprbm_scene.statement import Body, RotationDrive, SlidingBody
+from cprbm_scene.freedoms import FREEDOMS, Freedoms
 
 FREE = -1
 """Number in place of a body's for a free end of a beam."""
@@ -134,6 +134,12 @@ def on_edge(arrays: CurveArrays, places: Places) -> Flags:
     return np.asarray(arrays.angle[places.piece] < 0)
 
 
+def half_thicknesses(arrays: CurveArrays, places: Places) -> Array:
+    """Half thickness at the places plus half thickness at the feet."""
+    at_place = arrays.thickness[places.piece] + places.xi * arrays.thickening[places.piece]
+    return np.asarray(at_place + arrays.thickness[places.foot] + places.eta * arrays.thickening[places.foot])
+
+
 def may_move(geometry: Geometry, places: Places) -> Flags:
     """Whether the places may move along their curves."""
     arrays = geometry.arrays
@@ -156,9 +162,7 @@ def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:
     gaps, curvatures = np.empty(len(places.pair)), np.empty(len(places.pair))
     settle(z, geometry.arrays, places, gaps, curvatures, counters, 0)
     arrays = geometry.arrays
-    thickness = arrays.thickness[places.piece] + places.xi * arrays.thickening[places.piece]
-    thickness += arrays.thickness[places.foot] + places.eta * arrays.thickening[places.foot]
-    signed = np.where(places.at_point, np.inf, gaps + thickness)
+    signed = np.where(places.at_point, np.inf, gaps + half_thicknesses(arrays, places))
     weights = np.empty((4, 2, STENCIL))
     for number in np.flatnonzero(unknown):
         mine = np.flatnonzero(places.pair == number)
@@ -194,20 +198,13 @@ def _ends(m: Mechanism, curves: list[Curve]) -> Ends:
 
 def _bodies_at_rest(scene: Scene) -> list[str]:
     """Fixed bodies, and bodies with all motions held by drives that no stage steps."""
-    stepped = {stage.steps for stage in scene.stages}
-    holding = [
-        drive.body if isinstance(drive, RotationDrive) else scene.body_of(drive.point)
+    freedoms, stepped = Freedoms(scene), {stage.steps for stage in scene.stages}
+    held = [
+        freedoms.owner(drive)
         for name, drive in scene.drives.items()
-        if name not in stepped and drive.begins is None
+        if name not in stepped and scene.holds(drive, scene.stages[0].name)
     ]
-    return [name for name, body in scene.bodies.items() if holding.count(name) >= _motions(body)]
-
-
-def _motions(body: Body) -> int:
-    """Number of motions of a body without beams and drives."""
-    if isinstance(body, SlidingBody):
-        return 2 if body.turns else 1
-    return {"fixed": 0, "turns": 1, "free": 3}[body.motion]
+    return [name for name in scene.bodies if len(freedoms.guide(name)) + held.count(name) >= FREEDOMS]
 
 
 def _possible(arrays: CurveArrays, ends: Ends, pairs: list[Pair]) -> tuple[Places, Ints]:

@@ -26,7 +26,7 @@ from cprbm.contact.closest import curve_point
 from cprbm.contact.corners import Corner
 from cprbm.contact.curve import STENCIL
 from cprbm.contact.gap import Places, gap_frame
-from cprbm.contact.settling import find_feet, near_pairs, separations, settle
+from cprbm.contact.settling import FINDING, find_feet, near_pairs, separations, settle
 from cprbm_scene.answer import Array, Ints
 
 SURE = 1e-3
@@ -40,9 +40,6 @@ SLIDING = 1e-9
 
 FAR = 1.0
 """Distance of two boxes, over the longest beam, beyond which a beam does not pass a corner in a step."""
-
-STEPS = 40
-"""Iterations of a place on a frozen state."""
 
 BESIDE = 1.5
 """Farthest place of contact beside a corner that the point of contact leaves, pieces."""
@@ -83,8 +80,7 @@ def corner_sides(geometry: Geometry, z: Array, known: Array, counters: Ints) -> 
 
 def is_left(geometry: Geometry, z: Array, places: Places, k: int) -> bool:
     """True if the distance falls along a face beside the corner of a place, or the place lies on a bend."""
-    frame = gap_frame(z, geometry.arrays, places, k, np.empty((4, 2, STENCIL)))
-    a, b = (frame.nx * x + frame.ny * y for x, y in _faces(geometry, z, places, k))
+    a, b = _slopes(geometry, z, places, k)
     return bool(max(a, -b) > SLIDING or not geometry.arrays.is_point[places.curve[k]])
 
 
@@ -98,8 +94,7 @@ def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Arr
         counters: count the gaps.
     """
     corner, arrays, pair = corner_of(geometry, places, k), geometry.arrays, geometry.pairs[places.pair[k]]
-    frame = gap_frame(z, arrays, places, k, np.empty((4, 2, STENCIL)))
-    a, b = (frame.nx * x + frame.ny * y for x, y in _faces(geometry, z, places, k))
+    a, b = _slopes(geometry, z, places, k)
     bends, first = not arrays.is_point[places.curve[k]], arrays.first[pair.second]
     trial = taken(places, np.array([k]))
     trial.curve[:], trial.piece[:], trial.xi[:] = pair.first, places.foot[k], places.eta[k]
@@ -110,12 +105,19 @@ def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Arr
     else:
         trial.foot[:], trial.eta[:] = (first + corner.behind, 0.0) if -b > a else (first + corner.before, 1.0)
     gap, curvature = np.empty(1), np.empty(1)
-    settle(z, arrays, trial, gap, curvature, counters, STEPS)
+    settle(z, arrays, trial, gap, curvature, counters, FINDING)
     apart = arrays.arc[trial.piece] + trial.xi * arrays.span[trial.piece]
     apart -= arrays.arc[places.foot[k]] + places.eta[k] * arrays.span[places.foot[k]]
     near = abs(apart[0]) < BESIDE * arrays.span[trial.piece[0]]
     goes = near and curvature[0] > 0.0 and not trial.at_point[0] and may_move(geometry, trial)[0]
     return trial if goes else None
+
+
+def _slopes(geometry: Geometry, z: Array, places: Places, k: int) -> tuple[float, float]:
+    """N·a and N·b of a corner."""
+    frame = gap_frame(z, geometry.arrays, places, k, np.empty((4, 2, STENCIL)))
+    a, b = (float(frame.nx * x + frame.ny * y) for x, y in _faces(geometry, z, places, k))
+    return a, b
 
 
 def _faces(geometry: Geometry, z: Array, places: Places, k: int) -> tuple[Array, Array]:

@@ -25,6 +25,9 @@ from cprbm_scene.answer import Array, Flags, Ints
 BOX_TESTS, SEARCHES, GAPS = range(3)
 """Entries of the counters: tests of two boxes, searches over all pieces of a curve, evaluations of a gap."""
 
+FINDING = 40
+"""Iterations of a moving place on a frozen state."""
+
 LONGEST_STEP = 0.7
 """Change of a place in one iteration, pieces: less than a piece, so that a minimum is not jumped over."""
 

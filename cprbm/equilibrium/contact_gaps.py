@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.contact import CORNER, Contacts, Geometry, Places, may_move, on_edge, settle, taken
-from cprbm.equilibrium.contact_set import FINDING, arc_of, with_fixed_places
+from cprbm.contact import CORNER, FINDING, Contacts, Geometry, Places, may_move, on_edge, settle, taken
+from cprbm.equilibrium.contact_set import arc_of, with_fixed_places
 from cprbm.equilibrium.iteration import beside_points
 from cprbm.equilibrium.newton import Solved
 from cprbm_scene.answer import Array, Flags, Ints

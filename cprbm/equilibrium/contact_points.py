@@ -18,6 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from cprbm.contact import (
+    FINDING,
     Contacts,
     Geometry,
     Places,
@@ -32,7 +33,6 @@ from cprbm.contact import (
 )
 from cprbm.equilibrium.contact_gaps import as_point, joints_of, minima
 from cprbm.equilibrium.contact_set import (
-    FINDING,
     Touched,
     arc_of,
     passed_through,

@@ -13,12 +13,14 @@ from functools import partial
 import numpy as np
 
 from cprbm.contact import (
+    FINDING,
     Contacts,
     Geometry,
     Places,
     choose_sides,
     find_bends,
     fixed_places,
+    half_thicknesses,
     joined,
     near_pairs,
     on_edge,
@@ -43,15 +45,11 @@ RETURNS = 2
 ARRIVED = 1e-6
 """Largest last change of a moving place, pieces."""
 
-FINDING = 40
-"""Iterations of moving places on a frozen state."""
-
 ROUNDS = 5
 """Rounds from chord to chord for the place of a bend."""
 
 REACH = 0.1
 """Distance of two boxes, over the longest beam, up to which a pair has places."""
-
 
 BEYOND = 0.1
 """Share of the half thicknesses, or of a piece for lines, by which a place is on the other side of a beam."""
@@ -118,8 +116,7 @@ def _turn_sides(geometry: Geometry, z: Array, places: Places, which: Flags, coun
     arrays, mine = geometry.arrays, np.flatnonzero(which)
     trial, gaps = taken(places, mine), np.empty(len(mine))
     settle(z, arrays, trial, gaps, np.empty(len(mine)), counters, 0)
-    thickness = arrays.thickness[trial.piece] + trial.xi * arrays.thickening[trial.piece]
-    thickness += arrays.thickness[trial.foot] + trial.eta * arrays.thickening[trial.foot]
+    thickness = half_thicknesses(arrays, trial)
     depth = BEYOND * np.where(thickness > 0.0, thickness, arrays.span[trial.piece])
     turned = mine[~trial.at_point & (gaps + thickness < -depth)]
     places.side[turned] *= -1.0

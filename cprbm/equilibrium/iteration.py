@@ -10,7 +10,7 @@ from cprbm.chain.compiled import compiled
 from cprbm.contact import BEND, CORNER, CurveArrays, Law, Places, move_places, settle_near
 from cprbm.equilibrium.columns import contact_columns
 from cprbm.equilibrium.elimination import Beams, Border, Reached
-from cprbm.equilibrium.linear import Bordered, Numbers, Work, correction, linearise, reduced_load, restored
+from cprbm.equilibrium.linear import Bordered, Numbers, Work, correction, reduced_system, restored
 from cprbm_scene.answer import Array, Flags, Ints
 
 OVERLAP = 1e-12
@@ -147,9 +147,8 @@ def begin_iteration(
     changed = most > 0 and change_set(curves, places, closed, gaps, pairs, most)
     gradient = np.zeros(z.size)
     columns = contact_columns(z, curves, places, closed, gradient)
-    bordered = linearise(z, m, driven, target, stiffness, anchor, work, columns, gradient)
-    load = -gradient
-    return changed, bordered, load, reduced_load(m, work, driven, bordered, columns.values, load)
+    bordered, load, reduced = reduced_system(z, m, driven, target, stiffness, anchor, work, columns, gradient)
+    return changed, bordered, load, reduced
 
 
 def begin_by_law(
@@ -177,9 +176,8 @@ def begin_by_law(
     changed = most > 0 and change_set(curves, places, closed, gaps, pairs, most)
     gradient = np.zeros(z.size)
     columns = law.columns(z, places, closed, gradient)
-    bordered = linearise(z, m, driven, target, stiffness, anchor, work, columns, gradient)
-    load = -gradient
-    return changed, bordered, load, reduced_load(m, work, driven, bordered, columns.values, load)
+    bordered, load, reduced = reduced_system(z, m, driven, target, stiffness, anchor, work, columns, gradient)
+    return changed, bordered, load, reduced
 
 
 @compiled

@@ -135,6 +135,24 @@ def linearise(
 
 
 @compiled
+def reduced_system(
+    z: Array,
+    m: Numbers,
+    driven: Flags,
+    target: Array,
+    stiffness: Array,
+    anchor: Array,
+    work: Work,
+    columns: Columns,
+    gradient: Array,
+) -> tuple[Bordered, Array, Array]:  # pragma: no cover
+    """Border, the chains' solution for minus the whole gradient, and the border's load; arguments as of linearise."""
+    bordered = linearise(z, m, driven, target, stiffness, anchor, work, columns, gradient)
+    load = -gradient
+    return bordered, load, reduced_load(m, work, driven, bordered, columns.values, load)
+
+
+@compiled
 def correction(change: Array, motions: Ints, turns: Ints) -> tuple[float, float]:  # pragma: no cover
     """Size of a change (size,) of the unknowns, inf if not finite, and the share that turns no part too far."""
     size, turn = 0.0, 0.0
