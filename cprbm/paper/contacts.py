@@ -89,8 +89,7 @@ class FittedLaw:
             if not pressing.any():
                 continue
             joints = np.flatnonzero(pressing)
-            A, a = fitted(z, boundary).points[0], z[boundary.joints[joints] + boundary.along]
-            beyond = np.maximum(a - A.max(), A.min() - a)
+            beyond = beyond_ends(z, boundary)[joints]
             worst = int(np.argmax(beyond))
             if beyond[worst] > self.beyond:
                 piece = int(places.piece[places.pair == pair][joints[worst]])
@@ -101,6 +100,12 @@ class FittedLaw:
                     "the end of the range of the fitted polynomial"
                 )
         return ""
+
+
+def beyond_ends(z: Array, boundary: Boundary) -> Array:
+    """Distances (joints,) of the constrained joints beyond the ends of a fitted boundary, negative between the ends."""
+    A, a = fitted(z, boundary).points[0], z[boundary.joints + boundary.along]
+    return np.asarray(np.maximum(a - A.max(), A.min() - a))
 
 
 def paper_geometry(m: Mechanism, every: Geometry, degree: int) -> Geometry:

@@ -16,7 +16,7 @@ import numpy as np
 from cprbm.chain.rows import ends_of
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.newton import Solved
-from cprbm.paper.contacts import FittedLaw
+from cprbm.paper.contacts import FittedLaw, beyond_ends
 from cprbm.paper.fit import Boundary, fitted
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import EdgeContact, PinnedEnd
@@ -40,7 +40,7 @@ class Remarks:
                 misfit = float(np.abs(fit.V[:, 0] @ fit.q - fit.points[1]).max()) * unit, where
                 self.misfits[name] = max(misfit, self.misfits.get(name, misfit))
 
-    def told(self, solved: Solved) -> list[str]:
+    def sentences(self, solved: Solved) -> list[str]:
         """Sentences on all stations, and on the boundaries at the last state."""
         said = [
             f"in contact '{name}', from {first} on, the joint next to the beam's own pin presses: it holds the chord "
@@ -59,8 +59,7 @@ class Remarks:
                 f"moment of {_left_moment(solved, pull):.1e} of the largest; the formulation has no rotational "
                 "invariance"
             )
-            A, a = fitted(z, boundary).points[0], z[boundary.joints + boundary.along]
-            beyond = np.maximum(a - A.max(), A.min() - a)
+            beyond = beyond_ends(z, boundary)
             if np.any(beyond > 0.0):
                 said.append(
                     f"in contact '{name}' {np.sum(beyond > 0.0)} of {len(beyond)} related joints lie beyond the fitted "

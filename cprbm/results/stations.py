@@ -102,7 +102,7 @@ class Run:
         touched = {name for station in self.stations for name in station.touching}
         never = [f"contact '{name}' never closed at a station" for name in self.scene.contacts if name not in touched]
         if self.settings.formulation == "paper" and self.driver is not None:
-            self.notes += self.remarks.told(self.driver.solved)
+            self.notes += self.remarks.sentences(self.driver.solved)
         return Answer(
             solver="cprbm",
             scene=self.scene.name,
