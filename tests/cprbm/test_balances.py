@@ -5,21 +5,9 @@ import pytest
 import cprbm
 from cprbm_scene import scene_from
 from tests.cprbm.driven import UNIT_FORCE
-from tests.cprbm.scenes import LENGTH, cantilever_data, force
+from tests.cprbm.scenes import cantilever_data, force
 
 SETTINGS = cprbm.Settings(links=7)
-
-
-def two_in_a_row():
-    """A cantilever that ends on a free body, on which another begins that ends free, and bears a load."""
-    data = cantilever_data(
-        {"kind": "distributed", "beam": "further", "direction": [0.3, -1.0], "along": [0.137, 0.831]}, [1.0]
-    )
-    beam = data["beams"]["beam"]
-    curve = {"kind": "line", "start": [LENGTH, 0.0], "end": [1.7 * LENGTH, 0.31 * LENGTH]}
-    start = {"joint": "weld", "point": "T"}
-    data["beams"]["further"] = {**beam, "curve": curve, "start": start, "end": {"joint": "free"}}
-    return scene_from(data)
 
 
 def test_what_is_fixed_does_not_turn():

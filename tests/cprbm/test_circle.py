@@ -10,7 +10,6 @@ from tests.references.wrapped import Wrapped
 
 BEAM = {"length": 0.0973, "thickness": 0.00103, "width": 0.0087, "youngs_modulus": 2.03e11}
 RADIUS = 0.0711
-STEP = 1e-6
 
 
 def scene_of(stations, radius=RADIUS, center=None, angle=-np.pi / 2.0, **changes):

@@ -8,8 +8,6 @@ import cprbm
 from comparisons.cases import opened
 from cprbm_scene import CircleContact, Ending, FunctionContact, HalfPlaneContact, LineContact, RigidContact, Scene
 
-SMALL = cprbm.Settings(links=12)
-
 
 def obstacles(scene: Scene, distance: float, many: int, body: str) -> dict[str, RigidContact]:
     """Rigid things of every kind all round a mechanism, ``distance`` times its size from its middle."""

@@ -2,22 +2,10 @@
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize
 
 import cprbm
 from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH
-
-
-def smallest_distance(lines, s, sigma):
-    """Of two smooth lines near (s, σ), by a minimiser without derivatives."""
-
-    def squared(z):
-        A, B = lines[0].at(z[:1]), lines[1].at(z[1:])
-        return float(((A.x - B.x) ** 2 + (A.y - B.y) ** 2)[0])
-
-    found = minimize(squared, [s, sigma], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-16})
-    return np.sqrt(found.fun)
 
 
 @pytest.mark.parametrize("order", [("upper", "lower"), ("lower", "upper")])

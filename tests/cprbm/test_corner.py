@@ -51,39 +51,6 @@ def test_a_corner_is_the_same_whatever_lies_behind_it(points):
     assert np.all(errors_of(solved(scene, 40), Cornered(FORCE, AT, 0.5 * T)) < 0.2 / 40**4)
 
 
-def turned(place, about, angle):
-    (x, y), (u, v) = place, about
-    cos, sin = math.cos(angle), math.sin(angle)
-    return (u + cos * (x - u) - sin * (y - v), v + sin * (x - u) + cos * (y - v))
-
-
-def on_a_wheel(*, thick, turn=0.4):
-    """The roof drawn turned back, and brought to where it is in :func:`cantilever_over` by its wheel."""
-    pivot = (0.6, -0.5)
-    points = tuple(turned(place, pivot, -turn) for place in ROOF)
-    return scene_of(
-        {"kind": "line", "start": (0.0, 0.0), "end": (1.0, 0.0)},
-        {"joint": "weld", "point": "root"},
-        {"joint": "weld", "point": "tip"},
-        {"kind": "beam-line", "body": "wheel", "points": points, "side": "left", "thick": thick},
-        bodies={
-            "ground": {"motion": "fixed", "points": {"root": (0.0, 0.0)}},
-            "wheel": {"motion": "turns", "about": "pivot", "points": {"pivot": pivot}},
-            "block": {"motion": "free", "points": {"tip": (1.0, 0.0)}},
-        },
-        loads={"P": {"kind": "force", "point": "tip", "direction": (0.0, -1.0)}},
-        drives={"r": {"kind": "rotation", "body": "wheel"}},
-        stages=(("P", (FORCE,)), ("r", (turn,))),
-        probes=(
-            ("tip", "displacement"),
-            ("edge", "force"),
-            ("edge", "ends"),
-            ("scene", "potential_energy"),
-            ("wheel", "reaction_moment"),
-        ),
-    )
-
-
 @pytest.mark.parametrize("thick", [False, True])
 def test_from_a_face_to_a_corner_nothing_jumps(thick):
     """A block with a flat top presses a beam that bulges towards it, and goes sideways from under it."""
@@ -134,23 +101,3 @@ def test_from_a_face_to_a_corner_nothing_jumps(thick):
     # what the drive does is what the energy gains: the trapezium rule's error is of the size of force's change
     done = -0.5 * h * (force[:-1] + force[1:])
     assert np.diff(energy) == pytest.approx(done, abs=0.1 * h * np.max(np.abs(np.diff(force))))
-
-
-def apart(one, other):
-    """The least distance of two segments (2, 2) that do not cross."""
-    found = []
-    for places, (begin, end) in ((one, other), (other, one)):
-        along = end - begin
-        share = np.clip((places - begin) @ along / (along @ along), 0.0, 1.0)
-        found.append(np.linalg.norm(places - begin - share[:, None] * along, axis=1).min())
-    return min(found)
-
-
-def crossing(one, other):
-    """Whether two segments (2, 2) cross."""
-
-    def sides(of, places):
-        (ux, uy), r = of[1] - of[0], places - of[0]
-        return ux * r[:, 1] - uy * r[:, 0]
-
-    return sides(one, other).prod() < 0.0 and sides(other, one).prod() < 0.0

@@ -5,13 +5,11 @@ import pytest
 
 import cprbm
 from cprbm import Settings
-from cprbm_scene import Ending, scene_from
+from cprbm_scene import Ending
 from tests.cprbm.driven import TURN, UNIT_FORCE, UNIT_MOMENT, driven_cantilever, driven_hinge, guided, push
 from tests.cprbm.scenes import LENGTH, MODULUS, THICKNESS, cantilever, force, hinge
 from tests.references.elastica import cantilever_under_tip_force, roll_up
 from tests.references.guided import guided_beam
-
-STEP = 1e-6
 
 
 def stages(*steps):
@@ -156,20 +154,3 @@ def test_load_and_drive_together_balance():
         )
     )
     assert both.values["T.displacement"] == pytest.approx(values["T.displacement"], rel=1e-7)
-
-
-def off_centre():
-    """A body that is driven at a point off its reference place, in two ways, beside one that slides."""
-    data = guided(drive=False, station=1.0).model_dump(mode="python")
-    data.pop("file")
-    data["bodies"] = {
-        "root": data["bodies"]["root"],
-        "tip": {"motion": "free", "points": {"T": (LENGTH, 0.0), "E": (1.2 * LENGTH, 0.3 * LENGTH)}},
-    }
-    data["loads"] = {}
-    data["drives"] = {
-        "P": {"kind": "displacement", "point": "E", "direction": (1.0, -2.0)},
-        "Q": {"kind": "rotation", "body": "tip"},
-    }
-    data["probes"] = [{"of": "E", "quantity": "reaction"}]
-    return scene_from(data)

@@ -157,38 +157,6 @@ def test_clamped_along_the_edge_the_clamp_has_what_the_pin_had():
     assert values["edge.ends"] == pytest.approx([CURVED.flat, CURVED.flat], abs=2.0 / 40**2 * LENGTH)
 
 
-STEEP = 1500.0  # 1/m
-CORNER = [0.55 * LENGTH, -0.37 * LENGTH]
-BENT = {
-    "line": {"kind": "beam-line", "points": [[-0.01, 0.002], [0.03, 0.001], [0.9, -0.2]], "side": "left"},
-    "hollow": {"kind": "beam-line", "points": [[-0.01, 0.002], [0.03, -0.02], [0.9, -0.2]], "side": "left"},
-    "corner": {"kind": "beam-line", "points": [[-0.01, -0.2], CORNER, [0.07, -0.2]], "side": "left"},
-    "function": {
-        "kind": "beam-function",
-        "axis": "x",
-        "coefficients": [0.001, 0.05, -1.5],
-        "range": [0.001, 0.9],
-        "side": "above",
-    },
-    "sideways": {
-        "kind": "beam-function",
-        "axis": "y",
-        "coefficients": [0.02, -2.0, 3.0],
-        "range": [-0.3, 0.1],
-        "side": "above",
-    },
-    "half-plane": {"kind": "beam-half-plane", "point": [0.02, 0.001], "normal": [0.1, 1.0]},
-    # far narrower and sharper than an element, its top where the corner is
-    "bump": {
-        "kind": "beam-function",
-        "axis": "x",
-        "coefficients": [CORNER[1] - STEEP * CORNER[0] ** 2, 2.0 * STEEP * CORNER[0], -STEEP],
-        "range": [CORNER[0] - 0.006, CORNER[0] + 0.006],
-        "side": "above",
-    },
-}
-
-
 def test_a_line_in_pieces_that_go_on_straight_is_one_line():
     scene = arch(edge="line")
     pieces = tuple((x * LENGTH, 0.0) for x in (-0.1, 0.2, 0.61, 0.7, 3.0))

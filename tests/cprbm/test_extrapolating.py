@@ -7,8 +7,6 @@ import cprbm
 from cprbm import Settings
 from tests.cprbm.scenes import hinge
 
-STATIONS = [0.1 * k for k in range(1, 13)]
-
 
 def test_contact_that_travels_is_the_same_from_many_stations_and_from_one():
     # reference: the hinge's full moment in one step from rest

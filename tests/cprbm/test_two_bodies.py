@@ -7,7 +7,6 @@ import cprbm
 from cprbm_scene import scene_from
 from tests.cprbm.scenes import MODULUS, THICKNESS, WIDTH
 
-STEP = 1e-6
 LOADS = {"P": 0.31, "M": 0.0137}
 REACTIONS = ("R.reaction", "S.reaction", "S.reaction_moment")
 MOTIONS = ("B.displacement", "D.displacement", "left.rotation", "right.rotation")
