@@ -33,6 +33,7 @@ from cprbm.contact import (
 )
 from cprbm.equilibrium.contact_gaps import as_point, joints_of, minima
 from cprbm.equilibrium.contact_set import (
+    ISOLATED,
     Touched,
     arc_of,
     passed_through,
@@ -47,9 +48,6 @@ from cprbm_scene.answer import Array, Flags, Ints
 
 ROUNDS = 12
 """Solves under the same targets."""
-
-ISOLATED = 4
-"""Pieces around a moving place without other closed places of the pair."""
 
 LONGEST_RUN = 2
 """Longest run of closed neighbours for a point."""

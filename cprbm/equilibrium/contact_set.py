@@ -1,8 +1,10 @@
 """Newton's method with an active set of contact places.
 
 Every iteration moves the feet, opens pulling places, closes overlapping places, and solves the linear system of the
-closed places.  The first iteration keeps the set: under new targets it is the prediction along the
-path's tangent.  A moving place is an unknown; a closed moving place stands for the fixed places within a piece.
+closed places.  Where more than a few places have a wrong sign, the linearised problem chooses the set
+(:mod:`cprbm.equilibrium.complementary`).  The first iteration keeps the set: under new targets it is the prediction
+along the path's tangent.  A moving place is an unknown; a closed moving place stands for the fixed places within a
+piece.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ import numpy as np
 from cprbm.contact import (
     FINDING,
     Contacts,
+    CurveArrays,
     Geometry,
     Places,
     choose_sides,
@@ -30,17 +33,33 @@ from cprbm.contact import (
     sweeps_any_circle,
     taken,
 )
+from cprbm.equilibrium.columns import contact_terms
+from cprbm.equilibrium.complementary import closed_forces
 from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_of, new_work, pulls, solved_border
-from cprbm.equilibrium.iteration import begin_by_law, begin_iteration, change_set, end_iteration
+from cprbm.equilibrium.iteration import (
+    begin_by_law,
+    begin_iteration,
+    change_set,
+    closable,
+    end_iteration,
+    follow_leaders,
+)
+from cprbm.equilibrium.linear import Numbers, Work, reduced_system
 from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
 
+FEW_CHANGES = 4
+"""Places that change together by their signs; the linearised problem chooses where more have a wrong sign."""
+
 FREE_CHANGES = 12
-"""Iterations with any change of the set; later iterations change one place at a time."""
+"""Iterations with any change of the set where the linearised problem cannot choose; later a single place changes."""
 
 RETURNS = 2
 """Returns of a set after which the iteration counts as a cycle."""
+
+ISOLATED = 4
+"""Pieces around a moving place without other closed places of the pair."""
 
 ARRIVED = 1e-6
 """Largest last change of a moving place, pieces."""
@@ -53,6 +72,9 @@ REACH = 0.1
 
 BEYOND = 0.1
 """Share of the half thicknesses, or of a piece for lines, by which a place is on the other side of a beam."""
+
+Linear = tuple[Array, Numbers, Flags, Array, Array, Array, Work]
+Settling = tuple[CurveArrays, Places, Flags, Array, Array, Array, Ints]
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,17 +199,21 @@ def solve_set(
     settling = curves, places, closed, gaps, curvatures, room, contacts.counters
     begin = begin_iteration if geometry.law is None else partial(begin_by_law, geometry.law)
     settle_near(z, *settling, FINDING)
-    seen: dict[bytes, int] = {}
-    last, free_changes = np.inf, FREE_CHANGES
+    last, seen = np.inf, dict[bytes, int]()
     for iteration in range(1, iterations + 1):
-        most = 0 if iteration == 1 else len(closed) if iteration <= free_changes else 1
-        changed, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
-        if changed:
+        before = closed.copy()
+        most = 0 if iteration == 1 else FEW_CHANGES
+        changes, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
+        if changes > most:
+            chosen = _choose_set(geometry, linear, settling)
+            if chosen and _point_in_length(geometry, places, closed):
+                raise NotConvergedError("a point of contact becomes a length")
+            most = 0 if chosen else len(closed) if iteration <= FREE_CHANGES else 1
+            _, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
             seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
-            if seen[closed.tobytes()] > RETURNS and geometry.joints_alone and iteration <= free_changes:
-                free_changes, seen = iteration, {}
-            elif seen[closed.tobytes()] > RETURNS:
+            if seen[closed.tobytes()] > RETURNS:
                 raise NotConvergedError("the set of closed places returns")
+        changed = bool(np.any(closed != before))
         try:
             factors = factors_of(system, driven, work, bordered)
         except SingularError as singular:
@@ -208,6 +234,32 @@ def solve_set(
                 settled = replace(contacts, places=places, closed=closed)
                 return Touched(replace(start, z=z), settled, factors, gaps, curvatures, iteration)
     raise NotConvergedError(f"{iterations} iterations did not converge")
+
+
+def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> bool:
+    """Close the places that press in the linearised problem and open all others; False where nothing can choose."""
+    z, m, curves, places, closed = linear[0], linear[1], *settling[:3]
+    allowed, beside, depth = closable(curves, places, closed, geometry.columns)
+    leaders = np.arange(len(closed)) + places.shares
+    trial = (allowed | (closed & ~beside))[leaders]
+    columns, gradient = contact_terms(geometry, z, places, trial)
+    bordered, _, reduced = reduced_system(*linear, columns, gradient)
+    own = trial & (places.shares == 0)
+    pressed = closed_forces(bordered, reduced, m.border.size, places.force[own], np.where(closed, 0.0, depth)[own])
+    if pressed is None:
+        return False
+    closed[:] = False
+    closed[own] = pressed
+    follow_leaders(places, closed)
+    return True
+
+
+def _point_in_length(geometry: Geometry, places: Places, closed: Flags) -> bool:
+    """True if a moving place has closed joints nearby."""
+    arcs, joints = arc_of(geometry, places), closed & ~places.moves
+    points = np.flatnonzero(closed & places.moves & ~on_edge(geometry.arrays, places))
+    near = np.abs(arcs[joints, None] - arcs[points]) < ISOLATED * geometry.arrays.span[places.piece[points]]
+    return bool(np.any(near & (places.pair[joints, None] == places.pair[points])))
 
 
 def arc_of(geometry: Geometry, places: Places) -> Array:

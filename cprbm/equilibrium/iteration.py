@@ -26,28 +26,35 @@ LONGEST_MOVE = 2.0
 @compiled
 def change_set(
     curves: CurveArrays, places: Places, closed: Flags, gaps: Array, pairs: Ints, most: int
-) -> bool:  # pragma: no cover
-    """Close overlapping places and open pulling places; True if the set changed.
+) -> int:  # pragma: no cover
+    """Close overlapping places and open pulling places; the number of places with a wrong sign.
 
-    With more changes than ``most`` only the worst overlap closes, or without overlaps the largest pull opens.
-    ``pairs`` (pairs, 2) holds the numbers of both curves of every pair.
+    With more than ``most`` such places nothing changes; with ``most`` = 1 the worst overlap closes, or without overlaps
+    the largest pull opens.  ``pairs`` (pairs, 2) holds the numbers of both curves of every pair.
     """
     opens, closes, gap = _wanted(curves, places, closed, gaps, pairs)
-    if np.sum(opens) + np.sum(closes) > most:
+    count = int(np.sum(opens) + np.sum(closes))
+    if count > most == 1:
         worst, any_closes, least = -1, np.any(closes), np.inf
         for k in range(closed.size):
             value = gap[k] if any_closes else places.force[k]
             if (closes[k] if any_closes else opens[k]) and value < least:
                 worst, least = k, value
+        closed[worst] = closes[worst]
+    elif count <= most:
         for k in range(closed.size):
-            opens[k], closes[k] = opens[k] and k == worst, closes[k] and k == worst
-    for k in range(closed.size):
-        closed[k] = closes[k] or (closed[k] and not opens[k])
+            closed[k] = closes[k] or (closed[k] and not opens[k])
+    follow_leaders(places, closed)
+    return count
+
+
+@compiled
+def follow_leaders(places: Places, closed: Flags) -> None:  # pragma: no cover
+    """Places with a shared force follow the places that have the force; open places lose their force."""
     for k in range(closed.size):
         closed[k] = closed[k + places.shares[k]]
         if not closed[k]:
             places.force[k] = 0.0
-    return bool(np.any(opens) or np.any(closes))
 
 
 @compiled
@@ -57,13 +64,25 @@ def _wanted(
     """Places that should open, places that should close, and gaps with those of sharing places added."""
     count = closed.size
     opens, closes, gap = np.zeros(count, np.bool_), np.zeros(count, np.bool_), gaps.copy()
-    beside, depth = beside_points(curves, places, closed)
+    allowed, beside, depth = closable(curves, places, closed, pairs)
     for k in range(count):
         if places.shares[k] != 0:
             gap[k + places.shares[k]] += gaps[k]
     for k in range(count):
-        if places.shares[k] != 0:
-            continue
+        if places.shares[k] == 0:
+            opens[k] = closed[k] and (places.force[k] < 0.0 or beside[k])
+            closes[k] = allowed[k] and not closed[k] and gap[k] < -OVERLAP - depth[k]
+    return opens, closes, gap
+
+
+@compiled
+def closable(
+    curves: CurveArrays, places: Places, closed: Flags, pairs: Ints
+) -> tuple[Flags, Flags, Array]:  # pragma: no cover
+    """Places that may be closed, places for which another place stands, and allowed overlaps."""
+    beside, depth = beside_points(curves, places, closed)
+    allowed = np.zeros(closed.size, np.bool_)
+    for k in range(closed.size):
         thick = curves.thickness[places.piece[k]] + curves.thickness[places.foot[k]] > 0.0
         # a corner is a place of its own, but a round end of a beam presses on the corner by the end's place
         end = places.xi[k] == 0.0 and places.piece[k] == curves.first[places.curve[k]]
@@ -71,15 +90,13 @@ def _wanted(
         at_corner = curves.corner[places.foot[k]] == CORNER and places.at_point[k]
         on_bend = curves.corner[places.foot[k]] == BEND and not places.moves[k]
         beside[k] = beside[k] or ((at_corner or on_bend) and not end)
-        opens[k] = closed[k] and (places.force[k] < 0.0 or beside[k])
-        closes[k] = not closed[k] and not beside[k] and gap[k] < -OVERLAP - depth[k]
         # a foot on an end of the first curve is the foot of that end's own place
         second = places.curve[k] != pairs[places.pair[k], 0]
         last = places.curve[k] == places.other[k] and places.xi[k] == 1.0
         doubled = places.at_point[k] and (second or last)
         left = end and curves.angle[places.piece[k]] < 0 and not curves.is_point[places.curve[k]]
-        closes[k] = closes[k] and (thick or not places.at_point[k]) and not doubled and not left
-    return opens, closes, gap
+        allowed[k] = not beside[k] and (thick or not places.at_point[k]) and not doubled and not left
+    return allowed, beside, depth
 
 
 @compiled
@@ -138,17 +155,17 @@ def begin_iteration(
     counters: Ints,
     pairs: Ints,
     most: int,
-) -> tuple[bool, Bordered, Array, Array]:  # pragma: no cover
-    """Whether the set changed, the border, the chains' solution for minus the gradient, and the border's load.
+) -> tuple[int, Bordered, Array, Array]:  # pragma: no cover
+    """Changes of the set, the border, the chains' solution for minus the gradient, and the border's load.
 
-    Settles the places that may close; changes the set unless ``most`` is 0.
+    Settles the places that may close; the set stays with more changes than ``most``, and unless ``most`` is positive.
     """
     settle_near(z, curves, places, closed, gaps, curvatures, room, counters, 0)
-    changed = most > 0 and change_set(curves, places, closed, gaps, pairs, most)
+    changes = change_set(curves, places, closed, gaps, pairs, most) if most > 0 else 0
     gradient = np.zeros(z.size)
     columns = contact_columns(z, curves, places, closed, gradient)
     bordered, load, reduced = reduced_system(z, m, driven, target, stiffness, anchor, work, columns, gradient)
-    return changed, bordered, load, reduced
+    return changes, bordered, load, reduced
 
 
 def begin_by_law(
@@ -169,15 +186,15 @@ def begin_by_law(
     counters: Ints,
     pairs: Ints,
     most: int,
-) -> tuple[bool, Bordered, Array, Array]:
+) -> tuple[int, Bordered, Array, Array]:
     """The same as :func:`begin_iteration` where a ``law`` measures gaps."""
     settle_near(z, curves, places, closed, gaps, curvatures, room, counters, 0)
     law.write_gaps(z, places, gaps)
-    changed = most > 0 and change_set(curves, places, closed, gaps, pairs, most)
+    changes = change_set(curves, places, closed, gaps, pairs, most) if most > 0 else 0
     gradient = np.zeros(z.size)
     columns = law.columns(z, places, closed, gradient)
     bordered, load, reduced = reduced_system(z, m, driven, target, stiffness, anchor, work, columns, gradient)
-    return changed, bordered, load, reduced
+    return changes, bordered, load, reduced
 
 
 @compiled
