@@ -39,7 +39,7 @@ def test_the_hinge_reads_as_it_is_written():
     assert scene.body_of("D") == "BD"
     assert scene.stages[0].stations[-1] == 0.67
     assert scene.probes[0].name == "B.displacement"
-    assert scene.contacts["contact"].paper.related["beam1"].x == (0.01975, 0.03225)
+    assert scene.contacts["contact"].paper.related["beam1"].x == pytest.approx((0.01975, 0.03225), rel=1e-15)
     with pytest.raises(KeyError):
         scene.body_of("nowhere")
 
