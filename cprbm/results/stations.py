@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-
-import numpy as np
 
 from cprbm.chain import add_rows, mechanism_of
 from cprbm.contact import contact_geometry
@@ -21,21 +18,17 @@ from cprbm.paper.contacts import paper_geometry, refuse_contacts
 from cprbm.paper.crossing import Crossings, crossings_of
 from cprbm.paper.remarks import Remarks
 from cprbm.results.contacts import states_of_contacts, touching_places
-from cprbm.results.forces import point_forces
-from cprbm.results.probes import displacement, probe_values
-from cprbm.results.statics import beam_state
-from cprbm.results.view import View
+from cprbm.results.probes import probe_values
+from cprbm.results.statics import Statics
+from cprbm.results.view import Plan, View
 from cprbm.settings import Settings
 from cprbm_scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Scene, Shape, Stage, StationAnswer
-from cprbm_scene.answer import Array, PointForces, frozen_array
+from cprbm_scene.answer import PointForces, frozen_array
 from cprbm_scene.progress import station_reached
 from cprbm_scene.threads import one_thread
 
 LOGGER = logging.getLogger("cprbm.stations")
 """Its first part is the solver's name in the message of progress."""
-
-LINE_POINTS = 2
-"""Points of a shape per link."""
 
 PLAIN = (
     "elements are longer than the bends that the forces in them allow: the values are those of the plain chain, "
@@ -85,6 +78,7 @@ class Run:
             refuse_contacts(self.scene)
             every, geometry = geometry, paper_geometry(mechanism, geometry, self.settings.degree)
             self.crossings = crossings_of(mechanism, every)
+        self.plan = Plan(mechanism)
         return system_of(mechanism, geometry)
 
     def answer(self) -> Answer:
@@ -205,13 +199,14 @@ class Run:
 
     def _station(self, driver: Driver, stage: Stage, station: float, certificate: Certificate) -> StationAnswer:
         """Answer at a station."""
-        view = View(driver.solved, dict(self.values), self.scene.theory == "shear", self.closing)
-        units = self.system.mechanism.units
+        view = View(driver.solved, self.plan, dict(self.values), self.closing)
+        units, statics = self.system.mechanism.units, Statics(view)
         touching = touching_places(view)
         # the paper's contacts press on joints and turn links: no places of the line carry the forces
         told = self.crossings is None
+        parts = self.system.mechanism.bodies.keys() | self.scene.beams.keys()
         forces = PointForces.collected(
-            point_forces(view) if told else (),
+            (force for force in statics.forces if told and force.target in parts),
             units.length,
             units.force,
             (float(units.origin[0]), float(units.origin[1])),
@@ -219,36 +214,23 @@ class Run:
         return StationAnswer(
             stage=stage.name,
             value=station,
-            values=probe_values(view, stage.name),
-            shapes=_shapes(view),
+            values=probe_values(statics, stage.name),
+            shapes={beam: _shape(view, beam) for beam in self.scene.beams},
             touching=touching,
             certificate=certificate,
             branch=len(self.critical),
-            beams={beam: beam_state(view, beam) for beam in self.scene.beams if told},
+            beams={beam: statics.state(beam) for beam in self.scene.beams if told},
             forces=forces,
             contacts=states_of_contacts(view, forces, touching),
-            bodies=_motions(view),
+            bodies={
+                name: frozen_array(view.z[first : first + 3] * (units.length, units.length, 1.0))
+                for name, first in self.system.mechanism.bodies.items()
+            },
         )
 
 
-def _shapes(view: View) -> Mapping[str, Shape]:
-    """Deformed neutral lines, m."""
-    units, found = view.mechanism.units, {}
-    for beam, chain in view.mechanism.chains.items():
-        s = np.interp(np.arange(LINE_POINTS * chain.links + 1) / LINE_POINTS, np.arange(chain.links + 1), chain.arcs)
-        places = view.line(beam, s) * units.length + units.origin
-        found[beam] = Shape(frozen_array(s * units.length), frozen_array(places[:, 0]), frozen_array(places[:, 1]))
-    return found
-
-
-def _motions(view: View) -> Mapping[str, Array]:
-    """Displacement of the first point, m, and rotation of every moving body, (3,)."""
-    return {
-        name: frozen_array(
-            (
-                *displacement(view, next(iter(view.scene.bodies[name].points))),
-                view.mechanism.rotation(name).value(view.z),
-            )
-        )
-        for name in view.mechanism.bodies
-    }
+def _shape(view: View, beam: str) -> Shape:
+    """Deformed neutral line, m."""
+    units, samples = view.mechanism.units, view.plan.samples[beam]
+    places = view.lines[beam][samples.shape] * units.length + units.origin
+    return Shape(*map(frozen_array, (samples.s[samples.shape] * units.length, *places.T)))
