@@ -10,7 +10,8 @@ from math import nan
 
 import numpy as np
 
-from cprbm.chain.rows import AXES, END, ends_of, unit_direction
+from cprbm.chain.mechanism import AXES
+from cprbm.chain.rows import END, ends_of, unit_direction
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.results.view import View
 from cprbm_scene import FreeEnd

@@ -19,8 +19,7 @@ With shear α differs from θ by the angle of (1 + N/EA, Q/GA_s); in the other t
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,27 +29,17 @@ from cprbm_scene.answer import Array, BeamState, PointForce, frozen_array
 from cprbm_scene.statement import BeamForce, BeamMoment, DistributedLoad
 
 
-@dataclass(frozen=True, eq=False)
-class Cuts:
-    """Cuts of one beam at its samples: ``n`` (k, 2); ``M``, ``N``, ``Q``, ``angle``, ``section`` (k,).
+class Cuts(NamedTuple):
+    """Cuts of one beam at its samples: N, Q, M, α and θ (k,).
 
     At a load they are limits from the end's side, at both ends limits from inside.
     """
 
-    n: Array
+    N: Array
+    Q: Array
     M: Array
     angle: Array
     section: Array
-
-    @cached_property
-    def N(self) -> Array:
-        """Normal force along the tangent."""
-        return _turned(self.n, self.angle)[0]
-
-    @cached_property
-    def Q(self) -> Array:
-        """Shear force along the left normal of the tangent."""
-        return _turned(self.n, self.angle)[1]
 
 
 class Statics:
@@ -121,7 +110,7 @@ class Statics:
         if view.scene.theory == "shear":
             N, Q = _turned(n, section)
             angle = section + np.arctan2(Q / samples.shearing, 1.0 + N / (samples.chain.section.young * samples.area))
-        return Cuts(n, M, angle, section)
+        return Cuts(*_turned(n, angle), M, angle, section)
 
     def _carried(self, load: DistributedLoad) -> tuple[Array, Array]:
         """Length (k,) of a distributed load before the cuts, and the integral (k, 2) of the position there."""

@@ -15,8 +15,7 @@ from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.system import System, system_of
 from cprbm.paper.contacts import paper_geometry, refuse_contacts
-from cprbm.paper.crossing import Crossings, crossings_of
-from cprbm.paper.remarks import Remarks
+from cprbm.paper.inspection import Inspection
 from cprbm.results.contacts import states_of_contacts, touching_places
 from cprbm.results.probes import probe_values
 from cprbm.results.statics import Statics
@@ -46,7 +45,7 @@ class Run:
         values: present values (SI) of loads and drives.
         closing: values (SI) at which contacts first closed.
         stations, events, critical, gone_over, notes: of the answer.
-        remarks, crossings: of contacts in the formulation ``paper``.
+        inspection: of contacts in the formulation ``paper``.
     """
 
     scene: Scene
@@ -59,8 +58,7 @@ class Run:
     critical: list[Critical] = field(default_factory=list)
     gone_over: list[GoneOver] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-    remarks: Remarks = field(default_factory=Remarks)
-    crossings: Crossings | None = None
+    inspection: Inspection | None = None
     seconds: float = 0.0
 
     def __post_init__(self) -> None:
@@ -77,7 +75,7 @@ class Run:
         if self.settings.formulation == "paper" and geometry is not None:
             refuse_contacts(self.scene)
             every, geometry = geometry, paper_geometry(mechanism, geometry, self.settings.degree)
-            self.crossings = crossings_of(mechanism, every)
+            self.inspection = Inspection(mechanism, every)
         self.plan = Plan(mechanism)
         return system_of(mechanism, geometry)
 
@@ -95,8 +93,8 @@ class Run:
                 ending, sentence = self._solve()
         touched = {name for station in self.stations for name in station.touching}
         never = [f"contact '{name}' never closed at a station" for name in self.scene.contacts if name not in touched]
-        if self.settings.formulation == "paper" and self.driver is not None:
-            self.notes += self.remarks.sentences(self.driver.solved)
+        if self.inspection is not None and self.driver is not None:
+            self.notes += self.inspection.sentences(self.driver.solved)
         return Answer(
             solver="cprbm",
             scene=self.scene.name,
@@ -150,11 +148,11 @@ class Run:
         certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent, driver.acting)
         if ending is not Ending.COMPLETED:
             raise StepError(ending, certificate.failures[0])
-        if self.crossings is not None:
-            crossed = self.crossings.found(driver.solved)
+        if self.inspection is not None:
+            crossed = self.inspection.crossed(driver.solved)
             if crossed:
                 raise StepError(Ending.BEAMS_CROSSED, crossed)
-            self.remarks.look(driver.solved, f"{stage.name} {station:.6g}")
+            self.inspection.look(driver.solved, f"{stage.name} {station:.6g}")
         self.stations.append(self._station(driver, stage, station, certificate))
         station_reached(LOGGER, self.scene, len(self.stations), self.stations[-1])
 
@@ -203,7 +201,7 @@ class Run:
         units, statics = self.system.mechanism.units, Statics(view)
         touching = touching_places(view)
         # the paper's contacts press on joints and turn links: no places of the line carry the forces
-        told = self.crossings is None
+        told = self.inspection is None
         parts = self.system.mechanism.bodies.keys() | self.scene.beams.keys()
         forces = PointForces.collected(
             (force for force in statics.forces if told and force.target in parts),
