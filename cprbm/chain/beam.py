@@ -68,13 +68,15 @@ class ChainUnits:
 class Section:
     """Rectangular section of a ``beam`` of a given ``length``; ``unit`` is the unit of length, m.
 
-    ``young`` is Young's modulus, in units of moment and length.
+    ``young`` is Young's modulus, ``shearing`` G times the share of the area that carries shear, in units of moment and
+    length.
     """
 
     beam: Beam
     length: float
     unit: float
     young: float
+    shearing: float
 
     def thickness(self, s: Array) -> Array:
         """Thickness at arc lengths ``s`` (k,)."""
@@ -193,7 +195,7 @@ def beam_chain(
     arcs = np.concatenate([[0.0], middles, [length]])
     young = material.youngs_modulus * units.length**3 / units.moment
     shearing = 0.5 * young / (1.0 + material.poisson_ratio) * SHEAR_COEFFICIENT
-    section, knots = Section(beam, length, units.length, young), beam.knots * length
+    section, knots = Section(beam, length, units.length, young, shearing), beam.knots * length
     per_area = _integrals(lambda s: 1.0 / section.area(s), arcs, knots) / np.diff(arcs)
     tangents = tangents_on(beam.curve, borders / length)
     angles = np.unwrap(np.arctan2(tangents[:, 1], tangents[:, 0]))
