@@ -64,7 +64,7 @@ def softest(solved: Solved) -> Mode:
         value, vector = float(values[place]), vectors[:, place]
     else:
         operator = LinearOperator((count, count), matvec=compliance, dtype=np.float64)
-        start = root * np.sin(1.0 + np.cumsum(system.metric))
+        start = root * (1.0 + np.cumsum(system.metric))
         try:
             values, vectors = eigsh(operator, k=1, which=which, v0=start, tol=ACCURACY, ncv=VECTORS)
         except ArpackNoConvergence:
