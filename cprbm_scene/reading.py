@@ -1,4 +1,8 @@
-"""TOML in; a :class:`~cprbm_scene.Scene` or an :class:`~cprbm_scene.OffsetQuestion` out, or all mistakes."""
+"""TOML in; a :class:`~cprbm_scene.Scene` or an :class:`~cprbm_scene.OffsetQuestion` out, or all mistakes.
+
+The JSON schema of a scene file follows from the records: editors complete keys and mark mistakes with it.  Rules
+between records need the reader.
+"""
 
 from __future__ import annotations
 
@@ -235,3 +239,11 @@ def _tuples(value: Any) -> Any:  # noqa: ANN401 - whatever TOML holds
     if isinstance(value, dict):
         return {key: _tuples(item) for key, item in value.items()}
     return tuple(_tuples(item) for item in value) if isinstance(value, list) else value
+
+
+def schema() -> dict[str, Any]:
+    """The JSON schema of a scene file as plain data, in the dialect that editors of TOML know."""
+    found = Scene.model_json_schema(mode="validation")
+    # the name of the file is no key of the file
+    found["properties"].pop("file")
+    return {"$schema": "http://json-schema.org/draft-07/schema#", **found, "title": "Scene"}

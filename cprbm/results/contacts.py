@@ -23,8 +23,8 @@ from cprbm.equilibrium.columns import contact_terms
 from cprbm.results.view import View
 from cprbm_scene import FreeEnd
 from cprbm_scene.answer import Array, ContactState, PointForce, PointForces, frozen_array
-from cprbm_scene.contact_states import contact_states
 from cprbm_scene.statement import EdgeContact
+from cprbm_scene.stations import contact_states
 
 NO_FORCE = np.zeros(2)
 
