@@ -33,7 +33,7 @@ import numpy as np
 from cprbm.chain.beam import BeamChain, ChainUnits, Theory, beam_chain
 from cprbm_scene import Scene
 from cprbm_scene.answer import Array, Ints
-from cprbm_scene.geometry import arc_length
+from cprbm_scene.curve_records import shape_of
 
 PER_LINK = 5
 """Unknowns of a link: force (2), angle, position of the node behind it (2)."""
@@ -230,7 +230,7 @@ def mechanism_of(scene: Scene, links: Mapping[str, int], theory: Theory, *, corr
 
 def _units(scene: Scene) -> ChainUnits:
     """Units: the longest beam, the largest EI over this length, the middle of the beams' ends."""
-    length = max(arc_length(beam.curve) for beam in scene.beams.values())
+    length = max(shape_of(beam.curve).length for beam in scene.beams.values())
     rigidity = max(
         scene.materials[beam.material].youngs_modulus
         * float(np.max(beam.width_at(beam.knots) * beam.thickness_at(beam.knots) ** 3))

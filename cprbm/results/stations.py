@@ -23,7 +23,7 @@ from cprbm.results.view import Plan, View
 from cprbm.settings import Settings
 from cprbm_scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Scene, Shape, Stage, StationAnswer
 from cprbm_scene.answer import PointForces, frozen_array
-from cprbm_scene.progress import station_reached
+from cprbm_scene.stations import station_reached
 from cprbm_scene.threads import one_thread
 
 LOGGER = logging.getLogger("cprbm.stations")
