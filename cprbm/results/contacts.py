@@ -45,7 +45,7 @@ ZONE = 3
 """Closed joints from which a contact has a length: two neighbours share the force of a point."""
 
 JOINTS = 8
-"""Outermost places that share P, m, in a zone of at least twice as many."""
+"""Outermost places that share P, m, in a zone of at least twice as many without a clamp."""
 
 INNER = 3
 """Joints further in that tell q."""
@@ -132,25 +132,26 @@ def contact_ends(view: View, contact: str) -> list[float]:
     forces = np.array([float(np.hypot(*each.forces[0])) for each in found])
     begin, end = min([low, *clamps]), max([high, *clamps])
     return [
-        begin if begin in held else low + _inward(places - low, forces, span),
-        end if end in held else high - _inward(high - places[::-1], forces[::-1], span),
+        begin if begin in held else low + _inward(places - low, forces, span, even=end in held),
+        end if end in held else high - _inward(high - places[::-1], forces[::-1], span, even=begin in held),
     ]
 
 
-def _inward(apart: Array, forces: Array, span: float) -> float:
+def _inward(apart: Array, forces: Array, span: float, *, even: bool) -> float:
     """Distance of the zone's end from the outermost place, into the zone.
 
     Args:
         apart: d_i, ascending.
         forces: F_i.
         span: length of a link.
+        even: whether a clamp holds the other end of the zone, with even forces beside.
     """
     count = int(np.argmax(np.append(np.diff(apart) > APART * span, True))) + 1
     if count < ZONE:
         return 0.0
-    m = min(JOINTS, count // 2)
+    m = min(JOINTS, max(1, count - INNER) if even else count // 2)
     border = 0.5 * float(apart[m - 1] + apart[m])
-    q = float(forces[m : max(m + 1, min(m + INNER, count - m))].mean()) / span
+    q = float(forces[m : max(m + 1, min(m + INNER, count if even else count - m))].mean()) / span
     force, moment = float(forces[:m].sum()), float(forces[:m] @ (border - apart[:m]))
     square = force * force - 2.0 * q * moment
     return border - 2.0 * moment / (force + sqrt(square)) if square > 0.0 else 0.0

@@ -1,0 +1,61 @@
+"""A stack of four leaves without gap: the closed set has hundreds of places with hardly any gap and force."""
+
+import pytest
+
+import cprbm
+from cprbm_scene import scene_from
+
+LEAVES = (200.0, 160.0, 120.0, 80.0)
+
+
+def leaves(overlap):
+    """Leaves side by side, clamped together and loaded at the tip of the longest; the second overlaps the first."""
+    heights = [float(k) - overlap * (k == 1) for k in range(len(LEAVES))]
+    free, tip = {"joint": "free"}, {"joint": "weld", "point": "T"}
+    return scene_from(
+        {
+            "name": "leaves",
+            "units": {"length": "mm", "force": "N", "angle": "deg", "stress": "MPa"},
+            "materials": {"steel": {"youngs_modulus": 200000.0, "poisson_ratio": 0.3}},
+            "bodies": {
+                "ground": {"motion": "fixed", "points": {f"A{k}": [0.0, y] for k, y in enumerate(heights)}},
+                "tip": {"motion": "free", "points": {"T": [200.0, 0.0]}},
+            },
+            "beams": {
+                f"leaf{k}": {
+                    "curve": {"kind": "line", "start": [0.0, y], "end": [length, y]},
+                    "thickness": 1.0,
+                    "width": 20.0,
+                    "material": "steel",
+                    "start": {"joint": "weld", "point": f"A{k}"},
+                    "end": free if k else tip,
+                }
+                for k, (y, length) in enumerate(zip(heights, LEAVES, strict=True))
+            },
+            "contacts": {f"c{k}": {"kind": "beam-beam", "between": [f"leaf{k}", f"leaf{k + 1}"]} for k in range(3)},
+            "loads": {"F": {"kind": "force", "point": "T", "direction": [0.0, 1.0]}},
+            "stages": [{"name": "load", "steps": "F", "stations": [0.1, 1.0]}],
+            "probes": [
+                {"of": "T", "quantity": "displacement"},
+                *({"of": f"c{k}", "quantity": "force"} for k in range(3)),
+            ],
+        }
+    )
+
+
+@pytest.mark.parametrize(("links", "overlap"), [(46, 0.0), (80, 0.0), (60, 0.0009)])
+def test_leaves_share_the_load(links, overlap):
+    # quadratic programme of four Euler-Bernoulli leaves: 2.4132 mm/N and forces of 0.992, 0.962 and 0.842 F
+    answer = cprbm.answer(leaves(0.0), cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    values = answer.stations[-1].values
+    assert values["T.displacement"][1] == pytest.approx(2.4132e-3, rel=0.01)
+    assert [values[f"c{k}.force"][0] for k in range(3)] == pytest.approx([0.992, 0.962, 0.842], rel=0.01)
+
+
+@pytest.mark.parametrize("links", [40, 60])
+def test_leaves_that_overlap_settle(links):
+    # clamps carry the overlap of 0.9 µm; the deflection is that of the leaves without overlap
+    answer = cprbm.answer(leaves(9e-4), cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    assert answer.stations[-1].values["T.displacement"][1] == pytest.approx(2.4132e-3, rel=0.01)
