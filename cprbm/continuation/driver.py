@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cache, partial
+from functools import partial
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -30,6 +30,7 @@ from cprbm.continuation.closing import (
     first_change,
     kept_open,
     may_close,
+    pressing,
     pressing_names,
 )
 from cprbm.continuation.critical import CriticalPoint, contact_ends, critical_point, opened
@@ -156,10 +157,17 @@ class Driver:
         begin = self.reached
         largest = min(CAREFUL_TURN, self.settings.largest_turn) if careful else self.settings.largest_turn
 
-        @cache  # events ask again for the states at the ends of the step and at the located share
+        known, closed = dict[tuple[float, frozenset[int]], Solved](), pressing(self.solved)
+
         def solve(share: float, pairs: frozenset[int]) -> Solved:
-            target = self._held(way.target(begin + share * (t - begin)))
-            return self._equilibrium(kept_open(replace(self.solved.state, target=target), pairs))
+            if (share, pairs) not in known:
+                target = self._held(way.target(begin + share * (t - begin)))
+                # other contacts may keep a state on another branch
+                alike = [at for (at, apart), one in known.items() if apart == pairs and pressing(one) == closed]
+                near = min(alike, key=lambda at: abs(at - share), default=0.0)
+                state = known[near, pairs].state if abs(near - share) < share else kept_open(self.solved.state, pairs)
+                known[share, pairs] = self._equilibrium(replace(state, target=target))
+            return known[share, pairs]
 
         try:
             solved = solve(1.0, frozenset())
