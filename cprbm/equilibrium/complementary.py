@@ -1,4 +1,4 @@
-"""Closed set of the linearised problem: a linear complementarity problem in the contact forces.
+"""Closed set of the linearised problem, a linear complementarity problem in the contact forces.
 
 =======  ====================================================================================
 symbol   meaning
@@ -56,5 +56,5 @@ def closed_forces(bordered: Bordered, reduced: Array, size: int, forces: Array, 
         q = reduced[mine] - beside @ solved[:, -1] - M @ forces + room
         return np.asarray(nnls(L.T, -solve_triangular(L, q, lower=True))[0] > 0.0)
     except (SingularError, LinAlgError, ValueError, RuntimeError):
-        # no minimum without contacts, numbers that are not finite, or a least-squares solution that was not found
+        # no minimum without contacts, numbers without a limit, or no least-squares solution
         return None

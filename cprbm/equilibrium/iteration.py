@@ -79,7 +79,7 @@ def _wanted(
 def closable(
     curves: CurveArrays, places: Places, closed: Flags, pairs: Ints
 ) -> tuple[Flags, Flags, Array]:  # pragma: no cover
-    """Places that may be closed, places for which another place stands, and allowed overlaps."""
+    """Places that may be closed, places beside a point of contact, and allowed overlaps."""
     beside, depth = beside_points(curves, places, closed)
     allowed = np.zeros(closed.size, np.bool_)
     for k in range(closed.size):
