@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from comparisons import sentences as said
 from comparisons.audit import Audit, audit
 from comparisons.branch_words import BranchVerdict, branch_verdicts
-from comparisons.pairing import Runs
 from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
+from comparisons.runs import Runs
 from comparisons.tolerances.result import Tolerance
 from comparisons.verdict.completeness import complete_part, ends_at_critical
 from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from comparisons.pairing import Runs
 from comparisons.quantities import norm
+from comparisons.runs import Runs
 from comparisons.stations import station_of
 from comparisons.verdict.rows import Row
 from cprbm_scene import Answer

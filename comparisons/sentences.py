@@ -9,7 +9,7 @@ from functools import partial
 
 from comparisons.display_units import at_station, distance_text, with_unit
 from comparisons.formats import number, percent
-from comparisons.pairing import Runs
+from comparisons.runs import Runs
 from comparisons.verdict.calibration import SOLVERS, error_ratios, tally, true_errors
 from comparisons.verdict.completeness import problems
 from comparisons.verdict.events import ClosingRow, CriticalRow, mechanism

@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from comparisons.cli.output import Steps
     from comparisons.crew import Crew
     from comparisons.offset_verdict import OffsetComparison
-    from comparisons.pairing import Runs, Solvers
+    from comparisons.pairing import Solvers
+    from comparisons.runs import Runs
     from comparisons.tolerances.result import Tolerance
     from cprbm_scene import Question
 

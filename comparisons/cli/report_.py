@@ -13,9 +13,9 @@ from comparisons.cli.completion import candidates
 from comparisons.cli.options import exactness, family_sizes, folder, output_options, parameters, sized, variants
 
 if TYPE_CHECKING:
-    from comparisons.pairing import Runs
     from comparisons.present.columns import Section
     from comparisons.present.page import Chapter
+    from comparisons.runs import Runs
 
 PARTS = ("convergence", "times")
 

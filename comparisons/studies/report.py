@@ -12,9 +12,10 @@ from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
 from comparisons.crew import Crew
 from comparisons.offset_verdict import OffsetComparison, compared_offset
-from comparisons.pairing import Runs, Solvers, paired
+from comparisons.pairing import Solvers, paired
 from comparisons.present.columns import Figure, Section
 from comparisons.present.page import figures_of
+from comparisons.runs import Runs
 from comparisons.studies import table1, table1_result
 from comparisons.studies.convergence import convergence_section
 from cprbm_scene import OffsetQuestion, Question, SceneError

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from comparisons.pairing import Uncertainties
+from comparisons.runs import Uncertainties
 from comparisons.stations import station_of
 from comparisons.verdict.uncertainty import Error, error, limit
 from cprbm_scene import Answer, Probe, Scene, StationAnswer

@@ -17,8 +17,9 @@ from dataclasses import dataclass, field, replace
 
 from comparisons.choices import Choices
 from comparisons.crew import Crew, Job
-from comparisons.pairing import Runs, Solvers, exact_or_why, in_other_theory, paired, with_solid
+from comparisons.pairing import Solvers, exact_or_why, in_other_theory, paired, with_solid
 from comparisons.reactions import perturbed_scene
+from comparisons.runs import Runs
 from comparisons.sentences import problem_sentences
 from comparisons.store import AnswerMemory
 from comparisons.tolerances.limits import Limits, limits_of

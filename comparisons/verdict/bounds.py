@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from comparisons.pairing import Runs
+from comparisons.runs import Runs
 from comparisons.verdict.uncertainty import Error, error
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict

@@ -23,8 +23,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from comparisons.pairing import Runs
 from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, norm, unit_of
+from comparisons.runs import Runs
 from comparisons.stations import station_of
 from comparisons.verdict.bounds import Bounds, bounds_of
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources

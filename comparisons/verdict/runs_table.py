@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from comparisons.pairing import Runs
+from comparisons.runs import Runs
 from comparisons.verdict.completeness import Where, complete_stations, ends_at_critical, problems, stations_of
 from cprbm_scene import Answer, Scene, StationAnswer
 

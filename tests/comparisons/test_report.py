@@ -15,9 +15,10 @@ from comparisons.bench import brief
 from comparisons.case import Comparison, Verdict, compare
 from comparisons.choices import Choices
 from comparisons.cli.main import run
-from comparisons.pairing import Runs, Solvers, cprbm_answer, fea_answer, paired
+from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
 from comparisons.present import page, stepper
 from comparisons.present.columns import Section
+from comparisons.runs import Runs
 from comparisons.studies import report
 from comparisons.verdict.words import Word
 from comparisons.writing import write

@@ -10,7 +10,8 @@ import pytest
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.crew import ALONE
-from comparisons.pairing import Runs, Solvers, solid_answer
+from comparisons.pairing import Solvers, solid_answer
+from comparisons.runs import Runs
 from comparisons.solid_limits import solid_limit
 from comparisons.tolerances.result import LARGEST
 from comparisons.tolerances.search import runs_within, solve_within

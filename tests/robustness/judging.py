@@ -30,8 +30,9 @@ from dataclasses import dataclass, field, replace
 from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
 from comparisons.formats import number
-from comparisons.pairing import Runs, Solvers, paired
+from comparisons.pairing import Solvers, paired
 from comparisons.quantities import norm
+from comparisons.runs import Runs
 from comparisons.stations import station_of
 from comparisons.verdict.bounds import Bounds
 from comparisons.verdict.calibration import EXACT_FACTOR, true_errors

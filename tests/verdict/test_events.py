@@ -10,7 +10,8 @@ from math import degrees, radians
 import pytest
 
 from comparisons.choices import Choices
-from comparisons.pairing import Runs, Solvers, paired
+from comparisons.pairing import Solvers, paired
+from comparisons.runs import Runs
 from comparisons.stages import begins_at, event_tolerance, span_of
 from comparisons.verdict.events import critical_rows
 from comparisons.verdict.runs_table import RunsTable
