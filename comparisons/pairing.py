@@ -26,7 +26,7 @@ use the reaction.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
@@ -75,15 +75,11 @@ def cprbm_prepared(scene: Scene, choices: Choices) -> Prepared:
     import cprbm
 
     with _named("links"):
-        settings = cprbm.Settings(links=_plain(choices.links), formulation=choices.formulation)
+        settings = cprbm.Settings(links=choices.links, formulation=choices.formulation)
     theory = choices.theory_of(scene)
     run = cprbm.prepared(scene.model_copy(update={"theory": theory}), settings)
-
-    def answered() -> Answer:
-        answer = run.answer()  # with the theory among the settings, as the finite elements state the theory
-        return replace(answer, settings=frozendict({**answer.settings, "kinematics": theory}))
-
-    return answered
+    # with the theory among the settings, as the finite elements state the theory
+    return lambda: replace(answer := run.answer(), settings=frozendict({**answer.settings, "kinematics": theory}))
 
 
 def fea_answer(scene: Scene, choices: Choices) -> Answer:
@@ -105,7 +101,7 @@ def fea_prepared(scene: Scene, choices: Choices) -> Prepared:
 
     with _named("elements"):
         settings = fea_reference.Settings(
-            elements=_plain(choices.elements),
+            elements=choices.elements,
             kinematics=choices.kinematics_of(scene),
             penetration=choices.penetration,
         )
@@ -118,11 +114,8 @@ def prepared(solver: Solver, scene: Scene, choices: Choices) -> Prepared:
     Raises:
         SceneError: the solver refuses the question.
     """
-    if solver is cprbm_answer:
-        return cprbm_prepared(scene, choices)
-    if solver is fea_answer:
-        return fea_prepared(scene, choices)
-    return lambda: solver(scene, choices)
+    own: dict[Solver, Callable[[Scene, Choices], Prepared]] = {cprbm_answer: cprbm_prepared, fea_answer: fea_prepared}
+    return own[solver](scene, choices) if solver in own else partial(solver, scene, choices)
 
 
 def exact_answer(scene: Scene, choices: Choices) -> Answer:
@@ -138,8 +131,8 @@ def exact_pieces(scene: Scene) -> int:
     inner = [
         len(beam.knots) - 2 + (len(beam.curve.points) - 2 if isinstance(beam.curve, Spline) else 0) for beam in beams
     ]
-    loads = [load for load in scene.loads.values() if not isinstance(load, BodyLoad)]
-    return len(beams) + sum(inner) + len(loads) + len(scene.contacts)
+    loads = sum(not isinstance(load, BodyLoad) for load in scene.loads.values())
+    return len(beams) + sum(inner) + loads + len(scene.contacts)
 
 
 def exact_by_rule(scene: Scene, choices: Choices) -> Answer:
@@ -168,7 +161,7 @@ def solid_answer(scene: Scene, choices: Choices) -> Answer:
     from fea_reference import solid
 
     with _named("elements"):
-        settings = solid.Settings(elements=_plain(choices.elements), across=choices.across)
+        settings = solid.Settings(elements=choices.elements, across=choices.across)
     return solid.answer(scene, settings)
 
 
@@ -360,7 +353,3 @@ def _named(key: str) -> Iterator[None]:
                 for details in error.errors()
             ]
         ) from None
-
-
-def _plain(count: int | Mapping[str, int]) -> int | dict[str, int]:
-    return count if isinstance(count, int) else dict(count)

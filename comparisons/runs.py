@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 from comparisons.choices import Kinematics
 from comparisons.verdict.uncertainty import Error
 from cprbm_scene import Answer
 from cprbm_scene.frozendict import frozendict
 
-COMPARED = ("cprbm", "fea")
-"""Names of the two compared runs."""
+Solver = Literal["cprbm", "fea"]
+SOLVERS: tuple[Solver, ...] = ("cprbm", "fea")
+"""The solvers, and the names of the two compared runs."""
 
 Uncertainties: TypeAlias = Mapping[tuple[str, float, str], Error]
 """Stated uncertainties by stage, station and probe."""

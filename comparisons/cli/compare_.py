@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from logging import NOTSET
 from pathlib import Path
@@ -53,8 +53,8 @@ def command(
     planted: object,
     arguments: tuple[str, ...],
     asking_solid: bool,  # noqa: FBT001 - click passes a keyword
-    links: int | Mapping[str, int],
-    elements: int | Mapping[str, int],
+    links: int | dict[str, int],
+    elements: int | dict[str, int],
     formulation: Literal["auto", "paper"],
     theory: Kinematics | None,
     kinematics: Kinematics | None,

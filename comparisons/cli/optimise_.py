@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal
 
@@ -35,8 +34,8 @@ def command(
     vary: tuple[str, ...],
     starts: int,
     solves: int,
-    links: int | Mapping[str, int],
-    elements: int | Mapping[str, int],
+    links: int | dict[str, int],
+    elements: int | dict[str, int],
     formulation: Literal["auto", "paper"],
     theory: Kinematics | None,
     kinematics: Kinematics | None,

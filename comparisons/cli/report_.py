@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -37,8 +37,8 @@ PARTS = ("convergence", "times")
 def command(
     planted: object,
     arguments: tuple[str, ...],
-    links: int | Mapping[str, int],
-    elements: int | Mapping[str, int],
+    links: int | dict[str, int],
+    elements: int | dict[str, int],
     formulation: Literal["auto", "paper"],
     theory: Kinematics | None,
     kinematics: Kinematics | None,

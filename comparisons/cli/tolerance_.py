@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal
 
@@ -41,8 +40,8 @@ def command(
     sobol: bool,  # noqa: FBT001 - click passes a keyword
     limits: Path | None,
     solver: Literal["cprbm", "fea"],
-    links: int | Mapping[str, int],
-    elements: int | Mapping[str, int],
+    links: int | dict[str, int],
+    elements: int | dict[str, int],
     formulation: Literal["auto", "paper"],
     theory: Kinematics | None,
     kinematics: Kinematics | None,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -48,8 +47,8 @@ def command(
     out: Path | None,
     quantity: Coloured,
     station: str | None,
-    links: int | Mapping[str, int],
-    elements: int | Mapping[str, int],
+    links: int | dict[str, int],
+    elements: int | dict[str, int],
     formulation: Literal["auto", "paper"],
     theory: Kinematics | None,
     kinematics: Kinematics | None,

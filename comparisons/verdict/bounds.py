@@ -52,7 +52,7 @@ def bounds_of(
 
     Args:
         runs: the runs.
-        values: values (k,) by name of the run, as :meth:`comparisons.pairing.Runs.everything` names it.
+        values: values (k,) by name of the run, as :meth:`comparisons.runs.Runs.everything` names it.
         size: norm of a difference (k,).
         round_off: r.
         known: uncertainties of settled runs, by name.
