@@ -9,12 +9,12 @@ from comparisons import sentences as said
 from comparisons.audit import Audit, audit
 from comparisons.branch_words import BranchVerdict, branch_verdicts
 from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
-from comparisons.runs import SOLVERS, Runs
 from comparisons.tolerances.result import Tolerance
 from comparisons.verdict.completeness import complete_part, ends_at_critical
 from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows
 from comparisons.verdict.judge import Judged, judge_case, judge_rows
 from comparisons.verdict.rows import Row, build_rows
+from comparisons.verdict.runs import SOLVERS, Runs
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.station_events import station_events
 from comparisons.verdict.words import SEVERITY, Reason, Word

@@ -1,6 +1,6 @@
 """The solvers, and the runs of a comparison: only this module imports the solvers, at the place of use.
 
-Seven runs (:mod:`comparisons.runs`) in one theory, the theory of the finite elements
+Seven runs (:mod:`comparisons.verdict.runs`) in one theory, the theory of the finite elements
 (:meth:`comparisons.choices.Choices.kinematics_of`):
 
 * CPRBM at N, N + N/7 and 2N links, at the last two always in ``auto``; in ``paper`` also at N in ``auto``;
@@ -37,7 +37,7 @@ from pydantic import ValidationError
 from comparisons.choices import Choices, check
 from comparisons.crew import ALONE, Crew, Job, Solver
 from comparisons.reactions import perturbed_scene
-from comparisons.runs import Runs, other_theory
+from comparisons.verdict.runs import Runs, other_theory
 from cprbm_scene import Answer, Ending, Mistake, RigidContact, Scene, SceneError, Spacing
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from comparisons.crew import Crew
     from comparisons.offset_verdict import OffsetComparison
     from comparisons.pairing import Solvers
-    from comparisons.runs import Runs
     from comparisons.tolerances.result import Tolerance
+    from comparisons.verdict.runs import Runs
     from cprbm_scene import Question
 
 

@@ -15,7 +15,7 @@ from comparisons.cli.options import exactness, family_sizes, folder, output_opti
 if TYPE_CHECKING:
     from comparisons.present.columns import Section
     from comparisons.present.page import Chapter
-    from comparisons.runs import Runs
+    from comparisons.verdict.runs import Runs
 
 PARTS = ("convergence", "times")
 

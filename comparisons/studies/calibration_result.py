@@ -8,9 +8,9 @@ from comparisons.formats import number, percent
 from comparisons.plain import Plain
 from comparisons.present.canvas import GREY, canvas, finished
 from comparisons.present.columns import Figure, Section, Table
-from comparisons.runs import SOLVERS
 from comparisons.studies.calibration import Calibration, Trial, tallies
 from comparisons.verdict.calibration import LARGEST_MEDIAN, SHARE_WITHIN, ErrorRatio, Tally
+from comparisons.verdict.runs import SOLVERS
 from comparisons.verdict.words import Word
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA in bending"}

@@ -15,9 +15,9 @@ from comparisons.offset_verdict import OffsetComparison, compared_offset
 from comparisons.pairing import Solvers, paired
 from comparisons.present.columns import Figure, Section
 from comparisons.present.page import figures_of
-from comparisons.runs import Runs
 from comparisons.studies import table1, table1_result
 from comparisons.studies.convergence import convergence_section
+from comparisons.verdict.runs import Runs
 from cprbm_scene import OffsetQuestion, Question, SceneError
 
 

@@ -20,8 +20,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from statistics import median
 
-from comparisons.runs import Solver
 from comparisons.verdict.rows import Row
+from comparisons.verdict.runs import Solver
 
 SHARE_WITHIN = 0.95
 LARGEST_MEDIAN = 10.0

@@ -31,10 +31,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from comparisons.quantities import load_unit
-from comparisons.runs import SOLVERS
 from comparisons.stages import event_tolerance, span_of
 from comparisons.verdict.bounds import Bounds, bounds_of
 from comparisons.verdict.completeness import ends_at_critical
+from comparisons.verdict.runs import SOLVERS
 from comparisons.verdict.runs_table import RunsTable, solver_of
 from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Critical, Stage

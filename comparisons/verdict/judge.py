@@ -25,12 +25,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from comparisons.runs import SOLVERS
 from comparisons.verdict.bounds import bounds_of
 from comparisons.verdict.calibration import true_errors
 from comparisons.verdict.completeness import ABSENT_WHILE_OPEN
 from comparisons.verdict.point_forces import resultant
 from comparisons.verdict.rows import ROUND_OFF, Row
+from comparisons.verdict.runs import SOLVERS
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.station_events import MIRRORED, PASSED, Place
 from comparisons.verdict.words import Reason, Word

@@ -24,10 +24,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, norm, unit_of
-from comparisons.runs import Runs
 from comparisons.stations import station_of
 from comparisons.verdict.bounds import Bounds, bounds_of
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
+from comparisons.verdict.runs import Runs
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.scales import denominator, probe_scales
 from comparisons.verdict.station_events import NO_EVENTS, Place, StationEvents, station_events

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from comparisons.runs import SOLVERS, Runs
 from comparisons.verdict.completeness import Where, complete_stations, ends_at_critical, problems, stations_of
+from comparisons.verdict.runs import SOLVERS, Runs
 from cprbm_scene import Answer, Scene, StationAnswer
 
 

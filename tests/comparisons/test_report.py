@@ -18,8 +18,8 @@ from comparisons.cli.main import run
 from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
 from comparisons.present import page, stepper
 from comparisons.present.columns import Section
-from comparisons.runs import Runs
 from comparisons.studies import report
+from comparisons.verdict.runs import Runs
 from comparisons.verdict.words import Word
 from comparisons.writing import write
 from cprbm_scene import Mistake, SceneError

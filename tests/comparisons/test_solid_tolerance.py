@@ -11,11 +11,11 @@ from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.crew import ALONE
 from comparisons.pairing import Solvers, solid_answer
-from comparisons.runs import Runs
 from comparisons.solid_limits import solid_limit
 from comparisons.tolerances.result import LARGEST
 from comparisons.tolerances.search import runs_within, solve_within
 from comparisons.verdict.rows import rows_of
+from comparisons.verdict.runs import Runs
 from cprbm_scene import Ending
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
 from tests.verdict.made_up import MadeUp
