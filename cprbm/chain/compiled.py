@@ -50,8 +50,8 @@ register("numba:compile", COMPILATION)  # type: ignore[no-untyped-call]
 def compiled(function: Function) -> Function:
     """The function as machine code, with IEEE's results of divisions by zero."""
     try:
-        kernel = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)(function)
+        kernel = njit(cache=True, error_model="numpy")(function)
     except RuntimeError:
         COMPILATION.stored = False
-        kernel = njit(error_model="numpy", no_cfunc_wrapper=True)(function)
+        kernel = njit(error_model="numpy")(function)
     return cast("Function", kernel)
