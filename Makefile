@@ -73,7 +73,7 @@ $(READY): requirements.lock pyproject.toml
 	$(ENVIRONMENT) $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
 	$(ENVIRONMENT) $(BIN)/python -c "from cprbm import Settings, answer; from cprbm_scene import read; \
 	  [answer(read(f'comparisons/cases/{case}.toml'), Settings(formulation=formulation)) for case, formulation \
-	  in (('tapered', 'auto'), ('hinge', 'auto'), ('hinge', 'paper'))]"  # stores the compiled kernels
+	  in (('hinge', 'auto'), ('wrapped', 'auto'), ('five-bar', 'auto'), ('hinge', 'paper'))]"  # stores the compiled kernels
 	touch $(READY)
 
 # The extra 'view' is left out: VTK's modules take 565 MB, and nothing but pictures in space needs them.
