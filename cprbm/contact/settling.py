@@ -111,6 +111,7 @@ def settle_place(
 ) -> None:  # pragma: no cover
     """Move the foot of a place, and in at most ``steps`` a moving place; write gap and curvature."""
     gaps[k], curvatures[k] = np.inf, 0.0
+    last, longest = 0.0, LONGEST_STEP
     for _ in range(max(steps, 1)):
         x, y = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights[0])
         force = places.force[k] if places.moves[k] else 0.0
@@ -131,9 +132,11 @@ def settle_place(
             gaps[k] -= 0.5 * f.slope * f.slope / abs(f.curvature)
             break
         step = -f.slope / abs(f.curvature)
-        step = min(LONGEST_STEP, max(-LONGEST_STEP, step))
-        places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], step)
-        if abs(step) < ARRIVED:
+        # beside a corner of the other curve the slope jumps: every step back halves the longest step
+        longest *= 0.5 if step * last < 0.0 else 1.0
+        last = min(longest, max(-longest, step))
+        places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], last)
+        if abs(last) < ARRIVED:
             break
 
 
