@@ -7,7 +7,7 @@ g, s     gap, arc length of a joint on the first beam
 e        arc length of the zone's end
 =======  ====================================================================================
 
-Forces act at joints, so that the outermost force gives e to about one link.  Beyond that force the moment is smooth:
+Forces act at joints: the outermost force gives e to about one link.  Beyond that force the moment is smooth:
 g″ is zero at e and grows evenly.  Second differences of g at the next joints, extrapolated to zero, give e.  The spline
 spreads a force over one joint on either side; such joints do not count.  A moving place at the end of a zone is e.
 

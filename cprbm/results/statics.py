@@ -32,7 +32,7 @@ from cprbm_scene.statement import BeamForce, BeamMoment, DistributedLoad
 class Cuts(NamedTuple):
     """Cuts of one beam at its samples: N, Q, M, α and θ (k,).
 
-    At a load they are limits from the end's side, at both ends limits from inside.
+    Cuts at a load are limits from the end's side, cuts at both ends limits from inside.
     """
 
     N: Array

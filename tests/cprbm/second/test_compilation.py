@@ -18,7 +18,7 @@ def _said(monkeypatch):
 
 
 def kernel(text, module):
-    """A function without a file: no stored machine code, so that each is compiled here."""
+    """A function without a file: without stored machine code, the function is compiled here."""
     function = eval(text)  # noqa: S307 - own text
     function.__module__ = module
     return compiled(function)
