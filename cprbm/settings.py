@@ -60,7 +60,7 @@ class Settings(BaseModel):
         return self.model_dump(mode="json")
 
     def check(self, scene: Scene) -> None:
-        """Refuse numbers of links that fit no beam of ``scene``, and requirements that the CPRBM does not meet.
+        """Refuse numbers of links without a beam of ``scene``, and requirements beyond the CPRBM.
 
         Raises:
             SceneError: a beam has no number, a number has no beam, a number is too small, or the scene
