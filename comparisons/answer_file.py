@@ -2,9 +2,9 @@
 
 A column has the arrays of one name and shape, in the order of the stations.  Let b[k, i] be the 64 bits of number i at
 station k, read as an integer.  The integer grows with the number, so it is as smooth along stations and places as the
-number.  The second differences along both have mostly zero leading bits:
+number.  The third differences along both have mostly zero leading bits:
 
-    d = Δᵢ² Δₖ² b  (mod 2⁶⁴),    z = 2d for d ≥ 0,  -2d - 1 for d < 0.
+    d = Δᵢ³ Δₖ³ b  (mod 2⁶⁴),    z = 2d for d ≥ 0,  -2d - 1 for d < 0.
 
 Integers of fixed size add and subtract without rounding: the sums of the differences are the bits of the numbers.  The
 file has the first bytes of all z, then the second bytes, and so on, compressed.  Equal arrays stand once.
@@ -38,8 +38,8 @@ DAMAGES = (EOFError, zlib.error, gzip.BadGzipFile, KeyError, IndexError, TypeErr
 _COMPRESSION = 4
 """Level of gzip: level 6 takes 2.5 times as long for two per cent."""
 
-_AXES = (0, 0, 1, 1)
-"""Axes of the differences: twice along stations, twice along places."""
+_AXES = (0, 0, 0, 1, 1, 1)
+"""Axes of the differences: along stations and along places; second or fourth differences take more room."""
 
 Integers = NDArray[np.int64]
 
