@@ -59,7 +59,7 @@ def unpacked(content: bytes) -> dict[str, Answer]:
     """The answers of :func:`packed` by name; fields that the content lacks have their defaults.
 
     Raises:
-        one of :data:`DAMAGES`: ``content`` has no answers.
+        ValueError: ``content`` has no answers; other errors of damaged bytes are in ``DAMAGES``.
     """
     document = json.loads(gzip.decompress(content))
     arrays = _read_columns(document["columns"], document["differences"])
@@ -71,7 +71,7 @@ def read_answers(path: str | Path) -> dict[str, Answer]:
 
     Raises:
         OSError: the file cannot be read.
-        one of :data:`DAMAGES`: the file is damaged.
+        ValueError: the file is damaged; other errors of damaged files are in ``DAMAGES``.
     """
     return unpacked(Path(path).read_bytes())
 
