@@ -4,6 +4,7 @@
 * :mod:`cprbm.contact.compliance`: compliance lost by a chain under a point force;
 * :mod:`cprbm.contact.closest`: points, closest points, boxes; :mod:`cprbm.contact.gap`: gap and derivatives;
 * :mod:`cprbm.contact.corners`, :mod:`cprbm.contact.edges`: corners of rigid solids, places at corners;
+* :mod:`cprbm.contact.fixed`: joints, ends and corners at the nearest feet;
 * :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
 * :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.own_pin`, :mod:`cprbm.contact.candidates`: contacts of a scene.
 * :mod:`cprbm.contact.law`: gaps that another law measures;
@@ -26,6 +27,7 @@ from cprbm.contact.closest import curve_point, lost_at
 from cprbm.contact.contacts import TOUCHING, Contacts, open_contacts, touching_as_drawn
 from cprbm.contact.curve import BEND, CORNER, STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
 from cprbm.contact.edges import corner_sides, is_left, left_corner
+from cprbm.contact.fixed import contact_places, matched
 from cprbm.contact.gap import (
     COUPLING,
     GRADIENT,
@@ -46,8 +48,6 @@ from cprbm.contact.settling import (
     FINDING,
     GAPS,
     SEARCHES,
-    choose_sides,
-    find_bends,
     find_feet,
     move_places,
     near_pairs,
@@ -84,12 +84,11 @@ __all__ = [
     "Places",
     "Row",
     "beam_curve",
-    "choose_sides",
     "contact_geometry",
+    "contact_places",
     "corner_sides",
     "curve_arrays",
     "curve_point",
-    "find_bends",
     "find_feet",
     "fixed_places",
     "gap_frame",
@@ -100,6 +99,7 @@ __all__ = [
     "left_corner",
     "local_indices",
     "lost_at",
+    "matched",
     "may_move",
     "move_places",
     "near_pairs",

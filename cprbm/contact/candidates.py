@@ -15,33 +15,20 @@ that no gap counts twice; only the beam's end is a place as well.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import cached_property
 
 import numpy as np
 
 from cprbm.chain import Mechanism
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
+from cprbm.contact.fixed import FREE, Ends, Sites, movable, places_at_feet
 from cprbm.contact.gap import Places, gap_frame
 from cprbm.contact.law import Law
 from cprbm.contact.pairs import Pair, contact_pairs
-from cprbm.contact.settling import find_feet, settle
+from cprbm.contact.settling import settle
 from cprbm_scene import FreeEnd, Scene, WeldedEnd
 from cprbm_scene.answer import Array, Flags, Ints
 from cprbm_scene.freedoms import FREEDOMS, Freedoms
-
-FREE = -1
-"""Number in place of a body's for a free end of a beam."""
-
-BESIDE = 1
-"""Pieces from a beam's end within which a foot counts as lying on the end's body."""
-
-
-class Ends(NamedTuple):
-    """Bodies of curves: numbers ``body`` (curves, 2) at start and end, ``welded`` (curves, 2), ``rigid`` (curves,)."""
-
-    body: Ints
-    welded: Flags
-    rigid: Flags
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +53,17 @@ class Geometry:
     columns: Ints
     law: Law | None = None
     joints_alone: bool = False
+
+    @cached_property
+    def sites(self) -> Sites:
+        """All fixed places, for the kernels."""
+        sharing = self.ends.welded & (not self.joints_alone)
+        return Sites(self.possible, self.node, self.columns, self.ends, sharing)
+
+    @cached_property
+    def has_corners(self) -> bool:
+        """True if corners of rigid curves are places."""
+        return bool(on_edge(self.arrays, self.possible).any())
 
 
 def contact_geometry(m: Mechanism) -> Geometry | None:
@@ -106,27 +104,7 @@ def fixed_places(
         counters: count the searches.
         welds: whether ends at a weld on the rigid body of the foot are places.
     """
-    mine = near[geometry.possible.pair]
-    places, node, arrays = taken(geometry.possible, mine), geometry.node[mine], geometry.arrays
-    distance = np.empty(len(node))
-    find_feet(z, arrays, places, distance, counters)
-    second = (places.curve != geometry.columns[places.pair, 0]).astype(np.int64)
-    places.side[:] = sides[places.pair, second]
-    start, end = _on_end_bodies(geometry, places)
-    before, behind = node, arrays.last[places.curve] - arrays.first[places.curve] + 1 - node
-    itself = places.curve == places.other
-    welded = geometry.ends.welded[places.curve]
-    kept_welds = welded & (welds & geometry.ends.rigid[places.other])[:, None]
-    held = (start & (before == 0) & ~kept_welds[:, 0]) | (end & (behind == 0) & ~kept_welds[:, 1])
-    corner = on_edge(arrays, places)
-    places.side[corner] = 0.0
-    first, last = places.foot == arrays.first[places.other], places.foot == arrays.last[places.other]
-    held = np.where(corner, (start & first) | (end & last), held)
-    kept = ~held & np.isfinite(distance) & ~(itself & (places.foot < places.piece) & (behind > 0))
-    if not geometry.joints_alone:
-        places.shares[(before == 1) & start & welded[:, 0]] = 1
-        places.shares[(behind == 1) & end & welded[:, 1]] = -1
-    return taken(places, kept)
+    return places_at_feet(z, geometry.arrays, geometry.sites, sides, near, geometry.ends.rigid & welds, counters)
 
 
 def on_edge(arrays: CurveArrays, places: Places) -> Flags:
@@ -142,11 +120,7 @@ def half_thicknesses(arrays: CurveArrays, places: Places) -> Array:
 
 def may_move(geometry: Geometry, places: Places) -> Flags:
     """Whether the places may move along their curves."""
-    arrays = geometry.arrays
-    first, last = arrays.first[places.curve], arrays.last[places.curve]
-    start, end = _on_end_bodies(geometry, places)
-    at_end = ((places.piece == first) & (places.xi == 0.0)) | ((places.piece == last) & (places.xi == 1.0))
-    return np.asarray(~at_end & ~(start & (places.piece == first)) & ~(end & (places.piece == last)))
+    return movable(geometry.arrays, geometry.ends, places)
 
 
 def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:
@@ -244,16 +218,3 @@ def places_at(arrays: CurveArrays, rows: Ints) -> tuple[Places, Ints]:
         force=zeros,
     )
     return places, node
-
-
-def _on_end_bodies(geometry: Geometry, places: Places) -> tuple[Flags, Flags]:
-    """Whether the foot lies on, or beside a joint with, the body of the start and of the end of the place's curve."""
-    arrays, body = geometry.arrays, geometry.ends.body
-    rigid = geometry.ends.rigid[places.other]
-    beside_start = rigid | (places.foot <= arrays.first[places.other] + BESIDE)
-    beside_end = rigid | (places.foot >= arrays.last[places.other] - BESIDE)
-    found = []
-    for own in body[places.curve].T:
-        same = (beside_start & (own == body[places.other, 0])) | (beside_end & (own == body[places.other, 1]))
-        found.append(same & (own != FREE))
-    return found[0], found[1]

@@ -14,12 +14,13 @@ The closest point minimises R − T(η): Newton's method on
     R (R − T)' = (C − x)·C' − R T',    R (R − T)'' ≈ |C'|² + (C − x)·C'' − R T''.
 
 A step crosses the borders of pieces.  The search rests at the ends of an open curve, and at a convex corner of a
-polyline.  There the steps of both pieces lead to the corner, and the closest point does not move along the curve.
+polyline or of the thickness.  There the steps of both pieces lead to the corner, and the closest point does not move
+along the curve.
 """
 
 from __future__ import annotations
 
-from math import hypot, sqrt
+from math import copysign, hypot, sqrt
 
 import numpy as np
 
@@ -38,6 +39,9 @@ ROUNDED = 2e-15
 
 LEAST_CURVATURE = 0.1
 """Share of |C'|² below which the second derivative is replaced by |C'|²: a step of descent far from the minimum."""
+
+PASSED_OVER = 1e-9
+"""Share of a distance by which a chord must be farther away to be passed over: more than round-off."""
 
 TURNED_BACK = 2.6
 """Turn of a beam between two places, rad, from which the beam may touch itself: nearly half a turn."""
@@ -144,13 +148,18 @@ def border_pieces(curves: CurveArrays, curve: int, piece: int, step: float) -> t
 
 @compiled
 def is_corner(
-    z: Array, curves: CurveArrays, piece: int, before: int, x: float, y: float, weights: Array
+    z: Array, curves: CurveArrays, piece: int, before: int, x: float, y: float, side: float, weights: Array
 ) -> bool:  # pragma: no cover
-    """True if the border of two pieces is closest to (x, y): the steps of both pieces lead to the border."""
+    """True if the border of two pieces is closest to (x, y): the steps of both pieces lead to the border.
+
+    R is negative with a negative ``side``.
+    """
     px, py = curve_point(z, curves, piece, 0.0, 0, weights)
     ax, ay = curve_point(z, curves, before, 1.0, 1, weights)
     bx, by = curve_point(z, curves, piece, 0.0, 1, weights)
-    return (px - x) * ax + (py - y) * ay < 0.0 < (px - x) * bx + (py - y) * by
+    R = copysign(hypot(px - x, py - y), side)
+    back, ahead = R * curves.thickening[before], R * curves.thickening[piece]
+    return bool((px - x) * ax + (py - y) * ay < back and ahead < (px - x) * bx + (py - y) * by)
 
 
 @compiled
@@ -186,7 +195,7 @@ def closest_point(
         step = min(1.0, max(-1.0, step))
         if not 0.0 <= eta + step <= 1.0:
             behind, before = border_pieces(curves, curve, piece, step)
-            if behind != before and is_corner(z, curves, behind, before, x, y, weights):
+            if behind != before and is_corner(z, curves, behind, before, x, y, R, weights):
                 return behind, 0.0, True
         piece, eta, rests = moved_along(curves, curve, piece, eta, step)
         if abs(step) < max(ARRIVED, ROUNDED / sqrt(square)) or (rests and abs(step) < 1.0):
@@ -195,26 +204,73 @@ def closest_point(
 
 
 @compiled
-def closest_chord(
-    z: Array, curves: CurveArrays, curve: int, x: float, y: float, angle: float, least_turn: float, weights: Array
+def write_chords(z: Array, curves: CurveArrays, curve: int, chords: Array, weights: Array) -> float:  # pragma: no cover
+    """Write both ends (pieces, 4) of a curve's pieces; the length of the longest chord."""
+    longest = 0.0
+    for piece in range(curves.first[curve], curves.last[curve] + 1):
+        ax, ay = curve_point(z, curves, piece, 0.0, 0, weights)
+        bx, by = curve_point(z, curves, piece, 1.0, 0, weights)
+        row = chords[piece]
+        row[0], row[1], row[2], row[3] = ax, ay, bx, by
+        longest = max(longest, hypot(bx - ax, by - ay))
+    return longest
+
+
+@compiled
+def _to_chord(chord: Array, x: float, y: float) -> tuple[float, float]:  # pragma: no cover
+    """Parameter of the closest point of a chord, and its distance."""
+    ax, ay = chord[0], chord[1]
+    cx, cy = chord[2] - ax, chord[3] - ay
+    square = cx * cx + cy * cy
+    at = min(1.0, max(0.0, ((x - ax) * cx + (y - ay) * cy) / square)) if square > 0.0 else 0.0
+    return at, hypot(ax + at * cx - x, ay + at * cy - y)
+
+
+@compiled
+def closest_of(
+    z: Array,
+    curves: CurveArrays,
+    curve: int,
+    chords: Array,
+    longest: float,
+    guess: int,
+    x: float,
+    y: float,
+    turn: tuple[float, float],
 ) -> tuple[int, float, float]:  # pragma: no cover
     """Piece and parameter of the closest chord of all pieces, and its distance: a first guess.
 
-    Only pieces count whose link is turned by at least ``least_turn`` from ``angle``; the distance is inf without any.
+    A chord farther along the curve than the distance allows is passed over.
+
+    Args:
+        z, curves, curve: the state and the curve.
+        chords, longest: of :func:`write_chords`.
+        guess: a piece; a near one saves time.
+        x, y: the point.
+        turn: an angle, and the least turn of a piece's link from there; the distance is inf without any such piece.
     """
     best, found, share = np.inf, curves.first[curve], 0.0
-    for piece in range(curves.first[curve], curves.last[curve] + 1):
-        if least_turn > 0.0 and abs(z[curves.angle[piece]] - angle) < least_turn:
+    bound, piece = _to_chord(chords[guess], x, y)[1] if turn[1] == 0.0 else np.inf, curves.first[curve]
+    while piece <= curves.last[curve]:
+        if turn[1] > 0.0 and abs(z[curves.angle[piece]] - turn[0]) < turn[1]:
+            piece += 1
             continue
-        ax, ay = curve_point(z, curves, piece, 0.0, 0, weights)
-        bx, by = curve_point(z, curves, piece, 1.0, 0, weights)
-        cx, cy = bx - ax, by - ay
-        square = cx * cx + cy * cy
-        at = min(1.0, max(0.0, ((x - ax) * cx + (y - ay) * cy) / square)) if square > 0.0 else 0.0
-        distance = hypot(ax + at * cx - x, ay + at * cy - y)
+        at, distance = _to_chord(chords[piece], x, y)
         if distance < best:
             best, found, share = distance, piece, at
+        beyond = hypot(chords[piece, 2] - x, chords[piece, 3] - y) - (1.0 + PASSED_OVER) * min(best, bound)
+        piece += 1 + (int(beyond / longest) if beyond > longest > 0.0 else 0)
     return found, share, best
+
+
+@compiled
+def closest_chord(
+    z: Array, curves: CurveArrays, curve: int, x: float, y: float, weights: Array
+) -> tuple[int, float, float]:  # pragma: no cover
+    """Piece and parameter of the closest chord of all pieces, and its distance."""
+    chords = np.empty((curves.span.size, 4))
+    longest = write_chords(z, curves, curve, chords, weights)
+    return closest_of(z, curves, curve, chords, longest, curves.first[curve], x, y, (0.0, 0.0))
 
 
 @compiled
@@ -223,18 +279,24 @@ def curve_boxes(z: Array, curves: CurveArrays) -> Array:  # pragma: no cover
 
     A point of a piece is at most max |C''|/8 away from a point of the chord; C'' is linear along a piece.
     """
-    boxes, weights = np.empty((curves.first.size, 4)), np.empty((2, STENCIL))
+    boxes = np.empty((curves.first.size, 4))
     for curve in range(curves.first.size):
         box = boxes[curve]
         box[:2], box[2:] = np.inf, -np.inf
         for piece in range(curves.first[curve], curves.last[curve] + 1):
-            bulge = 0.0
-            for xi in (0.0, 1.0):
-                kx, ky = curve_point(z, curves, piece, xi, 2, weights)
-                bulge = max(bulge, hypot(kx, ky) / 8.0)
-            for xi in (0.0, 1.0):
-                x, y = curve_point(z, curves, piece, xi, 0, weights)
-                room = bulge + max(curves.thickness[piece], curves.thickness[piece] + curves.thickening[piece])
-                box[0], box[1] = min(box[0], x - room), min(box[1], y - room)
-                box[2], box[3] = max(box[2], x + room), max(box[3], y + room)
+            ax = ay = bx = by = kx = ky = mx = my = 0.0
+            for i in range(STENCIL):
+                node, p, q = curves.stencil[piece, i], curves.real[piece, i], curves.imaginary[piece, i]
+                zx, zy = z[node], z[node + 1]
+                ax, ay = ax + p[0] * zx - q[0] * zy, ay + q[0] * zx + p[0] * zy
+                u, v = p[0] + p[1] + p[2] + p[3], q[0] + q[1] + q[2] + q[3]
+                bx, by = bx + u * zx - v * zy, by + v * zx + u * zy
+                u, v = 2.0 * p[2], 2.0 * q[2]
+                kx, ky = kx + u * zx - v * zy, ky + v * zx + u * zy
+                u, v = u + 6.0 * p[3], v + 6.0 * q[3]
+                mx, my = mx + u * zx - v * zy, my + v * zx + u * zy
+            room = sqrt(max(kx * kx + ky * ky, mx * mx + my * my)) / 8.0
+            room += max(curves.thickness[piece], curves.thickness[piece] + curves.thickening[piece])
+            box[0], box[1] = min(box[0], min(ax, bx) - room), min(box[1], min(ay, by) - room)
+            box[2], box[3] = max(box[2], max(ax, bx) + room), max(box[3], max(ay, by) + room)
     return boxes

@@ -59,6 +59,8 @@ def corner_sides(geometry: Geometry, z: Array, known: Array, counters: Ints) -> 
         known: the last sides (curves,), 0 without.
         counters: count box tests and searches.
     """
+    if not geometry.has_corners:
+        return known
     arrays, sides = geometry.arrays, known.copy()
     near = near_pairs(z, arrays, geometry.columns, np.full(len(geometry.pairs), FAR), counters)
     places = taken(geometry.possible, near[geometry.possible.pair] & on_edge(arrays, geometry.possible))

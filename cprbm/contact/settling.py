@@ -13,10 +13,12 @@ from cprbm.contact.closest import (
     ARRIVED,
     TURNED_BACK,
     closest_chord,
+    closest_of,
     closest_point,
     curve_boxes,
     curve_point,
     moved_along,
+    write_chords,
 )
 from cprbm.contact.curve import STENCIL, CurveArrays
 from cprbm.contact.gap import LOCAL, SHIFT, Places, gap_frame, gap_row, local_indices
@@ -57,14 +59,19 @@ def find_feet(
 
     The distance of a place on a beam from the beam itself is inf where the beam has not turned back.
     """
-    weights = np.empty((2, STENCIL))
+    weights, chords = np.empty((2, STENCIL)), np.empty((curves.span.size, 4))
+    longest, near = np.full(curves.first.size, -1.0), curves.first.copy()
     for k in range(places.piece.size):
-        piece, least_turn = places.piece[k], TURNED_BACK if places.curve[k] == places.other[k] else 0.0
+        piece, other, least_turn = places.piece[k], places.other[k], 0.0
+        if longest[other] < 0.0:
+            longest[other] = write_chords(z, curves, other, chords, weights)
+        if places.curve[k] == other:
+            least_turn = TURNED_BACK
         x, y = curve_point(z, curves, piece, places.xi[k], 0, weights)
         counters[SEARCHES] += 1
-        angle = z[curves.angle[piece]]
-        foot, eta, distance[k] = closest_chord(z, curves, places.other[k], x, y, angle, least_turn, weights)
-        places.foot[k], places.eta[k] = foot, eta
+        turn = z[curves.angle[piece]], least_turn
+        foot, eta, distance[k] = closest_of(z, curves, other, chords, longest[other], near[other], x, y, turn)
+        places.foot[k], places.eta[k], near[other] = foot, eta, foot
 
 
 @compiled
@@ -76,9 +83,9 @@ def find_bends(z: Array, curves: CurveArrays, places: Places, rounds: int) -> No
             continue
         for _ in range(rounds):
             x, y = curve_point(z, curves, places.foot[k], places.eta[k], 0, weights)
-            places.piece[k], places.xi[k], _ = closest_chord(z, curves, places.curve[k], x, y, 0.0, 0.0, weights)
+            places.piece[k], places.xi[k], _ = closest_chord(z, curves, places.curve[k], x, y, weights)
             x, y = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights)
-            places.foot[k], places.eta[k], _ = closest_chord(z, curves, places.other[k], x, y, 0.0, 0.0, weights)
+            places.foot[k], places.eta[k], _ = closest_chord(z, curves, places.other[k], x, y, weights)
 
 
 @compiled
@@ -91,7 +98,7 @@ def is_unturned(z: Array, curves: CurveArrays, places: Places, k: int) -> bool: 
 
 
 @compiled
-def _settle_place(
+def settle_place(
     z: Array,
     curves: CurveArrays,
     places: Places,
@@ -104,6 +111,7 @@ def _settle_place(
 ) -> None:  # pragma: no cover
     """Move the foot of a place, and in at most ``steps`` a moving place; write gap and curvature."""
     gaps[k], curvatures[k] = np.inf, 0.0
+    last, longest = 0.0, LONGEST_STEP
     for _ in range(max(steps, 1)):
         x, y = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights[0])
         force = places.force[k] if places.moves[k] else 0.0
@@ -124,9 +132,11 @@ def _settle_place(
             gaps[k] -= 0.5 * f.slope * f.slope / abs(f.curvature)
             break
         step = -f.slope / abs(f.curvature)
-        step = min(LONGEST_STEP, max(-LONGEST_STEP, step))
-        places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], step)
-        if abs(step) < ARRIVED:
+        # beside a corner of the other curve the slope jumps: every step back halves the longest step
+        longest *= 0.5 if step * last < 0.0 else 1.0
+        last = min(longest, max(-longest, step))
+        places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], last)
+        if abs(last) < ARRIVED:
             break
 
 
@@ -140,7 +150,7 @@ def settle(
     """
     weights = np.empty((4, 2, STENCIL))
     for k in range(places.piece.size):
-        _settle_place(z, curves, places, k, gaps, curvatures, counters, steps, weights)
+        settle_place(z, curves, places, k, gaps, curvatures, counters, steps, weights)
 
 
 @compiled
@@ -167,7 +177,7 @@ def settle_near(
     for k in range(closed.size):
         if room[k] > 0.0 and not closed[k]:
             continue
-        _settle_place(z, curves, places, k, gaps, curvatures, counters, steps, weights)
+        settle_place(z, curves, places, k, gaps, curvatures, counters, steps, weights)
         room[k] = 0.0
         if not (places.moves[k] or sharing[k] or places.curve[k] == places.other[k]):
             room[k] = 0.5 * gaps[k] / np.sum(np.abs(weights[:2]))
@@ -240,7 +250,7 @@ def _sweeps_over(before: Array, after: Array, curves: CurveArrays, beam: int, ci
     weights, centre = np.empty((2, STENCIL)), curves.first[circle]
     for z in (before, after):
         cx, cy = curve_point(z, curves, centre, 0.0, 0, weights)
-        piece, xi, _ = closest_chord(z, curves, beam, cx, cy, 0.0, 0.0, weights)
+        piece, xi, _ = closest_chord(z, curves, beam, cx, cy, weights)
         ax, ay = curve_point(before, curves, piece, xi, 0, weights)
         bx, by = curve_point(before, curves, centre, 0.0, 0, weights)
         cx, cy = curve_point(after, curves, piece, xi, 0, weights)

@@ -31,6 +31,9 @@ CLOSED = 1e-11
 """Overlap, over the longest beam, at which a contact has closed: ten times the active set's round-off."""
 
 
+LOCATED = 0.5
+"""Share of ``CLOSED`` to which the overlap at a closing is located."""
+
 LET_GO = 0.1
 """Force of an opening contact, over the force at the begin of the step: a larger force jumps to zero."""
 
@@ -90,11 +93,6 @@ def may_close(state: State) -> State:
     """The state with pairs that are free to close again."""
     contacts = state.contacts
     return state if contacts is None else replace(state, contacts=replace(contacts, kept_open=frozenset(), apart=None))
-
-
-def pair_name(system: System, pair: int) -> str:
-    """Name of a pair's contact."""
-    return "" if system.geometry is None else system.geometry.pairs[pair].name
 
 
 class Pressed(NamedTuple):
@@ -172,7 +170,8 @@ def _closing(
 
     def gap(share: float) -> float:
         solved = solve(share, apart)
-        return min(_gap(solved, pair) for pair in apart) + CLOSED
+        overlap = min(_gap(solved, pair) for pair in apart) + CLOSED
+        return overlap if abs(overlap) > LOCATED * CLOSED else 0.0
 
     if gap(1.0) >= 0.0:
         return []

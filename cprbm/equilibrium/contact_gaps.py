@@ -19,6 +19,12 @@ from cprbm_scene.answer import Array, Flags, Ints
 NEIGHBOURS = 1.6
 """Pieces between neighbouring joints: half links at a beam's end are neighbours too."""
 
+RESTING = 1e-6
+"""Last change of a place that has come to the minimum of the gap, pieces."""
+
+LEANING = 1e-9
+"""Least change of the thickness's slope at a corner: round-off."""
+
 WITHIN = 0.5
 """Gap, in pieces, of a joint beside which the curves may meet."""
 
@@ -48,15 +54,21 @@ def minima(geometry: Geometry, contacts: Contacts, gaps: Array, pair: int) -> In
 def as_point(geometry: Geometry, z: Array, contacts: Contacts, k: int, force: float) -> tuple[Places, float, float]:
     """A joint as a moving place at the minimum of the gap; gap and curvature there.
 
-    Inf and 0 without a minimum between the neighbouring joints, and at a corner, which is a place.
+    Inf and 0 without a minimum between the neighbouring joints, and at a corner, which is a place.  At a corner of the
+    thickness the slope changes its sign, and the place does not come to rest.
     """
     trial = taken(contacts.places, np.array([k]))
     trial.moves[:], trial.force[:] = True, force
     gap, curvature = np.empty(1), np.empty(1)
     settle(z, geometry.arrays, trial, gap, curvature, contacts.counters, FINDING)
-    apart = abs(arc_of(geometry, trial)[0] - arc_of(geometry, contacts.places)[k])
-    at_corner = trial.at_point[0] and geometry.arrays.corner[trial.foot[0]] == CORNER
-    if at_corner or apart > NEIGHBOURS * geometry.arrays.span[trial.piece[0]]:
+    arrays, curve, piece, found = geometry.arrays, trial.curve[0], trial.piece[0], arc_of(geometry, trial)[0]
+    apart = abs(found - arc_of(geometry, contacts.places)[k])
+    at_corner = trial.at_point[0] and arrays.corner[trial.foot[0]] == CORNER
+    settle(z, arrays, trial, gap, curvature, contacts.counters, 1)
+    near = slice(max(piece - 1, arrays.first[curve]), min(piece + 1, arrays.last[curve]) + 1)
+    leans = np.ptp(arrays.thickening[near] / arrays.span[near]) > LEANING
+    restless = leans and abs(arc_of(geometry, trial)[0] - found) > RESTING * arrays.span[piece]
+    if at_corner or restless or apart > NEIGHBOURS * arrays.span[piece]:
         return trial, np.inf, 0.0
     return trial, float(gap[0]), float(curvature[0])
 

@@ -17,15 +17,10 @@ from cprbm.contact import (
     Contacts,
     Geometry,
     Places,
-    choose_sides,
-    find_bends,
-    fixed_places,
-    half_thicknesses,
-    joined,
-    near_pairs,
+    contact_places,
+    matched,
     on_edge,
     separations,
-    settle,
     settle_near,
     sweeps_any_circle,
     taken,
@@ -34,7 +29,7 @@ from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_o
 from cprbm.equilibrium.iteration import begin_by_law, begin_iteration, change_set, end_iteration
 from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
-from cprbm_scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Ints
 
 FREE_CHANGES = 12
 """Iterations with any change of the set; later iterations change one place at a time."""
@@ -45,14 +40,8 @@ RETURNS = 2
 ARRIVED = 1e-6
 """Largest last change of a moving place, pieces."""
 
-ROUNDS = 5
-"""Rounds from chord to chord for the place of a bend."""
-
 REACH = 0.1
-"""Distance of two boxes, over the longest beam, up to which a pair has places."""
-
-BEYOND = 0.1
-"""Share of the half thicknesses, or of a piece for lines, by which a place is on the other side of a beam."""
+"""Distance of a place from a beam, over the longest beam, up to which a passage is seen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,59 +57,13 @@ class Touched:
 
 
 def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Contacts:
-    """Contacts with fixed places at the nearest feet; known places keep force and state, moving places stay.
-
-    A new place of a beam in self-contact has the present side, and a new place beyond the end of another beam too.
-    """
-    old = contacts.places
-    near = near_pairs(z, geometry.arrays, geometry.columns, np.full(len(geometry.pairs), REACH), contacts.counters)
-    near[old.pair[contacts.closed]] = True
-    near[list(contacts.kept_open)] = False
-    fixed = fixed_places(geometry, z, contacts.sides, near, contacts.counters)
-    moving = old.moves & ~on_edge(geometry.arrays, old)
-    find_bends(z, geometry.arrays, fixed, ROUNDS)
-    known = {_identity(old, k): k for k in np.flatnonzero(~moving).tolist()}
-    apart = {} if contacts.apart is None else _sides_of(contacts.apart)
-    closed, corner = np.zeros(len(fixed.pair), dtype=bool), on_edge(geometry.arrays, fixed)
-    between = ~geometry.ends.rigid[fixed.curve] & ~geometry.ends.rigid[fixed.other] & (fixed.curve != fixed.other)
-    choose_sides(z, geometry.arrays, fixed)
-    for k in range(len(closed)):
-        before = known.get(_identity(fixed, k))
-        if before is None:
-            if between[k] and _identity(fixed, k) in apart:
-                fixed.side[k], between[k] = apart[_identity(fixed, k)], False
-            continue
-        if contacts.closed[before]:
-            closed[k], fixed.force[k] = True, old.force[before]
-            fixed.piece[k], fixed.xi[k] = old.piece[before], old.xi[before]
-            fixed.foot[k], fixed.eta[k] = old.foot[before], old.eta[before]
-        if contacts.closed[before] or between[k]:
-            fixed.side[k], between[k] = old.side[before], False
-    _turn_sides(geometry, z, fixed, between, contacts.counters)
-    fixed.side[corner] = contacts.corner_sides[fixed.curve[corner]]
-    both = joined(fixed, taken(old, moving))
-    return replace(contacts, places=both, closed=np.concatenate([closed, contacts.closed[moving]]))
-
-
-def _sides_of(places: Places) -> dict[tuple[int, int, int, float], float]:
-    """Sides by place."""
-    return {_identity(places, k): float(places.side[k]) for k in range(len(places.pair))}
-
-
-def _turn_sides(geometry: Geometry, z: Array, places: Places, which: Flags, counters: Ints) -> None:
-    """Turn the sides of places beyond another beam: there they have come round an end, and not through the beam.
-
-    Beams that overlap by less than ``BEYOND`` of their half thicknesses, or lines of a piece, are in contact.  A place
-    before an end has no side until it is seen beside the beam.
-    """
-    arrays, mine = geometry.arrays, np.flatnonzero(which)
-    trial, gaps = taken(places, mine), np.empty(len(mine))
-    settle(z, arrays, trial, gaps, np.empty(len(mine)), counters, 0)
-    thickness = half_thicknesses(arrays, trial)
-    depth = BEYOND * np.where(thickness > 0.0, thickness, arrays.span[trial.piece])
-    turned = mine[~trial.at_point & (gaps + thickness < -depth)]
-    places.side[turned] *= -1.0
-    places.side[mine[trial.at_point]] = 0.0
+    """Contacts with fixed places at the nearest feet; known places keep force and state, moving places stay."""
+    kept_open, old = np.zeros(len(geometry.pairs), dtype=bool), contacts.places
+    kept_open[list(contacts.kept_open)] = True
+    apart = taken(old, np.zeros(0, dtype=np.int64)) if contacts.apart is None else contacts.apart
+    sides = contacts.sides, contacts.corner_sides, kept_open, old, contacts.closed, apart
+    places, closed = contact_places(z, geometry.arrays, geometry.sites, *sides, contacts.counters)
+    return replace(contacts, places=places, closed=closed)
 
 
 def passed_through(geometry: Geometry, before: Array, old: Places, after: Array, new: Places, counters: Ints) -> bool:
@@ -130,22 +73,15 @@ def passed_through(geometry: Geometry, before: Array, old: Places, after: Array,
     """
     if geometry.arrays.is_point.any() and sweeps_any_circle(before, after, geometry.arrays, geometry.columns, counters):
         return True
-    first, second = separations(before, geometry.arrays, old), separations(after, geometry.arrays, new)
-    number = {_identity(new, k): k for k in range(len(new.pair)) if not new.moves[k]}
     # joints of lines slide past the end of a line at no distance; the end's own place has a side
     thick = geometry.arrays.thickness[old.piece] + geometry.arrays.thickness[old.foot] > 0.0
-    unsigned = (old.curve == old.other) | ((old.side == 0.0) & thick)
-    for k in np.flatnonzero(unsigned & ~old.moves & (np.hypot(*first.T) < REACH)).tolist():
-        at = number.get(_identity(old, k))
-        if at is not None and first[k] @ second[at] < 0.0:
-            return True
-    return False
-
-
-def _identity(places: Places, k: int) -> tuple[int, int, int, float]:
-    """Pair, curve, piece and parameter of a place; a bend has a single place."""
-    piece, xi = (-1, 0.0) if places.moves[k] else (int(places.piece[k]), float(places.xi[k]))
-    return int(places.pair[k]), int(places.curve[k]), piece, xi
+    unsigned = ((old.curve == old.other) | ((old.side == 0.0) & thick)) & ~old.moves
+    if not unsigned.any():
+        return False
+    first, second = separations(before, geometry.arrays, old), separations(after, geometry.arrays, new)
+    number = matched(geometry.arrays, old, new)
+    seen = np.flatnonzero(unsigned & (number >= 0) & (np.hypot(*first.T) < REACH))
+    return bool(np.any(np.einsum("ij,ij->i", first[seen], second[number[seen]]) < 0.0))
 
 
 def solve_set(

@@ -17,6 +17,7 @@ from cprbm.chain.mechanism import PER_LINK
 from cprbm.contact import Contacts, Geometry, open_contacts
 from cprbm.equilibrium.elimination import Beams, Border
 from cprbm.equilibrium.linear import Numbers
+from cprbm.equilibrium.measures import Arms
 from cprbm_scene.answer import Array, Flags, Ints
 
 
@@ -66,6 +67,24 @@ class System:
         """The arrays for the kernels."""
         of_chains = self.links, self.joints, self.rows, self.beams, self.border
         return Numbers(*of_chains, self.angles, self.turns, self.motions)
+
+    @cached_property
+    def equations(self) -> Flags:
+        """Which entries of a gradient are link equations and rows."""
+        found = np.zeros(self.size, dtype=bool)
+        found[self.links.first[:, None] + [2, 3]] = True
+        found[self.rows.first :] = True
+        return found
+
+    @cached_property
+    def arms(self) -> Arms:
+        """Nodes, carried nodes and bodies, on which forces act."""
+        m, nodes = self.mechanism, np.concatenate([self.nodes[:, 0], self.carried])
+        index = np.concatenate([nodes, list(m.bodies.values())]).astype(np.int64)
+        origin = np.zeros((len(index), 2))
+        for k, name in enumerate(m.bodies):
+            origin[len(nodes) + k] = m.reference(name)
+        return Arms(index, origin)
 
 
 @dataclass(frozen=True, eq=False)

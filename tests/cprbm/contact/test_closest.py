@@ -41,7 +41,7 @@ def test_closest_points_of_random_places(name):
         near = points[rng.integers(len(points))]
         x = near + 0.08 * complex(*rng.normal(size=2))
         reach = np.abs(points - x) - thickness
-        piece, eta, _ = closest_chord(z, geometry.arrays, number, x.real, x.imag, 0.0, 0.0, weights)
+        piece, eta, _ = closest_chord(z, geometry.arrays, number, x.real, x.imag, weights)
         piece, eta, at_point = closest_point(z, geometry.arrays, number, x.real, x.imag, piece, eta, 0.0, 0.0, weights)
         local = piece - geometry.arrays.first[number]
         s = curve.arcs[local] + eta * np.diff(curve.arcs)[local]

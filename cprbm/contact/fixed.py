@@ -1,0 +1,263 @@
+"""Fixed places at the nearest feet, compiled, and the state that known places keep.
+
+A place is the same in two groups if pair, curve, piece and parameter are equal; a corner or a bend has a single place.
+Both groups have the order of all possible places, so that the search for the same place goes on behind the last.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from cprbm.chain.compiled import compiled
+from cprbm.contact.curve import STENCIL, CurveArrays
+from cprbm.contact.gap import Places
+from cprbm.contact.settling import choose_sides, find_bends, find_feet, near_pairs, settle_place
+from cprbm_scene.answer import Array, Flags, Ints
+
+FREE = -1
+"""Number in place of a body's for a free end of a beam."""
+
+BESIDE = 1
+"""Pieces from a beam's end within which a foot counts as lying on the end's body."""
+
+REACH = 0.1
+"""Distance of two boxes, over the longest beam, up to which a pair has places."""
+
+BEYOND = 0.1
+"""Share of the half thicknesses, or of a piece for lines, by which a place is on the other side of a beam."""
+
+ROUNDS = 5
+"""Rounds from chord to chord for the place of a bend."""
+
+
+class Ends(NamedTuple):
+    """Bodies of curves: numbers ``body`` (curves, 2) at start and end, ``welded`` (curves, 2), ``rigid`` (curves,)."""
+
+    body: Ints
+    welded: Flags
+    rigid: Flags
+
+
+class Sites(NamedTuple):
+    """All fixed places of a mechanism.
+
+    Attributes:
+        possible: places, feet not found; node: number of a place's node on its curve.
+        columns: numbers of the two curves of every pair (pairs, 2).
+        ends: bodies of the curves.
+        sharing: ends (curves, 2) behind which the first joint has the force of the second.
+    """
+
+    possible: Places
+    node: Ints
+    columns: Ints
+    ends: Ends
+    sharing: Flags
+
+
+@compiled
+def picked(places: Places, which: Ints) -> Places:  # pragma: no cover
+    """Copies of the places of these numbers."""
+    return Places(
+        places.pair[which],
+        places.curve[which],
+        places.piece[which],
+        places.xi[which],
+        places.other[which],
+        places.foot[which],
+        places.eta[which],
+        places.at_point[which],
+        places.side[which],
+        places.moves[which],
+        places.shares[which],
+        places.force[which],
+    )
+
+
+@compiled
+def _both(places: Places, others: Places) -> Places:  # pragma: no cover
+    """Both groups of places, in this order."""
+    return Places(
+        np.concatenate((places.pair, others.pair)),
+        np.concatenate((places.curve, others.curve)),
+        np.concatenate((places.piece, others.piece)),
+        np.concatenate((places.xi, others.xi)),
+        np.concatenate((places.other, others.other)),
+        np.concatenate((places.foot, others.foot)),
+        np.concatenate((places.eta, others.eta)),
+        np.concatenate((places.at_point, others.at_point)),
+        np.concatenate((places.side, others.side)),
+        np.concatenate((places.moves, others.moves)),
+        np.concatenate((places.shares, others.shares)),
+        np.concatenate((places.force, others.force)),
+    )
+
+
+@compiled
+def on_end_body(curves: CurveArrays, ends: Ends, places: Places, k: int, end: int) -> bool:  # pragma: no cover
+    """Whether the foot lies on, or beside a joint with, the body of the start (0) or end (1) of the place's curve."""
+    other, own = places.other[k], ends.body[places.curve[k], end]
+    at_start = ends.rigid[other] or places.foot[k] <= curves.first[other] + BESIDE
+    at_end = ends.rigid[other] or places.foot[k] >= curves.last[other] - BESIDE
+    same = (at_start and own == ends.body[other, 0]) or (at_end and own == ends.body[other, 1])
+    return bool(same and own != FREE)
+
+
+@compiled
+def movable(curves: CurveArrays, ends: Ends, places: Places) -> Flags:  # pragma: no cover
+    """Whether the places may move along their curves."""
+    free = np.empty(places.piece.size, np.bool_)
+    for k in range(places.piece.size):
+        piece, curve = places.piece[k], places.curve[k]
+        at_first, at_last = piece == curves.first[curve], piece == curves.last[curve]
+        at_end = (at_first and places.xi[k] == 0.0) or (at_last and places.xi[k] == 1.0)
+        held = at_first and on_end_body(curves, ends, places, k, 0)
+        held = held or (at_last and on_end_body(curves, ends, places, k, 1))
+        free[k] = not (at_end or held)
+    return free
+
+
+@compiled
+def places_at_feet(
+    z: Array,
+    curves: CurveArrays,
+    sites: Sites,
+    sides: Array,
+    near: Flags,
+    pressed: Flags,
+    counters: Ints,
+) -> Places:  # pragma: no cover
+    """The places of the pairs marked ``near``, as :func:`cprbm.contact.candidates.fixed_places` says.
+
+    On the curves marked ``pressed`` (curves,) ends at a weld on the curve's body are places too.
+    """
+    mine, ends = np.flatnonzero(near[sites.possible.pair]), sites.ends
+    places, node = picked(sites.possible, mine), sites.node[mine]
+    distance, kept = np.empty(mine.size), np.empty(mine.size, np.bool_)
+    find_feet(z, curves, places, distance, counters)
+    for k in range(mine.size):
+        pair, curve, other, foot = places.pair[k], places.curve[k], places.other[k], places.foot[k]
+        start, end = on_end_body(curves, ends, places, k, 0), on_end_body(curves, ends, places, k, 1)
+        before, behind = node[k], curves.last[curve] - curves.first[curve] + 1 - node[k]
+        welded, held = ends.welded[curve], False
+        if curves.angle[places.piece[k]] < 0:
+            # a corner is no place in an end link held by the corner's body
+            places.side[k] = 0.0
+            held = (start and foot == curves.first[other]) or (end and foot == curves.last[other])
+        else:
+            places.side[k] = sides[pair, 0 if curve == sites.columns[pair, 0] else 1]
+            held = start and before == 0 and not (welded[0] and pressed[other])
+            held = held or (end and behind == 0 and not (welded[1] and pressed[other]))
+        doubled = curve == other and foot < places.piece[k] and behind > 0
+        kept[k] = not held and np.isfinite(distance[k]) and not doubled
+        if before == 1 and start and sites.sharing[curve, 0]:
+            places.shares[k] = 1
+        if behind == 1 and end and sites.sharing[curve, 1]:
+            places.shares[k] = -1
+    return picked(places, np.flatnonzero(kept))
+
+
+@compiled
+def is_fixed(curves: CurveArrays, places: Places, k: int) -> bool:  # pragma: no cover
+    """True for joints, ends and corners."""
+    return bool(not places.moves[k] or curves.angle[places.piece[k]] < 0)
+
+
+@compiled
+def matched(curves: CurveArrays, places: Places, others: Places) -> Ints:  # pragma: no cover
+    """Numbers of the same fixed places among ``others``, −1 without."""
+    found, at, count = np.full(places.piece.size, -1), 0, others.piece.size
+    for k in range(places.piece.size):
+        if not is_fixed(curves, places, k):
+            continue
+        for step in range(count):
+            j = (at + step) % count
+            if places.pair[k] != others.pair[j] or places.curve[k] != others.curve[j]:
+                continue
+            if places.moves[k] != others.moves[j] or not is_fixed(curves, others, j):
+                continue
+            if places.moves[k] or (places.piece[k] == others.piece[j] and places.xi[k] == others.xi[j]):
+                found[k], at = j, j + 1
+                break
+    return found
+
+
+@compiled
+def _turn_side(
+    z: Array, curves: CurveArrays, places: Places, k: int, counters: Ints, room: Array, weights: Array
+) -> None:  # pragma: no cover
+    """Turn the side of a place beyond another beam: it has come round an end there, and not through the beam.
+
+    Beams that overlap by less than ``BEYOND`` of their half thicknesses, or lines of a piece, are in contact.  A place
+    before an end has no side until it is seen beside the beam.  The foot stays; ``room`` (2, places) is scratch space.
+    """
+    foot, eta, at_point = places.foot[k], places.eta[k], places.at_point[k]
+    settle_place(z, curves, places, k, room[0], room[1], counters, 0, weights)
+    piece, new = places.piece[k], places.foot[k]
+    thickness = curves.thickness[piece] + places.xi[k] * curves.thickening[piece]
+    thickness += curves.thickness[new] + places.eta[k] * curves.thickening[new]
+    depth = BEYOND * (thickness if thickness > 0.0 else curves.span[piece])
+    if places.at_point[k]:
+        places.side[k] = 0.0
+    elif room[0, k] + thickness < -depth:
+        places.side[k] *= -1.0
+    places.foot[k], places.eta[k], places.at_point[k] = foot, eta, at_point
+
+
+@compiled
+def contact_places(
+    z: Array,
+    curves: CurveArrays,
+    sites: Sites,
+    sides: Array,
+    corner_sides: Array,
+    kept_open: Flags,
+    old: Places,
+    closed: Flags,
+    apart: Places,
+    counters: Ints,
+) -> tuple[Places, Flags]:  # pragma: no cover
+    """Fixed places at the nearest feet, behind these the moving places of ``old``; marks of the closed places.
+
+    Known places keep force and state.  A new place of a beam in self-contact has the present side, and a new place
+    beyond the end of another beam too.
+
+    Args:
+        z, curves: the state.
+        sites: of the geometry.
+        sides, corner_sides: of the contacts.
+        kept_open: pairs (pairs,) without places.
+        old, closed: the known places.
+        apart: places of pairs that were kept open, for their sides.
+        counters: count the searches.
+    """
+    ends, nothing = sites.ends, np.zeros(curves.first.size, np.bool_)
+    near = near_pairs(z, curves, sites.columns, np.full(len(sites.columns), REACH), counters)
+    for k in range(closed.size):
+        near[old.pair[k]] |= closed[k]
+    near &= ~kept_open
+    fixed = places_at_feet(z, curves, sites, sides, near, nothing, counters)
+    find_bends(z, curves, fixed, ROUNDS)
+    choose_sides(z, curves, fixed)
+    count = fixed.piece.size
+    moving = np.flatnonzero(old.moves & (curves.angle[old.piece] >= 0))
+    known, aside = matched(curves, fixed, old), matched(curves, fixed, apart)
+    marks, room, weights = np.zeros(count + moving.size, np.bool_), np.empty((2, count)), np.empty((4, 2, STENCIL))
+    for k in range(count):
+        curve, j = fixed.curve[k], known[k]
+        between = not ends.rigid[curve] and not ends.rigid[fixed.other[k]] and curve != fixed.other[k]
+        if j >= 0 and closed[j]:
+            marks[k], fixed.force[k], fixed.side[k] = True, old.force[j], old.side[j]
+            fixed.piece[k], fixed.xi[k], fixed.foot[k], fixed.eta[k] = old.piece[j], old.xi[j], old.foot[j], old.eta[j]
+        elif between and j >= 0:
+            fixed.side[k] = old.side[j]
+        elif between and aside[k] >= 0:
+            fixed.side[k] = apart.side[aside[k]]
+        elif between:
+            _turn_side(z, curves, fixed, k, counters, room, weights)
+        if curves.angle[fixed.piece[k]] < 0:
+            fixed.side[k] = corner_sides[curve]
+    marks[count:] = closed[moving]
+    return _both(fixed, picked(old, moving)), marks
