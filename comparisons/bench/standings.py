@@ -54,10 +54,11 @@ def _standing(measured: Benchmark, measure: Measure, clocked: Clocked, target: f
         found = reached([(one.errors[measure], one.median(clocked)) for one in counted], target)
         if found is not None:
             seconds[contender.name] = found
-    ordered = sorted(seconds.values())
-    ahead = ordered[1] / ordered[0] if len(ordered) > 1 and ordered[0] > 0.0 else None
+    first, second, *_ = (*sorted(seconds.values()), 0.0, 0.0)
     fastest = min(seconds, key=lambda name: seconds[name], default=None)
-    return Standing(measure, target, clocked, fastest, ahead, frozendict(seconds))
+    return Standing(
+        measure, target, clocked, fastest, second / first if first and second else None, frozendict(seconds)
+    )
 
 
 def reached(points: Sequence[tuple[float, float]], target: float) -> float | None:

@@ -23,7 +23,6 @@ Value = TypeVar("Value")
 Reader = Callable[[click.Context, click.Parameter, Any], Any]
 """Callback of click: the value of a text, None for an absent option; click.BadParameter for a wrong text."""
 
-_CHOICES = f"{__name__}.choices"
 COUNT = "N|BEAM=N,..."
 """Metavar of a number of links or elements."""
 
@@ -121,7 +120,7 @@ def _choice(read: Reader | None = None) -> Reader:
     """Callback that stores the value of an option as a field of :class:`Choices` in the context."""
 
     def store(ctx: click.Context, param: click.Parameter, value: Any) -> None:  # noqa: ANN401 - any option
-        ctx.meta.setdefault(_CHOICES, {})[param.name] = value if read is None else read(ctx, param, value)
+        ctx.meta.setdefault(Choices.__name__, {})[param.name] = value if read is None else read(ctx, param, value)
 
     return store
 
@@ -134,7 +133,7 @@ def choices_for(*questions: Question) -> Choices:
     """
     from cprbm_scene import OffsetQuestion
 
-    found = Choices(**click.get_current_context().meta.get(_CHOICES, {}))
+    found = Choices(**click.get_current_context().meta.get(Choices.__name__, {}))
     for question in questions:
         if not isinstance(question, OffsetQuestion):
             check(found, question)

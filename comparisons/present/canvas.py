@@ -85,12 +85,8 @@ def _short_svg(svg: bytes) -> bytes:
     # six decimals are coordinates; the scale of a letter, 1/64 to a last digit 5, has its own attribute
     svg = re.sub(rb"(?<![(\d.])(-?\d+\.\d\d)\d+(?=[\s\"])", rb"\1", svg)
     svg = re.sub(rb"\n *", b"\n", svg)
-    return re.sub(rb'(<g[^>]*)>((?:\n<use [^>]*? style="([^"]*)"/>)+)', _styled_group, svg)
-
-
-def _styled_group(found: re.Match[bytes]) -> bytes:
-    style = b' style="' + found[3] + b'"'
-    return found[1] + style + b">" + found[2].replace(style, b"")
+    markers = rb'(<g[^>]*)>((?:\n<use [^>]*?( style="[^"]*")/>)+)'
+    return re.sub(markers, lambda line: line[1] + line[3] + b">" + line[2].replace(line[3], b""), svg)
 
 
 def _palette_png(png: bytes) -> bytes:
