@@ -27,7 +27,7 @@ from cprbm.contact.closest import curve_point, lost_at
 from cprbm.contact.contacts import TOUCHING, Contacts, open_contacts, touching_as_drawn
 from cprbm.contact.curve import BEND, CORNER, STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
 from cprbm.contact.edges import corner_sides, is_left, left_corner
-from cprbm.contact.fixed import contact_places, matched
+from cprbm.contact.fixed import Sites, contact_places, matched, movable, picked
 from cprbm.contact.gap import (
     COUPLING,
     GRADIENT,
@@ -83,6 +83,7 @@ __all__ = [
     "Pair",
     "Places",
     "Row",
+    "Sites",
     "beam_curve",
     "contact_geometry",
     "contact_places",
@@ -101,11 +102,13 @@ __all__ = [
     "lost_at",
     "matched",
     "may_move",
+    "movable",
     "move_places",
     "near_pairs",
     "new_counters",
     "on_edge",
     "open_contacts",
+    "picked",
     "places_at",
     "separations",
     "settle",
