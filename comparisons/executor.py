@@ -155,7 +155,7 @@ def permit_children() -> None:
     vars(current_process())["_config"]["daemon"] = False
 
 
-def call_limited(seconds: float, call: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
+def call_limited(seconds: float | None, call: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
     """Value of a call in the child of this thread, which keeps its loaded modules and kernels from call to call.
 
     Raises:

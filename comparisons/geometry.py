@@ -10,7 +10,7 @@ R       radius of an arc, m
 φ       angle that an arc turns through, counter-clockwise
 ======  ===================================================
 
-Of a polynomial and a spline they are what the scene's own geometry says, :mod:`cprbm_scene.geometry`.
+Of a polynomial and a spline they are what the scene's own geometry says, :func:`cprbm_scene.curve_records.shape_of`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import numpy as np
 
 from cprbm_scene import Arc, Beam, Line, Polynomial, Scene, Spline
 from cprbm_scene.answer import Array
-from cprbm_scene.geometry import arc_length, curvature_on, largest_curvature, points_on
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import (
     Curve,
     EdgeContact,
@@ -47,7 +47,7 @@ def length(curve: Curve) -> float:
         case Arc():
             return radius(curve) * abs(_turn(curve))
         case Polynomial() | Spline():
-            return arc_length(curve)
+            return shape_of(curve).length
         case _:
             assert_never(curve)
 
@@ -65,7 +65,7 @@ def radius(curve: Curve) -> float:
         case Arc():
             return math.dist(curve.start, curve.center)
         case Polynomial() | Spline():
-            curvature = largest_curvature(curve)
+            curvature = shape_of(curve).largest_curvature
             return 1.0 / curvature if curvature > 0.0 else math.inf
         case _:
             assert_never(curve)
@@ -81,7 +81,7 @@ def bentness(beam: Beam) -> float:
 
 def bentness_on(beam: Beam, u: Array) -> Array:
     """Thickness over radius at fractions ``u`` of the arc length of a beam at rest, in the same shape."""
-    return np.asarray(beam.thickness_at(u) * curvature_on(beam.curve, u))
+    return np.asarray(beam.thickness_at(u) * shape_of(beam.curve).curvature(u))
 
 
 def points(curve: Curve, s: Array) -> Array:
@@ -96,7 +96,7 @@ def points(curve: Curve, s: Array) -> Array:
             angle = first + math.copysign(1.0, _turn(curve)) * np.asarray(s) / radius(curve)
             return np.asarray(centre + radius(curve) * np.stack([np.cos(angle), np.sin(angle)], axis=1))
         case Polynomial() | Spline():
-            return points_on(curve, np.asarray(s) / arc_length(curve))
+            return shape_of(curve).point(np.asarray(s) / shape_of(curve).length)
         case _:
             assert_never(curve)
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from cprbm_scene.answer import Array
-from cprbm_scene.geometry import arc_length, points_on, tangents_on
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import Curve
 
 _TABLE = 2001
@@ -25,9 +25,9 @@ _REACHED = 1e-12  # of the largest coordinate or offset
 
 def offset_curve(curve: Curve, u: Array, distance: Array | float) -> Array:
     """q (n, 2), m, at the shares ``u`` (n,), with signed distances t (n,) or one for all."""
-    tangents = tangents_on(curve, u)
+    tangents = shape_of(curve).tangent(u)
     normals = np.column_stack((-tangents[:, 1], tangents[:, 0]))
-    return points_on(curve, u) + np.reshape(distance, (-1, 1)) * normals
+    return shape_of(curve).point(u) + np.reshape(distance, (-1, 1)) * normals
 
 
 def ordinates(curve: Curve, at: Array, distance: float, *, along_x: bool) -> Array:
@@ -45,5 +45,5 @@ def ordinates(curve: Curve, at: Array, distance: float, *, along_x: bool) -> Arr
     for _ in range(_TURNS):
         u = np.clip(u - (offset_curve(curve, u, distance)[:, graph] - at) / slope, 0.0, 1.0)
     q = offset_curve(curve, u, distance)
-    size = np.max(np.abs(q)) + abs(distance) + arc_length(curve)
+    size = np.max(np.abs(q)) + abs(distance) + shape_of(curve).length
     return np.where(np.abs(q[:, graph] - at) <= _REACHED * size, q[:, across], np.nan)

@@ -16,7 +16,7 @@ import numpy as np
 from comparisons.stations import station_of
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import Row
-from comparisons.verdict.uncertainty import GRIDS, OWN, Limit, limit
+from comparisons.verdict.uncertainty import GRIDS, Limit, limit
 from cprbm_scene import Answer, Scene, StationAnswer
 from cprbm_scene.answer import Flags
 from cprbm_scene.statement import STRESSES
@@ -43,4 +43,4 @@ def solid_limit(
     if row.probe.quantity in STRESSES and row.arc_length is not None:
         counts = away_from_point_forces(scene, row.probe.of, row.arc_length, (*stations[-2:], *beside))
     sizes = [2.0**place for place in range(len(values))]
-    return limit(sizes[first:], values[first:], OWN["solid"]), counts
+    return limit(sizes[first:], values[first:]), counts

@@ -7,43 +7,29 @@ damaged file is ignored with a note.
 
 from __future__ import annotations
 
-import gzip
-import json
 import logging
-import math
 import shutil
-import zlib
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field, fields, is_dataclass, replace
-from enum import Enum
-from functools import cache, partial
+from dataclasses import dataclass, field, replace
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
-from types import NoneType
-from typing import Any, get_args, get_origin, get_type_hints
+from typing import Any
 
-import numpy as np
-
+from comparisons.answer_file import DAMAGES, packed, read_answers
 from comparisons.choices import Choices
 from comparisons.crew import Crew, Decided, Job, Solver, crew_of
 from comparisons.pairing import Solvers, load_solvers
 from comparisons.provenance import program
 from comparisons.writing import clear_partial, write
 from cprbm_scene import Answer, Scene
-from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
 
 _LOG = logging.getLogger(__name__)
 
 _FOLDER, _ENDED = ".unfinished", ".ended"
 """Folder of kept answers, and its name during the removal: a part of the answers is never taken for the whole."""
-
-_COMPRESSION = 4
-"""Level of gzip: level 6 takes 2.5 times as long for two per cent."""
-
-_PAIRS = ("touching", "places", "place", "force")
-"""Fields with arrays (k, 2): a list of no pairs does not show its second size."""
 
 _CHOSEN: Mapping[str, tuple[str, ...]] = {
     "cprbm": ("links", "formulation", "theory"),
@@ -61,71 +47,6 @@ _DESCRIPTION = {
     "exact": "exact",
 }
 """Solve of a solver at its choices."""
-
-
-def packed_json(answers: Mapping[str, Answer]) -> bytes:
-    """Answers by name as compressed JSON; without a time in the header equal answers give equal bytes.
-
-    A number that is not finite becomes null, a member of an enumeration its name.
-    """
-    text = json.dumps({name: packed(answer) for name, answer in answers.items()}, ensure_ascii=False, allow_nan=False)
-    return gzip.compress(text.encode("utf-8"), _COMPRESSION, mtime=0)
-
-
-def packed(answer: Answer) -> dict[str, Any]:
-    """An answer as plain data."""
-    return {each.name: _plain(getattr(answer, each.name)) for each in fields(answer)}
-
-
-def unpacked(data: dict[str, Any]) -> Answer:
-    """The answer of :func:`packed`; fields that the data lack have their defaults.
-
-    Raises:
-        KeyError, TypeError, ValueError: ``data`` is no answer.
-    """
-    answer: Answer = _value(Answer, data)
-    return answer
-
-
-def _plain(value: Any) -> Any:  # noqa: ANN401 - a field of a record, and JSON
-    match value:
-        case Enum():
-            return value.name
-        case Mapping():
-            return {name: _plain(each) for name, each in value.items()}
-        case np.ndarray():
-            return value.tolist() if np.isfinite(value).all() else _plain(value.tolist())
-        case tuple() | list():
-            return [_plain(each) for each in value]
-        case float():
-            return float(value) if math.isfinite(value) else None
-        case _ if is_dataclass(value):
-            return {each.name: _plain(getattr(value, each.name)) for each in fields(value)}
-    return value
-
-
-_hints = cache(get_type_hints)
-
-
-def _value(kind: Any, data: Any, name: str = "") -> Any:  # noqa: ANN401 - a type of an annotation, and JSON
-    """The value of plain ``data`` for a field ``name`` that is annotated with ``kind``."""
-    parts = get_args(kind)
-    if NoneType in parts:
-        return None if data is None else _value(parts[0], data, name)
-    origin = get_origin(kind)
-    if origin is np.ndarray:
-        array = frozen_array(data)
-        return np.reshape(array, (-1, 2)) if name in _PAIRS else array
-    if origin is tuple:
-        return tuple(_value(parts[0], each) for each in data)
-    if origin is not None:
-        return frozendict({key: _value(parts[1], each, name) for key, each in data.items()})
-    if isinstance(kind, type) and is_dataclass(kind):
-        hints = _hints(kind)
-        return kind(**{key: _value(hints[key], each, key) for key, each in data.items()})
-    if isinstance(kind, type) and issubclass(kind, Enum):
-        return kind[data]
-    return math.nan if kind is float and data is None else data
 
 
 def relevant(solver: str, choices: Choices) -> Choices:
@@ -159,10 +80,10 @@ def read(path: Path) -> Answer | None:
         OSError: the file cannot be read.
     """
     try:
-        return unpacked(json.loads(gzip.decompress(path.read_bytes()))["answer"])
+        return read_answers(path)["answer"]
     except FileNotFoundError:
         return None
-    except (EOFError, zlib.error, gzip.BadGzipFile, KeyError, TypeError, ValueError) as error:
+    except DAMAGES as error:
         _LOG.warning("%s is damaged (%s); the answer is solved again", path, error)
         return None
 
@@ -193,7 +114,7 @@ class KeptSolver:
         answer = read(path)
         if answer is None:
             answer = self.solver(scene, choices)
-            write(path, packed_json({"answer": answer}))
+            write(path, packed({"answer": answer}))
         return answer
 
 

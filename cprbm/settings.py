@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Literal, cast
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from cprbm.loose import contacts_may_hold
 from cprbm_scene import Mistake, Scene, SceneError
+from cprbm_scene.freedoms import FREEDOMS, Freedoms, unsupported
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.requirements import Requirement, refuse
 
@@ -84,3 +84,21 @@ def _doubled(links: int | Mapping[str, int]) -> int | Mapping[str, int]:
     if isinstance(links, int):
         return 2 * links
     return frozendict({beam: 2 * number for beam, number in links.items()})
+
+
+def loose_bodies(scene: Scene) -> list[str]:
+    """Bodies with a single motion that no beam, pin or drive resists: only contacts may hold them."""
+    return [name for name in _unsupported_parts(scene) if name]
+
+
+def contacts_may_hold(scene: Scene) -> bool:
+    """True if every part without support is such a body."""
+    return all(_unsupported_parts(scene))
+
+
+def _unsupported_parts(scene: Scene) -> Iterator[str]:
+    """For every part without support the name of the body, if the part is a body with a single motion, else empty."""
+    freedoms = Freedoms(scene)
+    for mistake, names in unsupported(scene, freedoms):
+        name = mistake.key.removeprefix("bodies.")
+        yield name if names == {name} and len(freedoms.guide(name)) == FREEDOMS - 1 else ""

@@ -30,12 +30,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import lru_cache
-from itertools import pairwise, product
+from itertools import product
 from math import dist
 from typing import NamedTuple
 
 import numpy as np
 
+from cprbm_scene.contact_records import measures
 from cprbm_scene.curve_records import MEETING, SHORTEST, shape_of
 from cprbm_scene.curves import Array, Curve, least, unit_vector
 from cprbm_scene.mistakes import Mistake, broken, written_place
@@ -48,7 +49,6 @@ from cprbm_scene.statement import (
     FunctionContact,
     HalfPlaneContact,
     LineContact,
-    Point,
     RigidContact,
     Scene,
     Spline,
@@ -260,17 +260,8 @@ def _rigid(scene: Scene, key: str, contact: RigidContact, beam: Beam) -> Iterato
 
 def _proportions(key: str, contact: RigidContact, length: float) -> Iterator[Mistake]:
     """Mistakes of sizes and coordinates beside the beam's ``length``, m."""
-    places, sizes, where = tuple[Point, ...](), list[tuple[str, float]](), key
-    match contact:
-        case CircleContact(center=center, radius=radius):
-            places, sizes, where = (center,), [("radius", radius)], f"{key}.center"
-        case LineContact(points=places):
-            sizes = [(f"points[{i}]", dist(*ends)) for i, ends in enumerate(pairwise(places), start=1)]
-        case HalfPlaneContact(point=point):
-            places = (point,)
-        case FunctionContact(curve=curve) | SplineContact(curve=curve) | EllipseContact(curve=curve):
-            part = {"beam-function": "range", "beam-spline": "points"}.get(contact.kind, "semi_axes")
-            places, sizes = (curve.start, curve.end), [(part, shape_of(curve).length)]
+    places, sizes = measures(contact)
+    where = f"{key}.center" if isinstance(contact, CircleContact) else key
     largest = max(abs(coordinate) for place in places for coordinate in place)
     return broken(
         *(

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import chain, combinations, islice, pairwise
-from math import cos, sin
+from math import cos, dist, sin
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
 
-from cprbm_scene.curve_records import MOST_POINTS, Polynomial, Spline, SplinePoints, graph_rules
+from cprbm_scene.curve_records import MOST_POINTS, Polynomial, Spline, SplinePoints, graph_rules, shape_of
 from cprbm_scene.curves import unit_vector
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
@@ -281,6 +281,23 @@ class EllipseContact(RigidContact):
         places = np.array(self.center) + np.column_stack((x * c - y * s, x * s + y * c))
         points = tuple((x, y) for x, y in places.tolist())
         return Spline(kind="spline", points=points, start_direction=(-s, c), end_direction=(-s, c))
+
+
+def measures(contact: RigidContact) -> tuple[tuple[Point, ...], list[tuple[str, float]]]:
+    """Places of a rigid shape, the first on the shape or at its center, and sizes by their keys, m."""
+    match contact:
+        case CircleContact(center=center, radius=radius):
+            return (center,), [("radius", radius)]
+        case EllipseContact(center=center, curve=curve):
+            return (center, curve.start), [("semi_axes", shape_of(curve).length)]
+        case LineContact(points=points):
+            return points, [(f"points[{i}]", dist(*ends)) for i, ends in enumerate(pairwise(points), start=1)]
+        case FunctionContact(curve=curve) | SplineContact(curve=curve):
+            part = "range" if isinstance(contact, FunctionContact) else "points"
+            return (curve.start, curve.end), [(part, shape_of(curve).length)]
+        case HalfPlaneContact(point=point):
+            return (point,), []
+    raise TypeError(type(contact))
 
 
 EdgeContact = LineContact | HalfPlaneContact | FunctionContact

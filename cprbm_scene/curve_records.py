@@ -23,7 +23,7 @@ from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
 from cprbm_scene.curves import Curve, circular_arc, graph, slowest, spline, steepest, straight_line
 from cprbm_scene.mistakes import Mistake, broken, written_place
 from cprbm_scene.point_table import read_points
-from cprbm_scene.units import Coefficients, Direction, Length, Point, Reading, Record
+from cprbm_scene.units import OR_EXPRESSION, Coefficients, Direction, Length, Point, Reading, Record
 
 SHORTEST = 1e-6
 STEEPEST = 1e3
@@ -43,8 +43,7 @@ def _of_table(value: object, info: ValidationInfo) -> object:
     return read_points(info.context.folder / value, info.context.units.length)
 
 
-_NUMBER = {"anyOf": [{"type": "number"}, {"type": "string", "pattern": "^="}]}
-_POINT = {"type": "array", "prefixItems": [_NUMBER, _NUMBER], "minItems": 2, "maxItems": 2}
+_POINT = {"type": "array", "prefixItems": [OR_EXPRESSION] * 2, "minItems": 2, "maxItems": 2}
 SplinePoints = Annotated[
     tuple[Point, ...],
     Field(min_length=3),

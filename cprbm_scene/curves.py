@@ -187,14 +187,9 @@ def graph(coefficients: Sequence[float], first: float, last: float, *, along: in
     ``coefficients`` are those of f, lowest power first, in metres for a variable in metres.
     """
     extent, sense = abs(last - first), float(np.sign(last - first))
-    # in units of the extent no power of the variable is larger than necessary
-    scaled, factor = [0.0], 1.0
-    for coefficient in coefficients[1:]:
-        scaled.append(coefficient * factor if coefficient else 0.0)
-        factor *= extent
     with np.errstate(over="ignore", invalid="ignore"):
-        g = Polynomial(scaled)(Polynomial([first / extent, sense]))
-        g -= g(0.0)
+        by_w = np.asarray(Polynomial(coefficients).convert(domain=[first, last], window=[0.0, 1.0]).coef, float)
+        g = Polynomial([0.0, *by_w[1:] / extent])
         slope = g.deriv().trim(_NEGLIGIBLE * np.max(np.abs(g.deriv().coef)))
         # a steep graph has its sharpest bend where the graph is level
         level = slope.roots() if np.all(np.isfinite(g.coef)) else np.zeros(0)

@@ -24,7 +24,7 @@ def distant_ends(scene: Scene) -> Iterator[Mistake]:
     for name, beam in scene.beams.items():
         for side in ("start", "end"):
             apart, joint, at = _distance(scene, beam, side), getattr(beam, side), getattr(beam.curve, side)
-            if apart is not None and not (side == "end" and _may_be_apart(scene, beam)):
+            if apart is not None and not (side == "end" and is_apart(scene, beam)):
                 found = f"a beam end that meets no body: the curve's {side} is at {written_place(at)} m, the point "
                 found += f"{joint.point!r} at {written_place(scene.place_of(joint.point))} m, {apart:.3g} m apart"
                 yield Mistake(f"beams.{name}.{side}", found, f"at most {MEETING:g} of the beam's length between them")
@@ -32,11 +32,8 @@ def distant_ends(scene: Scene) -> Iterator[Mistake]:
 
 def is_apart(scene: Scene, beam: Beam) -> bool:
     """True if an assembly brings the beam's end to the point; False if the curve or the point does not exist."""
-    return _may_be_apart(scene, beam) and _distance(scene, beam, "end") is not None
-
-
-def _may_be_apart(scene: Scene, beam: Beam) -> bool:
-    return scene.assembly is not None and isinstance(beam.end, PinnedEnd)
+    assembled = scene.assembly is not None and isinstance(beam.end, PinnedEnd)
+    return assembled and _distance(scene, beam, "end") is not None
 
 
 def _distance(scene: Scene, beam: Beam, side: str) -> float | None:

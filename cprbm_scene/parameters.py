@@ -15,11 +15,11 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Annotated, NamedTuple, get_args
 
-from pydantic import Field, ValidationInfo, ValidatorFunctionWrapHandler, WrapValidator
+from pydantic import Field, ValidationInfo, ValidatorFunctionWrapHandler, WithJsonSchema, WrapValidator
 
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import SceneError, unknown_name
-from cprbm_scene.units import ANGLE, NUMBER, SIZES, Measured, Reading, Record, Unit, Units, mistake
+from cprbm_scene.units import ANGLE, NUMBER, OR_EXPRESSION, SIZES, Reading, Record, Unit, Units, mistake
 
 LONGEST = 300
 """Largest number of characters of an expression: the evaluation of a longer expression could exhaust the stack."""
@@ -169,28 +169,19 @@ _NAMED: Mapping[str, Value] = frozendict(
 )
 
 
-class _Own(Measured):
-    """Metadata of numbers in the parameter's own unit."""
-
-    def number(self, value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
-        """The number as it is written."""
-        return handler(value)
-
-
 def _or_expression(value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
     expression = isinstance(info.context, Reading) and isinstance(value, str) and value.startswith("=")
     return value if expression else handler(value)
 
 
-Own = Annotated[float, _Own(NUMBER)]
-PositiveOwn = Annotated[float, Field(gt=0.0), _Own(NUMBER)]
+Scatter = Annotated[float, Field(gt=0.0)] | None
 
 
 class Tolerance(Record):
     """Scatter of a parameter: ``normal``, a standard deviation, or ``uniform``, half of a width; in its unit."""
 
-    normal: PositiveOwn | None = None
-    uniform: PositiveOwn | None = None
+    normal: Scatter = None
+    uniform: Scatter = None
 
 
 class Parameter(Record):
@@ -200,9 +191,9 @@ class Parameter(Record):
     the file's units.  After reading all numbers are in SI.
     """
 
-    value: Annotated[Own, WrapValidator(_or_expression)]
+    value: Annotated[float, WrapValidator(_or_expression), WithJsonSchema(OR_EXPRESSION)]
     unit: str = ""
-    range: tuple[Own, Own] | None = None
+    range: tuple[float, float] | None = None
     tolerance: Tolerance | None = None
 
 

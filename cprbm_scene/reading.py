@@ -1,4 +1,8 @@
-"""TOML in; a :class:`~cprbm_scene.Scene` or an :class:`~cprbm_scene.OffsetQuestion` out, or all mistakes."""
+"""TOML in; a :class:`~cprbm_scene.Scene` or an :class:`~cprbm_scene.OffsetQuestion` out, or all mistakes.
+
+The JSON schema of a scene file follows from the records: editors complete keys and mark mistakes with it.  Rules
+between records need the reader.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +35,7 @@ from cprbm_scene.names import (
 from cprbm_scene.offset import OffsetQuestion
 from cprbm_scene.parameters import register
 from cprbm_scene.statement import Origin, Scene
-from cprbm_scene.units import Reading, Units
+from cprbm_scene.units import Reading
 
 _CHECKS = (
     repeated_names,
@@ -179,17 +183,10 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
         >>> scene_from(data).beams["beam1"].thickness
         0.003
     """
-    given = dict(parameters or {})
-    scene = _record(Scene, {**data, "parameters": {}} if given and "parameters" not in data else data, file, given)
-    scene._origin = Origin(_units(data), partial(_again, data, file, given) if scene.parameters else None)
+    reading = Reading(dict(parameters or {}), Path(file).parent)
+    scene = _record(Scene, {"parameters": {}, **data}, file, reading)  # the reading needs parameters, be there none
+    scene._origin = Origin(reading.units, reading.settings, partial(scene_from, data, file=file))
     return scene
-
-
-def _again(
-    data: dict[str, Any], file: str, given: Mapping[str, float | str], values: Mapping[str, float | str]
-) -> Scene:
-    """The scene of the plain data with other values of parameters."""
-    return scene_from(data, file=file, parameters={**given, **values})
 
 
 def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
@@ -198,20 +195,18 @@ def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
     Raises:
         SceneError: the data are no valid question. The error names every mistake with its key.
     """
-    return _record(OffsetQuestion, data, file, {})
+    reading = Reading()
+    register(reading, {})
+    return _record(OffsetQuestion, data, file, reading)
 
 
-def _record(kind: type[Asked], data: dict[str, Any], file: str, settings: Mapping[str, float | str]) -> Asked:
+def _record(kind: type[Asked], data: dict[str, Any], file: str, reading: Reading) -> Asked:
     """A question of a ``kind`` from plain data."""
     if "file" in data:
         keys = (key for key in kind.model_fields if key != "file")
         raise SceneError([replace(unknown_name("file", "file", "key here", keys), file=file)])
     try:
-        content = _tuples(data)
-        reading = Reading(_units(content), settings=settings, folder=Path(file).parent)
-        if "parameters" not in content:
-            register(reading, {})
-        record = kind.model_validate({**content, "file": file}, context=reading)
+        record = kind.model_validate({**_tuples(data), "file": file}, context=reading)
         found = mistakes_in(record)
     except ValidationError as error:
         found = first_of((each for details in error.errors() for each in details["ctx"]["error"].mistakes), file)
@@ -222,16 +217,16 @@ def _record(kind: type[Asked], data: dict[str, Any], file: str, settings: Mappin
     return record
 
 
-def _units(data: dict[str, Any]) -> Units:
-    """The stated units; SI units if the statement is wrong, which the validation of the whole reports."""
-    try:
-        return Units.model_validate(data.get("units", {}))
-    except ValidationError:
-        return Units()
-
-
 def _tuples(value: Any) -> Any:  # noqa: ANN401 - whatever TOML holds
     """Plain data with tuples for lists: strict validation of an immutable record takes no lists."""
     if isinstance(value, dict):
         return {key: _tuples(item) for key, item in value.items()}
     return tuple(_tuples(item) for item in value) if isinstance(value, list) else value
+
+
+def schema() -> dict[str, Any]:
+    """The JSON schema of a scene file as plain data, in the dialect that editors of TOML know."""
+    found = Scene.model_json_schema(mode="validation")
+    # the name of the file is no key of the file
+    found["properties"].pop("file")
+    return {"$schema": "http://json-schema.org/draft-07/schema#", **found, "title": "Scene"}

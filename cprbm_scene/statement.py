@@ -10,7 +10,7 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import product
 from typing import Annotated, Literal, TypeVar
 
@@ -62,6 +62,7 @@ from cprbm_scene.contact_records import (
     RigidContact,
     SelfContact,
     SplineContact,
+    measures,
 )
 from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
 from cprbm_scene.frozendict import frozendict
@@ -137,10 +138,11 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Units of a scene's file, and another reading with other parameters: no part of the question."""
+    """Units of a scene's file, set parameters, and a reading with other parameters: no part of the question."""
 
     units: Units = field(default=Units(), compare=False)
-    again: Callable[[Mapping[str, float | str]], Scene] | None = field(default=None, compare=False)
+    settings: Mapping[str, float | str] = field(default_factory=dict, compare=False)
+    again: Callable[..., Scene] | None = field(default=None, compare=False)
 
 
 class Scene(Record):
@@ -194,13 +196,14 @@ class Scene(Record):
         if not isinstance(reading, Reading):
             return value
         match info.field_name, value:
-            case "units", _:
+            case "units", Units() as units:
+                reading.units = units
                 return Units()
             case "parameters", Mapping() as parameters:
                 return register(reading, parameters)
             case "stages", tuple(stages):
-                units = ((stage.name, reading.stepped.get(stage.steps)) for stage in stages)
-                reading.stages.update({name: unit for name, unit in units if unit is not None})
+                known = ((stage.name, reading.stepped.get(stage.steps)) for stage in stages)
+                reading.stages.update({name: unit for name, unit in known if unit is not None})
             case "probes", tuple(probes):
                 reading.probes.update({probe.name: UNITS.get(probe.quantity) for probe in probes})
             case _, Mapping() as acting:
@@ -219,8 +222,8 @@ class Scene(Record):
                 beams[name] = beams[name].model_copy(update={side: WeldedEnd(joint="weld", point=end.point)})
         for name, each in self.bodies.items():
             if not each.points:
-                edges = (edge for edge in self.contacts.values() if getattr(edge, "body", None) == name)
-                place = next((_place(edge) for edge in edges), next(iter(beams.values())).curve.start)
+                edges = (e for e in self.contacts.values() if isinstance(e, RigidContact) and e.body == name)
+                place = next((measures(edge)[0][0] for edge in edges), next(iter(beams.values())).curve.start)
                 bodies[name] = FixedBody(motion="fixed", points=frozendict({f"{name}-point": place}))
         self.__dict__.update(beams=frozendict(beams), bodies=frozendict(bodies))
         return self
@@ -244,9 +247,10 @@ class Scene(Record):
             >>> hinge.beams["beam1"].thickness
             0.0019
         """
-        if self._origin.again is None or self._origin.again({}) != self:
+        again, settings = self._origin.again, self._origin.settings
+        if again is None or not self.parameters or again(parameters=settings) != self:
             raise ValueError("found a scene without parameters or altered after reading; allowed: a scene from a file")
-        return self._origin.again(values)
+        return again(parameters={**settings, **values})
 
     def __repr__(self) -> str:
         """Name, and numbers of beams, contacts and probes."""
@@ -278,12 +282,6 @@ class Scene(Record):
         """
         return self.loads[stage.steps] if stage.steps in self.loads else self.drives[stage.steps]
 
-    def displayed_in(self, units: Units) -> Scene:
-        """The same scene with other units for tables and figures."""
-        scene = self.model_copy()
-        scene._origin = replace(self._origin, units=units)
-        return scene
-
     def place_of(self, point: str) -> Point:
         """Initial position of a body's ``point``, m.
 
@@ -304,15 +302,3 @@ class Scene(Record):
             KeyError: no body has a point of that name.
         """
         return self.owners[point]
-
-
-def _place(contact: Contact) -> Point:
-    """Place of a rigid shape: the center, or a point of the edge, m."""
-    match contact:
-        case CircleContact(center=place) | EllipseContact(center=place) | HalfPlaneContact(point=place):
-            return place
-        case LineContact(points=points) | SplineContact(points=points):
-            return points[0]
-        case FunctionContact(curve=curve):
-            return curve.start
-    raise TypeError(type(contact))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from contextlib import AbstractContextManager, nullcontext
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 if TYPE_CHECKING:
     from threadpoolctl import ThreadpoolController
@@ -21,10 +21,7 @@ def one_thread() -> AbstractContextManager[object]:
         libraries = _loaded(len(sys.modules))
     except ImportError:
         return nullcontext()
-    if all(library.num_threads == 1 for library in libraries.lib_controllers if library.user_api == "blas"):
-        return nullcontext()
-    limits: AbstractContextManager[object] = libraries.limit(limits=1, user_api="blas")
-    return limits
+    return cast("AbstractContextManager[object]", libraries.limit(limits=1, user_api="blas"))
 
 
 @lru_cache(maxsize=1)

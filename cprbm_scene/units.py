@@ -87,6 +87,9 @@ class Record(BaseModel):
         return iter(())
 
 
+OR_EXPRESSION = {"anyOf": [{"type": "number"}, {"type": "string", "pattern": "^="}]}
+"""JSON schema of a number, or of an expression in place of the number."""
+
 SMALLEST, LARGEST = 1e-50, 1e50
 """Magnitudes of numbers with a unit, in SI: a product of six such numbers stays within floating-point numbers."""
 
@@ -119,15 +122,15 @@ class Units(Record):
 
 @dataclass(slots=True)
 class Reading:
-    """State while a file is read: its ``units`` and ``folder``, and the units of stations and probes read so far."""
+    """State while a file is read: the ``settings`` of parameters, the ``folder`` of the file, and units read so far."""
 
-    units: Units
+    settings: Mapping[str, float | str] = field(default_factory=dict)
+    folder: Path = Path()
+    units: Units = field(default_factory=Units)
     stepped: dict[str, Unit] = field(default_factory=dict)
     stages: dict[str, Unit] = field(default_factory=dict)
     probes: dict[str, Unit | None] = field(default_factory=dict)
-    settings: Mapping[str, float | str] = field(default_factory=dict)
     evaluate: Callable[[str, Unit | None], float] | None = None
-    folder: Path = Path()
 
     def in_si(self, value: Any, unit: Unit | None) -> Any:  # noqa: ANN401 - whatever TOML holds
         """A number or an expression in SI, infinite if it is too large; another value, or one without unit, unchanged.

@@ -57,11 +57,6 @@ class Mode:
     direction: Array
 
 
-def smallest_curvature(model: Model, system: System) -> float:
-    """The least μ, see :func:`softest`."""
-    return softest(model, system).curvature
-
-
 def positive(model: Model, system: System) -> bool:
     """Whether all μ are above zero, as far as round-off lets it be seen."""
     return _factor(_feasible(model, system).stiffness) is not None
@@ -73,8 +68,7 @@ def softest(model: Model, system: System) -> Mode:
     Where that cannot be proven, a value that can, and if not even zero can, a Ritz value above one below zero that can:
     there is a negative curvature about as large, or round-off hides that there is none.
     """
-    on = _feasible(model, system)
-    root = np.sqrt(lumped_mass(model))
+    on, root = _feasible(model, system), np.sqrt(lumped_mass(model))
 
     def factor(sigma: float) -> Array | None:
         """Cholesky's of A − σ M; None where there is a pivot below zero."""
@@ -90,12 +84,24 @@ def softest(model: Model, system: System) -> Mode:
         # rounded to zero it would not say that there was a negative pivot
         return Mode(min(below + ritz, -np.finfo(float).tiny), u)
     ritz, u = _ritz(on, at_zero, root)
-    if factor(_CLOSE * ritz) is not None:
-        return Mode(ritz, u)
-    sigma = 0.5 * ritz
-    while factor(sigma) is None and sigma > 0.0:
+    sigma = ritz
+    while factor(min(sigma, _CLOSE * ritz)) is None and sigma > 0.0:
         sigma *= 0.5
     return Mode(sigma, u)
+
+
+def leaning(model: Model, system: System, drag: float) -> Array:
+    """Motions u (size,) under faint moments 1 + s per length on all sections, against a ``drag``, EI per length⁴.
+
+    s is the arc length along the beams in the scene's order, in lengths of the longest.  Among all motions that a
+    bifurcation leaves free, the moments choose one that depends neither on the mesh nor on the order of assembly.  The
+    drag is above every negative curvature; where it is not, the moments themselves.
+    """
+    on, moments = _feasible(model, system), np.zeros(model.size)
+    factor = _factor(on.stiffness + drag * on.inertia)
+    lengths = lumped_mass(model)[model.node_dofs[2]]
+    moments[model.node_dofs[2]] = lengths * (1.0 + np.cumsum(lengths))
+    return moments if factor is None else _solved(on, factor, moments)
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +167,7 @@ def _directions(model: Model, system: System, K: csr_array) -> csr_array:
         dofs = np.concatenate([dofs for i in group if (dofs := model.bodies[i].dofs) is not None])
         held = [hold.row for hold in (*model.guides, *model.drives) if hold.body in group]
         held += [int(row) for hinge in model.hinges if set(hinge.bodies) & group for row in hinge.rows]
-        left = null_space(_block(K, held, dofs)) if held else np.eye(dofs.size)
+        left = null_space(K[held][:, dofs].toarray()) if held else np.eye(dofs.size)
         here = count + np.arange(left.shape[1])
         count += here.size
         of_bodies |= {int(dof): (here, line) for dof, line in zip(dofs, left, strict=True)}
@@ -180,16 +186,6 @@ def _directions(model: Model, system: System, K: csr_array) -> csr_array:
         entries.append(value * line)
     coordinates = (np.concatenate(rows), np.concatenate(columns))
     return csr_array((np.concatenate(entries), coordinates), (model.size, count))
-
-
-def _block(K: csr_array, rows: list[int], columns: Index) -> Array:
-    """The few entries of K in ``rows`` (m,) and ``columns`` (k,), (m, k)."""
-    block = np.zeros((len(rows), columns.size))
-    for i, row in enumerate(rows):
-        entries = slice(K.indptr[row], K.indptr[row + 1])
-        for column, value in zip(K.indices[entries], K.data[entries], strict=True):
-            block[i, columns == column] = value
-    return block
 
 
 def _together(model: Model) -> list[set[int]]:
@@ -226,9 +222,7 @@ def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
     beside: list[float] = []
     for step in range(_STEPS):
         Q[step] = v
-        right = np.empty(on.place.size)
-        right[on.place] = on.back @ (root * v)
-        w = root * (on.T @ dpbtrs(factor, right, lower=1)[0][on.place])
+        w = root * _solved(on, factor, root * v)
         diagonal.append(float(v @ w))
         so_far = Q[: step + 1]
         w -= so_far.T @ (so_far @ w)
@@ -244,6 +238,13 @@ def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
     u = np.zeros(root.size)
     u[moving] = (so_far.T @ vectors[:, -1])[moving] / root[moving]
     return 1.0 / float(values[-1]), u
+
+
+def _solved(on: _Feasible, factor: Array, forces: Array) -> Array:
+    """T A⁻¹ T^T of ``forces`` (size,) with the factor of A."""
+    right = np.empty(on.place.size)
+    right[on.place] = on.back @ forces
+    return np.asarray(on.T @ dpbtrs(factor, right, lower=1)[0][on.place])
 
 
 def _below_zero(factor: Callable[[float], Array | None]) -> float:

@@ -17,6 +17,8 @@ At a value just beyond the end, and from a state a little aside of it along φ, 
 near the one before: one step, backwards in time, of a motion that only a drag resists, which cannot raise Π (the
 proximal point method; Rockafellar, SIAM J. Control Optim. 14 (1976) 877).  Contacts act all the way, stops as
 inequalities.  σ falls as long as the steps are short, until none is needed.
+
+Of both senses of φ the lower counts.  Where both lead equally low, the sense of the moments counts.
 """
 
 from __future__ import annotations
@@ -28,6 +30,7 @@ import numpy as np
 from cprbm_scene.answer import Loss
 from fea_reference.advance import advance
 from fea_reference.contacts import zones_of
+from fea_reference.curvature import leaning
 from fea_reference.energy import penalised_energy, potential_energy
 from fea_reference.following import Lost
 from fea_reference.march import March
@@ -52,6 +55,7 @@ _FEW = 60  # of them, where it is not to lead far
 _ASTRAY = 2.0  # times as far as what it is to lead to: what goes farther on the way is followed no further
 _CHANGES = 8  # of contacts and stops in one step
 _ROUNDED = 1e-9  # of the energy
+_SAME = 1e-6  # of the larger fall: two senses lead equally low
 _STRONGEST = 1e12
 
 
@@ -61,30 +65,32 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost, b
     None as well where sections or bodies are turned there by more than ``beside``, rad: what goes much farther on the
     way there is followed no further.
     """
-    onward = float(np.sign(target - lost.value))
-    beyond = _ASIDE if lost.loss is Loss.BIFURCATION else _BEYOND
-    march.values[load] = lost.value + onward * min(beyond * span, abs(target - lost.value))
+    beyond, left = _ASIDE if lost.loss is Loss.BIFURCATION else _BEYOND, target - lost.value
+    march.values[load] = lost.value + float(np.sign(left)) * min(beyond * span, abs(left))
     if lost.loss is not Loss.CONTACT:
         # what lets go under tight penalties holds on under loose ones
         march.penalties = {pair: Penalty(pair.stiffness) for pair in march.penalties}
     march.system = lost.system
     march.renew()
-    size = float(np.abs(lost.direction[march.model.moving]).max())
+    least = 10.0 * abs(lost.left) + 1.0
+    way = leaning(march.model, lost.system, least) if lost.loss is Loss.BIFURCATION else lost.direction
+    size = float(np.abs(way[march.model.moving]).max())
     if not size > 0.0:
         return None
-    iterations = march.iterations
+    iterations, energy = march.iterations, penalised_energy(march.model, march.system, march.values)
     kicks, steps = (_KICKS[:1], _FEW) if np.isfinite(beside) else (_KICKS, _STEPS)
     for kick in kicks:
-        ways: list[tuple[float, int, March, float]] = []
+        ways: list[tuple[float, March, float]] = []
         for sense in (1.0, -1.0):
             trial = march.saved()
-            start = advance(march.model, lost.system.z, sense * kick / size * lost.direction)
-            drag = 10.0 * abs(lost.left) + 1.0
+            start = advance(march.model, lost.system.z, sense * kick / size * way)
+            drag = least
             while drag < _STRONGEST and not _step(trial, load, start, drag, start):
                 drag *= 10.0
             if drag < _STRONGEST:
-                ways.append((penalised_energy(trial.model, trial.system, trial.values), -len(ways), trial, drag))
-        for _, _, trial, drag in sorted(ways, key=lambda way: way[:2]):
+                ways.append((energy - penalised_energy(trial.model, trial.system, trial.values), trial, drag))
+        most = max((fall for fall, *_ in ways), default=0.0)
+        for _, trial, drag in sorted(ways, key=lambda each: each[0] < most - _SAME * abs(most)):
             if _fallen(trial, load, drag, lost.system.z, _ASTRAY * beside, steps):
                 march.iterations += trial.iterations - iterations
                 march.restore(trial)

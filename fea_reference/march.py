@@ -27,7 +27,7 @@ from fea_reference.contacts import (
     touch,
     zones_of,
 )
-from fea_reference.curvature import positive, smallest_curvature
+from fea_reference.curvature import positive, softest
 from fea_reference.face import cut
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
@@ -162,7 +162,7 @@ class March:
     def curvature(self) -> float:
         """The smallest curvature of the potential energy on the feasible directions, found once for every system."""
         if self.known is None or self.known[0] is not self.system:
-            self.known = self.system, smallest_curvature(self.model, self.system)
+            self.known = self.system, softest(self.model, self.system).curvature
         return self.known[1]
 
     @property

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from comparisons.geometry import length
 from cprbm_scene.answer import Answer, Array, BeamState, StationAnswer
-from cprbm_scene.geometry import points_on, tangents_on
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import Beam, BeamMoment, DistributedLoad, Force, Material, Moment, Scene, WeldedEnd
 
 Complex = NDArray[np.complex128]
@@ -75,8 +75,8 @@ class DeformedBeam:
 
     def rest(self, s: Array) -> tuple[Complex, Complex]:
         """Positions X and unit tangents X' at arc lengths (k,)."""
-        places, tangents = (along(self.beam.curve, s / self.length) @ _PLANE for along in (points_on, tangents_on))
-        return np.asarray(places), np.asarray(tangents)
+        line, u = shape_of(self.beam.curve), s / self.length
+        return np.asarray(line.point(u) @ _PLANE), np.asarray(line.tangent(u) @ _PLANE)
 
     def thickness(self, s: Array) -> Array:
         """Thickness at arc lengths (k,), m."""

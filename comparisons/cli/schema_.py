@@ -10,7 +10,7 @@ import click
 @click.command("schema")
 def command() -> int:
     """Print the JSON schema of scene files."""
-    from cprbm_scene.schema import schema
+    from cprbm_scene.reading import schema
 
     click.echo(json.dumps(schema(), indent=1, ensure_ascii=False))
     return 0

@@ -23,7 +23,7 @@ import numpy as np
 
 from cprbm_scene import Arc, Line, Spline
 from cprbm_scene.answer import Array
-from cprbm_scene.geometry import points_on
+from cprbm_scene.curve_records import shape_of
 
 EXACT = 1e-9
 MOST = 257
@@ -108,7 +108,7 @@ def _spline(p: Array, directions: Array | None, allowed: float, L: float) -> Fit
             start_direction=ends[0],
             end_direction=ends[1],
         )
-        deviation = _distance(p, points_on(spline, np.linspace(0.0, 1.0, _FINE)))
+        deviation = _distance(p, shape_of(spline).point(np.linspace(0.0, 1.0, _FINE)))
         if deviation <= allowed:
             return Fitted(spline, deviation)
         if len(chosen) == len(p):

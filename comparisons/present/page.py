@@ -15,6 +15,7 @@ from errno import EPERM
 from importlib.resources import files
 from pathlib import Path
 
+from comparisons.answer_file import packed
 from comparisons.case import Comparison
 from comparisons.formats import percent
 from comparisons.offset_verdict import OffsetComparison
@@ -25,7 +26,6 @@ from comparisons.present.columns import Figure, Section, Table
 from comparisons.present.figures import comparison_figures
 from comparisons.present.stepper import HEADERS, SHADES, Stepper, stepper
 from comparisons.present.table import STYLES, html_cells, word_columns
-from comparisons.store import packed_json
 from comparisons.writing import write
 from cprbm_scene import Question
 
@@ -283,7 +283,7 @@ def put_case(folder: Path, compared: Comparison | OffsetComparison, figures: Ite
         answers = {"cprbm paper": runs.paper, "cprbm perturbed": runs.perturbed, "exact": runs.exact}
         answers[f"cprbm {runs.other_theory}"] = runs.other
         found = {**dict(runs.everything()), **{name: each for name, each in answers.items() if each is not None}}
-        write(own / "answers.json.gz", packed_json(found))
+        write(own / "answers.json.gz", packed(found))
         write(
             own / f"{contact_forces.NAME}.csv",
             contact_forces.contact_csv(compared.scene, (runs.cprbm[0], runs.reference)),

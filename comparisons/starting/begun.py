@@ -7,7 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from comparisons.writing import write
-from cprbm_scene.schema import schema
+from cprbm_scene.reading import schema
 
 SCHEMA = "scene.schema.json"
 """Name of the schema's file, beside the scene that refers to it."""

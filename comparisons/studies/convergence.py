@@ -19,7 +19,6 @@ from comparisons.studies.budget import account_of
 from comparisons.studies.convergence_tables import convergence_tables, document, sentences_of, shown_size
 from comparisons.studies.families import Convergence, Family, converged
 from comparisons.thinning import at_shown
-from comparisons.verdict.uncertainty import OWN
 from cprbm_scene import OffsetQuestion, Question
 
 if TYPE_CHECKING:
@@ -84,8 +83,8 @@ def convergence_figures(found: Convergence) -> tuple[Figure, ...]:
                     _draw(axes, family, names.index(family.probe.name))
             axes.set_title(title, loc="left")
             axes.set_xlabel("links per beam, N" if method == "cprbm" else "elements per beam, N")
-        for axes, order in zip(panels, (OWN["cprbm"], OWN["fea"]), strict=True):
-            _triangle(axes, found.sizes, order)
+        for axes, series in zip(panels, found.series, strict=True):
+            _triangle(axes, found.sizes, series.order)
         panels[0].set_ylabel("distance from the limit / the probe's largest value")
         common_legend(drawing, "right center", 1, 8.5)
         caption = (

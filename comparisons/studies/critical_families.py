@@ -16,7 +16,7 @@ from comparisons.stages import span_of
 from comparisons.studies.families import Series
 from comparisons.verdict.completeness import ends_at_critical
 from comparisons.verdict.events import mechanism
-from comparisons.verdict.uncertainty import OWN, Limit, limit, orders
+from comparisons.verdict.uncertainty import Limit, limit, orders
 from cprbm_scene import Answer, Critical, Scene, Stage
 
 
@@ -89,7 +89,7 @@ def _family(scene: Scene, series: Series, stage: Stage, place: int, here: dict[i
     used = tuple(ns[first:])
     values = np.array([here[n].value for n in used])
     floor = max((here[n].uncertainty for n in used), default=0.0)
-    found = limit(used, values, OWN[series.method], floor) if len(used) > 1 else None
+    found = limit(used, values, series.order, floor) if len(used) > 1 else None
     why = "one size alone counts" if found is None else found.why
     if found is None and first:
         why = f"at N = {ns[first - 1]} there is none by this mechanism"

@@ -28,7 +28,7 @@ from comparisons.stations import station_of
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import ROUND_OFF
 from comparisons.verdict.scales import probe_scales
-from comparisons.verdict.uncertainty import OWN, Limit, limit, observed, orders
+from comparisons.verdict.uncertainty import OWN, STANDARD, Limit, limit, observed, orders
 from cprbm_scene import Answer, Probe, Scene, Stage
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES
@@ -67,6 +67,11 @@ class Series:
         every = [answer.settings for answer in self.answers.values()]
         common = {key: value for key, value in every[0].items() if all(other.get(key) == value for other in every)}
         return {**common, "kinematics": self.theory}
+
+    @property
+    def order(self) -> float:
+        """Order of the method on smooth states: of the paper's chain 2."""
+        return STANDARD if self.variant == "paper" else OWN
 
     @property
     def whole(self) -> dict[int, Answer]:
@@ -280,7 +285,7 @@ def _family(
     used = () if last.size == 0 else tuple(ns[first:])
     found = None
     if len(used) > 1:
-        found = limit(used, np.array([values[n] for n in used]), OWN[series.method], 0.0 if is_open else floor)
+        found = limit(used, np.array([values[n] for n in used]), series.order, 0.0 if is_open else floor)
     why = "" if found is None else found.why
     if is_open:
         why = "the contact is open"

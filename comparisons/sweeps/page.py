@@ -44,13 +44,12 @@ def _label(sweep: Sweep, point: Any) -> str:  # noqa: ANN401 - a point
 def _family(sweep: Sweep) -> dict[str, Any]:
     """Curves of the first number of the first stage, for the slider."""
     solved = sweep.solved()
-    if not solved:
+    names = names_of(fullest(solved)) if solved else []
+    if not names:
         return {"curves": []}
-    stage, name = next(iter(names_of(fullest(solved))), ("", ""))
+    stage, name = names[0]
     curves = [(task, outcome, curve_of(outcome, stage, name)) for task, outcome in solved]
     ends = [curve[-1] for _, _, curve in curves if curve]
-    if not ends:
-        return {"curves": []}
     size, unit = display_unit(sweep.scene, ends[0]["unit"], max(abs(each["value"]) for each in ends))
     step, step_unit = display_unit(sweep.scene, ends[0]["station_unit"], max(abs(each["station"]) for each in ends))
     return {

@@ -18,11 +18,12 @@ from comparisons.sweeps.outcome import Outcome, Record
 from comparisons.sweeps.points import Axis
 from comparisons.sweeps.running import Sweep, Task
 from comparisons.sweeps.tables import last_numbers, name_of
+from comparisons.verdict.rows import ROUND_OFF
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_PANELS = 6
+_PANELS = 12
 """Largest number of panels in a figure."""
 
 _Solved = list[tuple[Task, Outcome]]
@@ -45,8 +46,13 @@ def fullest(solved: _Solved) -> Outcome:
 
 
 def names_of(outcome: Outcome) -> list[tuple[str, str]]:
-    """Stages and names of the numbers of the last stations."""
-    return [(number["stage"], name_of(number)) for number in last_numbers(outcome)]
+    """Stages and names of the numbers of the last stations, without components that are round-off at all stations."""
+    largest: dict[tuple[str, ...], float] = {}
+    for number in outcome.numbers:
+        for key in ((number["unit"],), (number["stage"], name_of(number))):
+            largest[key] = max(largest.get(key, 0.0), abs(number["value"]))
+    names = [((each["stage"], name_of(each)), each["unit"]) for each in last_numbers(outcome)]
+    return [name for name, unit in names if largest[name] > ROUND_OFF * largest[unit,]]
 
 
 def curve_of(outcome: Outcome, stage: str, name: str) -> list[Record]:

@@ -11,13 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
 from comparisons.pairing import Uncertainties
 from comparisons.stations import station_of
-from comparisons.verdict.uncertainty import OWN, Error, error, limit
+from comparisons.verdict.uncertainty import Error, error, limit
 from cprbm_scene import Answer, Probe, Scene, StationAnswer
 from cprbm_scene.answer import Array, PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict
@@ -39,7 +38,7 @@ class Limits:
     probes: tuple[str, ...]
 
 
-def limits_of(scene: Scene, answers: Mapping[int, Answer], solver: Literal["cprbm", "fea", "solid"]) -> Limits:
+def limits_of(scene: Scene, answers: Mapping[int, Answer]) -> Limits:
     """Limits of answers by N: complete answers at the finest N, at half of it, and at any further N."""
     n = max(answers)
     fine, stations, uncertainties, names = answers[n], list[StationAnswer](), {}, set[str]()
@@ -47,7 +46,7 @@ def limits_of(scene: Scene, answers: Mapping[int, Answer], solver: Literal["cprb
         by_size = {size: station_of(answers[size], station.stage, station.value) for size in sorted(answers)}
         values = {}
         for probe in scene.probes_in(station.stage):
-            values[probe.name], stated, extrapolated = _value(probe, by_size, OWN[solver])
+            values[probe.name], stated, extrapolated = _value(probe, by_size)
             names |= {probe.name} if extrapolated else set()
             if stated is not None:
                 uncertainties[station.stage, station.value, probe.name] = stated
@@ -68,7 +67,7 @@ def _note(n: int, probes: Collection[str]) -> str:
     )
 
 
-def _value(probe: Probe, by_size: Mapping[int, StationAnswer], order: float) -> tuple[Array, Error | None, bool]:
+def _value(probe: Probe, by_size: Mapping[int, StationAnswer]) -> tuple[Array, Error | None, bool]:
     """Value (k,) at a station, its uncertainty (None without a law), and whether the value is a limit."""
     n = max(by_size)
     value = by_size[n].values[probe.name]
@@ -76,7 +75,7 @@ def _value(probe: Probe, by_size: Mapping[int, StationAnswer], order: float) -> 
     if value.size == 0 or n // 2 not in sizes:
         return value, None, False
     values = [by_size[size].values[probe.name] for size in sizes]
-    own, found = error(sizes, values, at=len(sizes) - 1, order=order), limit(sizes, values, order)
+    own, found = error(sizes, values, at=len(sizes) - 1), limit(sizes, values)
     ordered = probe.quantity != "ends" or bool(np.all(np.diff(found.value) >= 0.0))
     surer = len(sizes) < 3 or found.uncertainty.sum() <= (own.even + own.uneven).sum()  # two grids show no order
     if not (ordered and surer):

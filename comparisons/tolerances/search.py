@@ -159,7 +159,7 @@ class _Search:
             self.limits, self.level = None, Level(self.n, None, trouble)
             return value or self.answers[self.n]
         self.answers = {size: answer for size, answer in self.answers.items() if not problems[size]}
-        self.limits = limits_of(self.scene, self.answers, self.solver)
+        self.limits = limits_of(self.scene, self.answers)
         self.level = Level(self.n, self._worst(self.limits, value))
         return value or self.limits.answer
 

@@ -2,9 +2,9 @@
 
 A row differs if |v_c − v_f| exceeds its stated uncertainty (:mod:`comparisons.verdict.bounds`), or if a true error
 beside the exact value exceeds twice the stated error.  A row is undecided if the stated uncertainty exceeds the scene's
-limit: such an uncertainty would excuse a wrong answer (COARSE).  A row in ``bending`` is undecided as well if the step
-of theory θ exceeds the limit (THEORY): both solvers then agree on a number that the mechanism's stretch and shear
-change.  All other rows agree.
+limit: such an uncertainty would excuse a wrong answer, and θ may be an error of discretisation (COARSE).  All other
+rows in ``bending`` are undecided if the step of theory θ exceeds the limit (THEORY): both solvers then agree on a
+number that the mechanism's stretch and shear change.  The rest agrees.
 
 A contradiction is no evidence against a solver, and the row is undecided, in four cases:
 
@@ -69,7 +69,7 @@ def _judge(table: RunsTable, row: Row, *, faint: bool) -> Judged:
         return Word.UNDECIDED, Reason.NOT_UNIQUE
     if row.events.unsettled:
         return Word.UNDECIDED, _event_reason(row)
-    return Word.UNDECIDED, Reason.THEORY if by_theory else Reason.COARSE
+    return Word.UNDECIDED, Reason.COARSE if bounds.total > limit else Reason.THEORY
 
 
 def judge_case(rows: Sequence[Row], judged: Sequence[Judged]) -> tuple[Word, Reason | None]:

@@ -21,10 +21,15 @@ Roache's factor for three grids (P. J. Roache, *Verification and Validation in C
 1998, chapter 5).
 
 *Order.*  On three grids q solves |v_3 − v_2|/|v_2 − v_1| = (N_2^−q − N_3^−q)/(N_1^−q − N_2^−q), whose right side falls
-with q.  The assumed p is the highest of the method's own order, 2 and 1 of which the changes show three quarters: 2
-from q = 1.5 on.  Where changes do not fall, p is 1.  Where they are round-off or fall faster than any
-order, p is 2.  (L. Eça and M. Hoekstra, *J. Comput. Phys.* 262 (2014) 104-130, likewise keep the theoretical order and
-widen the uncertainty where the observed order departs from it.)
+with q.  The assumed p is the own order of the method where q is within a tenth of the own order: uneven errors of
+lower order show such a q by accident, and rarely.  Elsewhere p is 2 from q = 1.5 on, and 1 below; no p exceeds the own
+order.  Where changes are round-off or fall faster than any order, p is 2.  (L. Eça and M. Hoekstra, *J. Comput. Phys.*
+262 (2014) 104-130, likewise keep the theoretical order and widen the uncertainty where the observed order departs from
+it.)
+
+Measured with the CPRBM on built-in cases, cases of users and 30 random scenes, against four to eight times the links:
+no row of a verdict lies outside (3 334 rows, largest share 0.80), 0.03 % of the values on further grids, and 0.8 % of
+the limits.  In the median a true error is 0.84 of the stated error; with p = 2 throughout 0.17.
 
 *Value.*  u_i = S (|E_i| + max_j |d_j| (N_j/N_i)^p).  |E_i| is the larger of the errors by p and, where q is smaller,
 by q: an order above q would leave |E_i| too small.  The grid at 8/7 N between N and 2N moves every node.  An error
@@ -52,9 +57,9 @@ order 1, since an order below 2 leaves L short of the limit.
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -62,12 +67,13 @@ from cprbm_scene.answer import Array, Flags
 
 SAFETY = 1.25
 STANDARD = 2.0
-"""Order that both solvers have at least, away from singular places."""
+"""Order of the chain in ``paper``, and least order of all methods away from singular places."""
 
-OWN: Mapping[Literal["cprbm", "fea", "solid"], float] = {"cprbm": 2.0, "fea": 4.0, "solid": 4.0}
-"""Order of each method on smooth states: the square of a link's length; the fourth power of an element's length for
-cubic Hermite elements and for quadrilaterals of second order (Strang and Fix, *An Analysis of the Finite Element
-Method*, section 1.6: 2(k + 1 − m) for polynomials of degree k and energies of derivatives of order m)."""
+OWN = 4.0
+"""Order of all methods on smooth states: the fourth power of a link's length for the corrected chain of ``auto``
+(docs/method.md), and of an element's length for cubic Hermite elements and for quadrilaterals of second order (Strang
+and Fix, *An Analysis of the Finite Element Method*, section 1.6: 2(k + 1 − m) for polynomials of degree k and energies
+of derivatives of order m)."""
 
 GRIDS = 4
 """Finest grids of a family that a limit uses."""
@@ -75,6 +81,7 @@ GRIDS = 4
 _ROUND_OFF = "the change is round-off"
 _SUDDEN = "the change falls faster than any order"
 _SHOWN = 0.75  # share of an order that three grids must show for it
+_NEAR = 0.1  # share of the own order by which the shown order may differ from the own order
 _LEAST, _HIGHEST = 1e-6, 16.0  # no order is sought beyond
 
 Values = Sequence[Array] | Array
@@ -121,7 +128,7 @@ class Limit:
         return np.asarray(np.abs(values - self.value) + self.uncertainty)
 
 
-def error(sizes: Sequence[float], values: Sequence[Array], at: int = 0, order: float = STANDARD) -> Error:
+def error(sizes: Sequence[float], values: Sequence[Array], at: int = 0, order: float = OWN) -> Error:
     """Stated uncertainty of ``values[at]``.
 
     Args:
@@ -143,7 +150,7 @@ def error(sizes: Sequence[float], values: Sequence[Array], at: int = 0, order: f
     return Error(SAFETY * even, SAFETY * uneven.max(axis=0))
 
 
-def limit(sizes: Sequence[float], values: Values, order: float = STANDARD, floor: float = 0.0) -> Limit:
+def limit(sizes: Sequence[float], values: Values, order: float = OWN, floor: float = 0.0) -> Limit:
     """Limit of values that converge with N.
 
     Args:
@@ -231,8 +238,9 @@ def _assumed(n: Array, v: Array, order: float, floor: float) -> tuple[float, flo
     three = sorted((_third(n), _coarse(n), len(n) - 1))
     q, why = observed(n[three], v[three], floor)
     fall = STANDARD if why in (_ROUND_OFF, _SUDDEN) else _fall(n[three], v[three])
-    candidates = (order, min(order, STANDARD))
-    return next((p for p in candidates if fall >= _SHOWN * p), min(order, 1.0)), q, why
+    if q is not None and abs(q - order) <= _NEAR * order:
+        return order, q, why
+    return min(order, STANDARD if fall >= _SHOWN * STANDARD else 1.0), q, why
 
 
 def _coarse(n: Array) -> int:

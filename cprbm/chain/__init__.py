@@ -2,10 +2,9 @@
 
 from cprbm.chain.arrays import RowArrays, add_row_gradient, link_arrays, row_arrays, row_values
 from cprbm.chain.beam import BeamChain, ChainUnits, Theory
-from cprbm.chain.form import Form
 from cprbm.chain.kernel import Blocks, Joints, Links, empty_blocks, evaluate_chains, strain_energy
 from cprbm.chain.loads import hidden_angles, hidden_flexibility
-from cprbm.chain.mechanism import Mechanism, Row, mechanism_of
+from cprbm.chain.mechanism import Form, Mechanism, Row, mechanism_of
 from cprbm.chain.rows import add_rows, apart_ends, stop_angle
 
 __all__ = [

@@ -31,7 +31,7 @@ import numpy as np
 from cprbm.chain.spline import NeutralLine, nodes_through, polygon_line, spline_line
 from cprbm_scene import Beam, Material
 from cprbm_scene.answer import Array, Ints
-from cprbm_scene.geometry import arc_length, points_on, tangents_on
+from cprbm_scene.curve_records import shape_of
 
 Theory = Literal["bending", "stretch", "shear"]
 
@@ -68,13 +68,15 @@ class ChainUnits:
 class Section:
     """Rectangular section of a ``beam`` of a given ``length``; ``unit`` is the unit of length, m.
 
-    ``young`` is Young's modulus, in units of moment and length.
+    ``young`` is Young's modulus, ``shearing`` G times the share of the area that carries shear, in units of moment and
+    length.
     """
 
     beam: Beam
     length: float
     unit: float
     young: float
+    shearing: float
 
     def thickness(self, s: Array) -> Array:
         """Thickness at arc lengths ``s`` (k,)."""
@@ -160,7 +162,7 @@ class BeamChain:
 
     def rest_angle(self, s: Array) -> Array:
         """Angle of the neutral line's tangent at rest at arc lengths ``s`` (k,), continuous along the beam."""
-        tangents = tangents_on(self.section.beam.curve, s / self.length)
+        tangents = shape_of(self.section.beam.curve).tangent(s / self.length)
         exact = np.arctan2(tangents[:, 1], tangents[:, 0])
         links, weights = self.angle_weights(s)
         near = (weights * self.link_angle[links]).sum(axis=1)
@@ -187,22 +189,22 @@ def beam_chain(
         units: of the result.
         corrected: the corrections of fourth order, or the plain chain.
     """
-    length = arc_length(beam.curve) / units.length
+    length = shape_of(beam.curve).length / units.length
     axis = None if corrected or beam.paper is None else beam.paper.uniform
     borders, middles = _borders(beam, links, length, axis)
     arcs = np.concatenate([[0.0], middles, [length]])
     young = material.youngs_modulus * units.length**3 / units.moment
     shearing = 0.5 * young / (1.0 + material.poisson_ratio) * SHEAR_COEFFICIENT
-    section, knots = Section(beam, length, units.length, young), beam.knots * length
+    section, knots = Section(beam, length, units.length, young, shearing), beam.knots * length
     per_area = _integrals(lambda s: 1.0 / section.area(s), arcs, knots) / np.diff(arcs)
-    tangents = tangents_on(beam.curve, borders / length)
+    tangents = shape_of(beam.curve).tangent(borders / length)
     angles = np.unwrap(np.arctan2(tangents[:, 1], tangents[:, 0]))
     plain = BeamChain(
         name=name,
         section=section,
         borders=borders,
         arcs=arcs,
-        nodes=units.place(points_on(beam.curve, arcs / length)),
+        nodes=units.place(shape_of(beam.curve).point(arcs / length)),
         link_length=np.zeros(0),
         link_angle=np.zeros(0),
         stretch=per_area / young * (theory != "bending"),
@@ -263,12 +265,12 @@ def _borders(beam: Beam, count: int, length: float, axis: Literal["x", "y"] | No
     even = np.linspace(0.0, 1.0, 2 * count + 1)
     if axis is not None:
         column, u = "xy".index(axis), np.linspace(0.0, 1.0, SAMPLES_PER_ELEMENT * count + 1)
-        along = points_on(beam.curve, u)[:, column]
+        along = shape_of(beam.curve).point(u)[:, column]
         asked = along[0] + even * (along[-1] - along[0])
         even = np.interp(even, (along - along[0]) / (along[-1] - along[0]), u)
         for _ in range(NEWTON_STEPS):
-            slope = arc_length(beam.curve) * tangents_on(beam.curve, even[1:-1])[:, column]
-            even[1:-1] += (asked - points_on(beam.curve, even)[:, column])[1:-1] / slope
+            slope = shape_of(beam.curve).length * shape_of(beam.curve).tangent(even[1:-1])[:, column]
+            even[1:-1] += (asked - shape_of(beam.curve).point(even)[:, column])[1:-1] / slope
     return even[::2] * length, even[1::2] * length
 
 

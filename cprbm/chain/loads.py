@@ -24,8 +24,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from cprbm.chain.beam import BeamChain
-from cprbm.chain.form import Form
-from cprbm.chain.mechanism import Mechanism, Row, UnitLoad
+from cprbm.chain.mechanism import Form, Mechanism, Row, UnitLoad
 from cprbm_scene.answer import Array, Ints
 from cprbm_scene.statement import BeamForce, BeamMoment, Force, Load, Moment
 

@@ -1,13 +1,20 @@
-"""Numbering of a mechanism's unknowns, and rows.
+"""Numbering of a mechanism's unknowns, forms of the unknowns, and rows.
 
 =======  ====================================================================================
 symbol   meaning
 =======  ====================================================================================
 z        unknowns: the chain of every beam, then bodies, then nodes carried by bodies, then multipliers
 p, n, θ  of a chain: position of the first node; force, angle and position of the rear node, of every link
-q, φ     displacement of a moving body's first point, rotation of the body
+q, φ     displacement of a moving body's first point X₀, rotation of the body
 f, μ     form and multiplier of a row
+c, a_i   constant of a form, coefficient of z_i
+A, B     coefficients of cos φ − 1 and sin φ
 =======  ====================================================================================
+
+    f(z) = c + Σ a_i z_i + Σ [A (cos φ − 1) + B sin φ]
+
+A body carries the point X to X + q + (R(φ) − 1)(X − X₀).  The point's coordinate along d is a form with
+A = d·(X − X₀) and B = d·J(X − X₀), J the quarter turn.
 
 Joints, guides, drives, loads and stops are rows of the same kind.  Either the value of a row is prescribed (joint,
 guide, drive, stop at a limit): f(z) = f*.  Or the force of a row is prescribed (load, stop within the limits): μ = μ*.
@@ -24,13 +31,60 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cprbm.chain.beam import BeamChain, ChainUnits, Theory, beam_chain
-from cprbm.chain.form import X_AXIS, Y_AXIS, Direction, Form, carried_coordinate, node_coordinate, unknown
 from cprbm_scene import Scene
 from cprbm_scene.answer import Array, Ints
-from cprbm_scene.geometry import arc_length
+from cprbm_scene.curve_records import shape_of
 
 PER_LINK = 5
 """Unknowns of a link: force (2), angle, position of the node behind it (2)."""
+
+Direction = tuple[float, float]
+AXES: tuple[tuple[str, Direction], ...] = (("x", (1.0, 0.0)), ("y", (0.0, 1.0)))
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """A form; ``linear`` holds (index, a), ``turning`` (index of φ, A, B)."""
+
+    constant: float = 0.0
+    linear: tuple[tuple[int, float], ...] = ()
+    turning: tuple[tuple[int, float, float], ...] = ()
+
+    def __add__(self, other: Form) -> Form:
+        return Form(self.constant + other.constant, self.linear + other.linear, self.turning + other.turning)
+
+    def __sub__(self, other: Form) -> Form:
+        return self + other * -1.0
+
+    def __mul__(self, factor: float) -> Form:
+        return Form(
+            self.constant * factor,
+            tuple((i, a * factor) for i, a in self.linear),
+            tuple((i, A * factor, B * factor) for i, A, B in self.turning),
+        )
+
+    def value(self, z: Array) -> float:
+        """f(z)."""
+        linear = sum(a * float(z[i]) for i, a in self.linear)
+        turned = sum(-2.0 * A * np.sin(0.5 * z[i]) ** 2 + B * np.sin(z[i]) for i, A, B in self.turning)
+        return float(self.constant + linear + turned)
+
+
+def unknown(index: int, rest: float = 0.0) -> Form:
+    """Change of an unknown from the value at rest."""
+    return Form(-rest, ((index, 1.0),))
+
+
+def node_coordinate(index: int, direction: Direction) -> Form:
+    """Coordinate along ``direction`` of the node whose x is the unknown ``index``."""
+    return Form(linear=((index, direction[0]), (index + 1, direction[1])))
+
+
+def carried_coordinate(body: int, reference: Array, place: Array, direction: Direction) -> Form:
+    """Coordinate along ``direction`` of a point of a body whose displacement and rotation begin at index ``body``."""
+    d, arm = np.array(direction), place - reference
+    turning = ((body + 2, float(d @ arm), float(d[1] * arm[0] - d[0] * arm[1])),)
+    return Form(float(d @ place), node_coordinate(body, direction).linear, turning if np.any(arm) else ())
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +201,7 @@ class Mechanism:
     def attach_node(self, body: str, place: Array) -> int:
         """Index of the x of a new node on a body, at ``place`` (2,) at rest."""
         node = self.allocate(place)
-        for axis, direction in (("x", X_AXIS), ("y", Y_AXIS)):
+        for axis, direction in AXES:
             form = node_coordinate(node, direction) - self.carried(body, place, direction)
             self.rows.append(Row(f"{body}.node{node}.{axis}", form))
         return node
@@ -176,7 +230,7 @@ def mechanism_of(scene: Scene, links: Mapping[str, int], theory: Theory, *, corr
 
 def _units(scene: Scene) -> ChainUnits:
     """Units: the longest beam, the largest EI over this length, the middle of the beams' ends."""
-    length = max(arc_length(beam.curve) for beam in scene.beams.values())
+    length = max(shape_of(beam.curve).length for beam in scene.beams.values())
     rigidity = max(
         scene.materials[beam.material].youngs_modulus
         * float(np.max(beam.width_at(beam.knots) * beam.thickness_at(beam.knots) ** 3))

@@ -19,9 +19,8 @@ from typing import Literal
 
 import numpy as np
 
-from cprbm.chain.form import X_AXIS, Y_AXIS, Direction, Form, node_coordinate
 from cprbm.chain.loads import load_row
-from cprbm.chain.mechanism import Mechanism, Row
+from cprbm.chain.mechanism import AXES, Direction, Form, Mechanism, Row, node_coordinate
 from cprbm_scene import FreeEnd, Scene, WeldedEnd
 from cprbm_scene.statement import BeamEnd, DisplacementDrive, PinnedEnd, SlidingBody, TurningBody
 
@@ -31,7 +30,6 @@ APART = 1e-6
 STRAIGHT = 1e-9
 """Distance of β₀ from −π, rad, below which it is π: round-off decides between the two."""
 
-AXES: tuple[tuple[str, Direction], ...] = (("x", X_AXIS), ("y", Y_AXIS))
 END: tuple[Literal["start"], Literal["end"]] = ("start", "end")
 
 

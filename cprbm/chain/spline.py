@@ -19,6 +19,7 @@ At rest the spline of the nodes meets the neutral line at every joint.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.sparse import csr_matrix, identity, vstack
@@ -102,6 +103,7 @@ def polygon_line(arcs: Array) -> NeutralLine:
     return NeutralLine(arcs, identity(len(arcs), format="csr"), LINEAR, np.diff(arcs), np.zeros(len(arcs) - 1))
 
 
+@lru_cache(maxsize=16)
 def control_polygon(count: int) -> csr_matrix:
     """Matrix (count + 2, count) from nodes to control points, with a further control point beyond either end."""
     inner = identity(count, format="lil")

@@ -17,7 +17,7 @@ from cprbm.contact.corners import Corner, corner_curve, part_of, sharp_bends, sh
 from cprbm.contact.curve import NO_SIDES, Curve, Frames, beam_curve
 from cprbm.contact.own_pin import pin_rows
 from cprbm_scene import BeamContact, CircleContact, FunctionContact, HalfPlaneContact, LineContact, SelfContact
-from cprbm_scene.geometry import arc_length, points_on, tangents_on
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import EllipseContact, RigidContact, SplineContact
 
 PIECES = 256
@@ -101,7 +101,7 @@ def _rigid_curve(m: Mechanism, frames: Frames, contact_name: str, contact: Rigid
             ascends = contact.range[1] > contact.range[0]
             left = (contact.side == "above") == (ascends == (contact.axis == "x"))
             side = 1 if left else -1
-            points = place(points_on(contact.curve, np.linspace(0.0, 1.0, PIECES + 1)))
+            points = place(shape_of(contact.curve).point(np.linspace(0.0, 1.0, PIECES + 1)))
             m.rows.extend(pin_rows(m, contact_name, contact, points, side))
             return _smooth(m, frames, name, contact, side), side
         case SplineContact():
@@ -118,6 +118,8 @@ def _smooth(
 ) -> Curve:
     """Smooth edge of a body, at even arc lengths, and the sides of the solid behind an open edge."""
     u = np.linspace(0.0, 1.0, PIECES + 1)
-    points, tangents = m.units.place(points_on(contact.curve, u)), tangents_on(contact.curve, u)
+    points, tangents = m.units.place(shape_of(contact.curve).point(u)), shape_of(contact.curve).tangent(u)
     sides = NO_SIDES if isinstance(contact, EllipseContact) else sides_behind(points, side, REACH)
-    return frames.smooth_edge(name, contact.body, points, tangents, arc_length(contact.curve) / m.units.length, sides)
+    return frames.smooth_edge(
+        name, contact.body, points, tangents, shape_of(contact.curve).length / m.units.length, sides
+    )

@@ -26,7 +26,7 @@ from cprbm.equilibrium.contact_gaps import least_gap
 from cprbm.equilibrium.newton import NotConvergedError, Solved
 from cprbm.equilibrium.solving import equilibrium
 from cprbm.equilibrium.system import System
-from cprbm.loose import loose_bodies
+from cprbm.settings import loose_bodies
 from cprbm_scene.statement import SlidingBody
 
 SHORTEST = 1e-3

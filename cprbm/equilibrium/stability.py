@@ -45,7 +45,7 @@ def softest(solved: Solved) -> Mode:
     """Smallest curvature and mode at a state; infinite if no direction is free."""
     system = solved.system
     root = np.sqrt(system.metric)
-    start = root * np.sin(1.0 + np.cumsum(system.metric))
+    start = root * (1.0 + np.cumsum(system.metric))
     sense = -1.0 if solved.lost else 1.0
     value, vector = _largest(*solved.factors.arrays, root, start / np.linalg.norm(start), sense)
     if not np.isfinite(value):

@@ -1,4 +1,6 @@
-"""Fitted boundaries of a scene's contacts of two beams.
+"""The paper's related joints, and the boundaries fitted to them in contacts of two beams.
+
+Related joints are joints of a beam with possible contact, by their place at rest.
 
 The paper draws the boundary's beam with an offset towards the other beam.  Which side that is, and on which side of the
 boundary the joints stay, follows from the nearest related joints at rest.
@@ -10,8 +12,8 @@ import numpy as np
 
 from cprbm.chain import Mechanism
 from cprbm.paper.fit import Boundary
-from cprbm.paper.related import related_joints
 from cprbm_scene import BeamContact, Mistake, SceneError
+from cprbm_scene.answer import Ints
 from cprbm_scene.clearance import overlap_at_rest
 
 FEWEST_POINTS = 3
@@ -63,3 +65,31 @@ def fitted_boundary(m: Mechanism, name: str, degree: int) -> tuple[Boundary, str
         angles=m.beam_angles(hints.boundary)[points[0] - 1 : points[-1] + 1],
     )
     return boundary, other
+
+
+def related_joints(m: Mechanism, contact: str, beam: str, fewest: int) -> Ints:
+    """Numbers (1 to N) of the joints of a beam within the related range of a contact; the beam's ends are no joints.
+
+    Args:
+        m: the mechanism.
+        contact, beam: names.
+        fewest: least number of joints.
+
+    Raises:
+        SceneError: the range holds fewer joints, or two separate parts of the beam.
+    """
+    hints, chain = m.scene.contacts[contact].paper, m.chains[beam]
+    key = f"contacts.{contact}.paper.related.{beam}"
+    related = None if hints is None else hints.related.get(beam)
+    joints = np.arange(1, chain.links)
+    if related is not None:
+        axis, (low, high) = ("x", related.x) if related.x is not None else ("y", related.y or (-np.inf, np.inf))
+        along = (chain.nodes[1:-1] * m.units.length + m.units.origin)[:, "xy".index(axis)]
+        joints = joints[(along >= low) & (along <= high)]
+        if len(joints) and joints[-1] - joints[0] >= len(joints):
+            found = "a range that holds two separate parts of the beam"
+            raise SceneError([Mistake(key, found, "a range that holds one part", m.scene.file)])
+    if len(joints) < fewest:
+        found = f"{len(joints)} related joints of {beam} at {chain.links - 1} links"
+        raise SceneError([Mistake(key, found, f"at least {fewest}: a wider range or more links", m.scene.file)])
+    return joints.astype(np.int64)

@@ -17,9 +17,8 @@ import numpy as np
 from cprbm.chain import Mechanism
 from cprbm.contact import Columns, CurveArrays, Geometry, Places, places_at
 from cprbm.equilibrium.columns import contact_columns
-from cprbm.paper.boundaries import fitted_boundary
+from cprbm.paper.boundaries import fitted_boundary, related_joints
 from cprbm.paper.fit import Boundary, fitted, fitted_columns, write_basis, write_fitted_gaps
-from cprbm.paper.related import related_joints
 from cprbm_scene import BeamContact, LineContact, Mistake, Scene, SceneError, SelfContact
 from cprbm_scene.answer import Array, Flags
 

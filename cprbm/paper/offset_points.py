@@ -28,7 +28,7 @@ import numpy as np
 
 from cprbm_scene import Polynomial, Spacing
 from cprbm_scene.answer import Array
-from cprbm_scene.geometry import points_on
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import Curve
 
 DEGREES = (2, 4)
@@ -61,7 +61,7 @@ def joint_places(spacing: Spacing, n: int) -> Array:
 def joints_on(curve: Curve, places: Array) -> Array:
     """p_i (k, 2), m, at w (k,)."""
     if not isinstance(curve, Polynomial):
-        return points_on(curve, places)
+        return shape_of(curve).point(places)
     first, last = curve.range
     variable = first + (last - first) * places
     value = np.polynomial.polynomial.polyval(variable, np.array(curve.coefficients))

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-
-import numpy as np
 
 from cprbm.chain import add_rows, mechanism_of
 from cprbm.contact import contact_geometry
@@ -18,24 +15,19 @@ from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.system import System, system_of
 from cprbm.paper.contacts import paper_geometry, refuse_contacts
-from cprbm.paper.crossing import Crossings, crossings_of
-from cprbm.paper.remarks import Remarks
+from cprbm.paper.inspection import Inspection
 from cprbm.results.contacts import states_of_contacts, touching_places
-from cprbm.results.forces import point_forces
-from cprbm.results.probes import displacement, probe_values
-from cprbm.results.statics import beam_state
-from cprbm.results.view import View
+from cprbm.results.probes import probe_values
+from cprbm.results.statics import Statics
+from cprbm.results.view import Plan, View
 from cprbm.settings import Settings
 from cprbm_scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Scene, Shape, Stage, StationAnswer
-from cprbm_scene.answer import Array, PointForces, frozen_array
-from cprbm_scene.progress import station_reached
+from cprbm_scene.answer import PointForces, frozen_array
+from cprbm_scene.stations import station_reached
 from cprbm_scene.threads import one_thread
 
 LOGGER = logging.getLogger("cprbm.stations")
 """Its first part is the solver's name in the message of progress."""
-
-LINE_POINTS = 2
-"""Points of a shape per link."""
 
 PLAIN = (
     "elements are longer than the bends that the forces in them allow: the values are those of the plain chain, "
@@ -53,7 +45,7 @@ class Run:
         values: present values (SI) of loads and drives.
         closing: values (SI) at which contacts first closed.
         stations, events, critical, gone_over, notes: of the answer.
-        remarks, crossings: of contacts in the formulation ``paper``.
+        inspection: of contacts in the formulation ``paper``.
     """
 
     scene: Scene
@@ -66,8 +58,7 @@ class Run:
     critical: list[Critical] = field(default_factory=list)
     gone_over: list[GoneOver] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-    remarks: Remarks = field(default_factory=Remarks)
-    crossings: Crossings | None = None
+    inspection: Inspection | None = None
     seconds: float = 0.0
 
     def __post_init__(self) -> None:
@@ -84,7 +75,8 @@ class Run:
         if self.settings.formulation == "paper" and geometry is not None:
             refuse_contacts(self.scene)
             every, geometry = geometry, paper_geometry(mechanism, geometry, self.settings.degree)
-            self.crossings = crossings_of(mechanism, every)
+            self.inspection = Inspection(mechanism, every)
+        self.plan = Plan(mechanism)
         return system_of(mechanism, geometry)
 
     def answer(self) -> Answer:
@@ -101,8 +93,8 @@ class Run:
                 ending, sentence = self._solve()
         touched = {name for station in self.stations for name in station.touching}
         never = [f"contact '{name}' never closed at a station" for name in self.scene.contacts if name not in touched]
-        if self.settings.formulation == "paper" and self.driver is not None:
-            self.notes += self.remarks.sentences(self.driver.solved)
+        if self.inspection is not None and self.driver is not None:
+            self.notes += self.inspection.sentences(self.driver.solved)
         return Answer(
             solver="cprbm",
             scene=self.scene.name,
@@ -156,11 +148,11 @@ class Run:
         certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent, driver.acting)
         if ending is not Ending.COMPLETED:
             raise StepError(ending, certificate.failures[0])
-        if self.crossings is not None:
-            crossed = self.crossings.found(driver.solved)
+        if self.inspection is not None:
+            crossed = self.inspection.crossed(driver.solved)
             if crossed:
                 raise StepError(Ending.BEAMS_CROSSED, crossed)
-            self.remarks.look(driver.solved, f"{stage.name} {station:.6g}")
+            self.inspection.look(driver.solved, f"{stage.name} {station:.6g}")
         self.stations.append(self._station(driver, stage, station, certificate))
         station_reached(LOGGER, self.scene, len(self.stations), self.stations[-1])
 
@@ -205,13 +197,14 @@ class Run:
 
     def _station(self, driver: Driver, stage: Stage, station: float, certificate: Certificate) -> StationAnswer:
         """Answer at a station."""
-        view = View(driver.solved, dict(self.values), self.scene.theory == "shear", self.closing)
-        units = self.system.mechanism.units
+        view = View(driver.solved, self.plan, dict(self.values), self.closing)
+        units, statics = self.system.mechanism.units, Statics(view)
         touching = touching_places(view)
         # the paper's contacts press on joints and turn links: no places of the line carry the forces
-        told = self.crossings is None
+        told = self.inspection is None
+        parts = self.system.mechanism.bodies.keys() | self.scene.beams.keys()
         forces = PointForces.collected(
-            point_forces(view) if told else (),
+            (force for force in statics.forces if told and force.target in parts),
             units.length,
             units.force,
             (float(units.origin[0]), float(units.origin[1])),
@@ -219,36 +212,23 @@ class Run:
         return StationAnswer(
             stage=stage.name,
             value=station,
-            values=probe_values(view, stage.name),
-            shapes=_shapes(view),
+            values=probe_values(statics, stage.name),
+            shapes={beam: _shape(view, beam) for beam in self.scene.beams},
             touching=touching,
             certificate=certificate,
             branch=len(self.critical),
-            beams={beam: beam_state(view, beam) for beam in self.scene.beams if told},
+            beams={beam: statics.state(beam) for beam in self.scene.beams if told},
             forces=forces,
             contacts=states_of_contacts(view, forces, touching),
-            bodies=_motions(view),
+            bodies={
+                name: frozen_array(view.z[first : first + 3] * (units.length, units.length, 1.0))
+                for name, first in self.system.mechanism.bodies.items()
+            },
         )
 
 
-def _shapes(view: View) -> Mapping[str, Shape]:
-    """Deformed neutral lines, m."""
-    units, found = view.mechanism.units, {}
-    for beam, chain in view.mechanism.chains.items():
-        s = np.interp(np.arange(LINE_POINTS * chain.links + 1) / LINE_POINTS, np.arange(chain.links + 1), chain.arcs)
-        places = view.line(beam, s) * units.length + units.origin
-        found[beam] = Shape(frozen_array(s * units.length), frozen_array(places[:, 0]), frozen_array(places[:, 1]))
-    return found
-
-
-def _motions(view: View) -> Mapping[str, Array]:
-    """Displacement of the first point, m, and rotation of every moving body, (3,)."""
-    return {
-        name: frozen_array(
-            (
-                *displacement(view, next(iter(view.scene.bodies[name].points))),
-                view.mechanism.rotation(name).value(view.z),
-            )
-        )
-        for name in view.mechanism.bodies
-    }
+def _shape(view: View, beam: str) -> Shape:
+    """Deformed neutral line, m."""
+    units, samples = view.mechanism.units, view.plan.samples[beam]
+    places = view.lines[beam][samples.shape] * units.length + units.origin
+    return Shape(*map(frozen_array, (samples.s[samples.shape] * units.length, *places.T)))

@@ -1,19 +1,112 @@
-"""A solved state for the results: unknowns with the forces of all rows, and lines of beams."""
+"""A solved state for the results: unknowns with the forces of all rows, lines of beams, closed places of contacts.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+q, φ     displacement of a moving body's first point, rotation of the body
+X₀, X    this point and another point of the body at rest; a = X − X₀
+F, N     force of a closed place, unit normal from the foot to the place
+C_A, C_B place on the first curve of a row, foot on the second; F N acts at C_A, −F N at C_B
+=======  ====================================================================================
+
+The point X moves by q + (R(φ) − 1) a.  The :class:`Plan` holds what is the same at all stations.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from cprbm.chain import BeamChain, Mechanism, hidden_angles
+from cprbm.contact import STENCIL, gap_frame
 from cprbm.continuation.path import potential
 from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.sharing import shared_multipliers
 from cprbm.equilibrium.system import hidden_forces
 from cprbm_scene import Scene
 from cprbm_scene.answer import Array
+
+LINE_POINTS = 2
+"""Points of a shape per link."""
+
+
+class Samples:
+    """Places of a beam at which a state is read.
+
+    Attributes:
+        chain: of the beam.
+        shape, nodes: places of the shape; of the start, the joints and the end.
+        of_probe: places of a probe of stress by the number of points.
+        s: arc lengths (k,), in units.
+        line: weights (k, N + 2) of the nodes in the positions.
+        rest: angles (k,) of the neutral line at rest.
+        links, weights: links (k, 4) and weights (k, 4) of their turns in the angles of the sections.
+        hidden: angles (rows, k) under unit loads, less the angles of the chain.
+        area, shearing: area of the section and GA_s (k,).
+        stress: stress of bending (k,) under the unit moment, E t/(2 EI).
+    """
+
+    def __init__(self, m: Mechanism, beam: str) -> None:
+        self.chain = chain = m.chains[beam]
+        count = LINE_POINTS * chain.links + 1
+        self.shape, self.nodes, self.of_probe = slice(count), slice(0, count, LINE_POINTS), dict[int, slice]()
+        parts = [np.interp(np.arange(count) / LINE_POINTS, np.arange(chain.links + 1), chain.arcs)]
+        stresses = (probe for probe in m.scene.probes if probe.of == beam and probe.quantity.endswith("stress"))
+        for points in {probe.points for probe in stresses}:
+            self.of_probe[points] = slice(count, count + points)
+            parts.append(np.linspace(0.0, chain.length, points))
+            count += points
+        self.s = s = np.concatenate(parts)
+        self.line, self.rest = chain.line.weights(s), chain.rest_angle(s)
+        self.links, self.weights = chain.angle_weights(s)
+        self.hidden = np.zeros((len(m.rows), count))
+        for number, row in enumerate(m.rows):
+            if row.unit_load is not None and row.unit_load.beam == beam:
+                self.hidden[number] = hidden_angles(chain, s, row.unit_load)
+        section = chain.section
+        self.area = section.area(s)
+        self.shearing = self.area * section.shearing
+        self.stress = 0.5 * section.young * section.thickness(s) / section.rigidity(s)
+
+
+class Plan:
+    """What results read from a mechanism.
+
+    Attributes:
+        samples: by beam.
+        owners: bodies by their points.
+        points: by name the index of the body's first unknown, −1 of a fixed body, and X and a, (2,).
+        numbers: of the rows by name.
+    """
+
+    def __init__(self, m: Mechanism) -> None:
+        self.samples = {beam: Samples(m, beam) for beam in m.chains}
+        self.owners = m.scene.owners
+        self.points = dict[str, tuple[int, Array, Array]]()
+        for point, body in self.owners.items():
+            place = m.units.place(m.scene.bodies[body].points[point])
+            self.points[point] = m.bodies.get(body, -1), place, place - m.reference(body)
+        self.numbers = {row.name: number for number, row in enumerate(m.rows)}
+
+
+class Pressed(NamedTuple):
+    """A closed place, in units: ``arcs`` on both curves of the pair, ``places`` and ``forces`` there.
+
+    ``surface`` is the position between both neutral lines where the curves touch; ``moves`` marks a point contact;
+    ``share`` is the offset of the place with the same force, beside a weld; ``on_first``: on the pair's first curve.
+    """
+
+    arcs: tuple[float, float]
+    places: tuple[Array, Array]
+    forces: tuple[Array, Array]
+    surface: Array
+    moves: bool
+    share: int
+    on_first: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,14 +115,14 @@ class View:
 
     Attributes:
         solved: the state.
+        plan: of the mechanism.
         loads: values (SI) of all loads.
-        shearing: true in the theory ``shear``.
         closing: values (SI) of loads or drives at which contacts first closed.
     """
 
     solved: Solved
+    plan: Plan
     loads: dict[str, float]
-    shearing: bool
     closing: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -47,51 +140,59 @@ class View:
         """Unknowns, with the forces of repeated rows."""
         return shared_multipliers(self.solved)
 
-    @cached_property
-    def numbers(self) -> dict[str, int]:
-        """Numbers of the rows by name."""
-        return {row.name: number for number, row in enumerate(self.mechanism.rows)}
-
     def chain(self, beam: str) -> BeamChain:
         """Chain of a beam."""
         return self.mechanism.chains[beam]
 
     def nodes(self, beam: str) -> Array:
         """Positions (N + 2, 2) of a beam's nodes, in units."""
-        index = self.mechanism.beam_nodes(beam)
-        return np.column_stack([self.z[index], self.z[index + 1]])
+        return self.z[self.mechanism.beam_nodes(beam)[:, None] + [0, 1]]
 
-    def line(self, beam: str, s: Array) -> Array:
-        """Positions (k, 2) of the neutral line at arc lengths ``s``, in units."""
-        return self.chain(beam).line.place(self.nodes(beam), s)
+    @cached_property
+    def lines(self) -> dict[str, Array]:
+        """Positions (k, 2) of the samples of all beams, in units."""
+        return {beam: samples.line @ self.nodes(beam) for beam, samples in self.plan.samples.items()}
 
-    def angles(self, beam: str, s: Array) -> Array:
-        """Angles of the sections (k,) at arc lengths ``s``, with the flexibility beside loads at places of the beam."""
-        chain = self.chain(beam)
-        links, weights = chain.angle_weights(s)
-        turned = (weights * (self.z[self.mechanism.beam_angles(beam)] - chain.link_angle)[links]).sum(axis=1)
-        for row, mu in zip(self.mechanism.rows, self.hidden_forces, strict=True):
-            if mu != 0.0 and row.unit_load is not None and row.unit_load.beam == beam:
-                turned -= mu * hidden_angles(chain, s, row.unit_load)
-        return np.asarray(chain.rest_angle(s) + turned)
+    def angles(self, beam: str) -> Array:
+        """Angles (k,) of the sections at a beam's samples, with the flexibility beside loads at places of the beam."""
+        samples = self.plan.samples[beam]
+        turns = self.z[self.mechanism.beam_angles(beam)] - samples.chain.link_angle
+        turned = (samples.weights * turns[samples.links]).sum(axis=1)
+        return np.asarray(samples.rest + turned - self._hidden_forces @ samples.hidden)
 
     def multiplier(self, row: str) -> float:
         """μ of a row; zero without such a row."""
-        number = self.numbers.get(row)
+        number = self.plan.numbers.get(row)
         return 0.0 if number is None else float(self.z[self.solved.system.rows.first + number])
+
+    def displacement(self, point: str) -> Array:
+        """Displacement (2,) of a named point, in units."""
+        body, _, arm = self.plan.points[point]
+        if body < 0:
+            return np.zeros(2)
+        x, y, phi = self.z[body : body + 3]
+        less, sine = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
+        return np.array([x + less * arm[0] - sine * arm[1], y + less * arm[1] + sine * arm[0]])
 
     def place(self, point: str) -> Array:
         """Position (2,) of a named point, in units."""
-        return np.array(
-            [self.mechanism.point(point, direction).value(self.z) for direction in ((1.0, 0.0), (0.0, 1.0))]
-        )
+        return np.asarray(self.plan.points[point][1] + self.displacement(point))
+
+    def rotation(self, body: str) -> float:
+        """Rotation of a body, rad."""
+        index = self.mechanism.bodies.get(body)
+        return 0.0 if index is None else float(self.z[index + 2])
 
     def end(self, beam: str, end: str) -> tuple[float, Array]:
         """Arc length and position of a beam's end, in units."""
-        return (0.0, self.nodes(beam)[0]) if end == "start" else (self.chain(beam).length, self.nodes(beam)[-1])
+        chain, start = self.chain(beam), self.mechanism.starts[beam]
+        if end == "start":
+            return 0.0, self.z[start : start + 2]
+        last = int(self.mechanism.beam_nodes(beam)[-1])
+        return chain.length, self.z[last : last + 2]
 
     @cached_property
-    def hidden_forces(self) -> Array:
+    def _hidden_forces(self) -> Array:
         """Multipliers (rows,) of loads at places of beams, across their links."""
         system = self.solved.system
         return hidden_forces(system, self.z, self.z[system.rows.first :])
@@ -100,3 +201,45 @@ class View:
     def potential_energy(self) -> float:
         """Potential energy, J."""
         return potential(self.solved.system, self.solved.state) * self.mechanism.units.moment
+
+    @cached_property
+    def pressed(self) -> dict[str, list[Pressed]]:
+        """Closed places of all contacts, ascending along the first beam."""
+        found: dict[str, list[Pressed]] = {name: [] for name in self.scene.contacts}
+        for name, each in self._closed_places():
+            found[name].append(each)
+        return {name: sorted(places, key=lambda each: each.arcs[0]) for name, places in found.items()}
+
+    def _closed_places(self) -> Iterator[tuple[str, Pressed]]:
+        geometry, contacts, z = self.solved.system.geometry, self.solved.state.contacts, self.z
+        if geometry is None or contacts is None:
+            return
+        arrays, places, law = geometry.arrays, contacts.places, geometry.law
+        by_law = None if law is None else law.measures(places)
+        weights = np.empty((4, 2, STENCIL))
+        for k in np.flatnonzero(contacts.closed).tolist():
+            frame, pair = gap_frame(z, arrays, places, k, weights), geometry.pairs[places.pair[k]]
+            pieces, params = np.array([places.piece[k], places.foot[k]]), np.array([places.xi[k], places.eta[k]])
+            nodes, normal = arrays.stencil[pieces], np.array([frame.nx, frame.ny])
+            along = ((weights[:2, 0] + 1j * weights[:2, 1]) * (z[nodes] + 1j * z[nodes + 1])).sum(axis=1)
+            at = np.column_stack([along.real, along.imag])
+            force = float(places.force[k]) * normal
+            if law is not None and by_law is not None and by_law[k]:
+                force = law.force(z, places, k)
+                normal = force / np.hypot(*force) if force.any() else normal
+            surface = at[0] - normal * (arrays.thickness[pieces[0]] + params[0] * arrays.thickening[pieces[0]])
+            first, second = (arrays.arc[pieces] + params * arrays.span[pieces]).tolist()
+            on_first = bool(places.curve[k] == pair.first)
+            found = Pressed(
+                (first, second),
+                (at[0], at[1]),
+                (force, -force),
+                surface,
+                bool(places.moves[k]),
+                int(places.shares[k]),
+                on_first,
+            )
+            # of a beam with itself the smaller arc length counts as the first
+            if first > second if places.curve[k] == places.other[k] else not on_first:
+                found = found._replace(arcs=(second, first), places=(at[1], at[0]), forces=(-force, force))
+            yield pair.name, found

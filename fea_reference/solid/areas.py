@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from cprbm_scene.answer import Array
-from cprbm_scene.geometry import arc_length, largest_curvature, points_on, tangents_on
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.mistakes import Mistake
 from cprbm_scene.statement import Beam, FreeEnd, Scene
 
@@ -29,10 +29,10 @@ _MOST = 0.25  # of the length, that depth
 
 def points(beam: Beam, u: Array, eta: Array) -> Array:
     """x (k, 2), m, at places ``u`` and ``eta`` (k,)."""
-    tangent = tangents_on(beam.curve, u)
+    tangent = shape_of(beam.curve).tangent(u)
     normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
     half: Array = 0.5 * eta * beam.thickness_at(u)
-    return np.asarray(points_on(beam.curve, u) + half[:, None] * normal)
+    return np.asarray(shape_of(beam.curve).point(u) + half[:, None] * normal)
 
 
 def fractions(beam: Beam, n: int) -> Array:
@@ -54,7 +54,7 @@ def graded(beam: Beam, n: int) -> Array:
     element's length falls straight to ``_SHORTEST`` of what it is elsewhere: σ = ℓ log(1 + d/δ) grows by the same in
     each, with d from the face, ℓ the depth and δ that share of it.  Of twice as many every other place is the same.
     """
-    length = arc_length(beam.curve)
+    length = shape_of(beam.curve).length
     ends = zip((beam.start, beam.end), beam.thickness_at(np.array([0.0, 1.0])), strict=True)
     depths = [0.0 if isinstance(end, FreeEnd) else min(_DEPTH * t / length, _MOST) for end, t in ends]
     more = [depth * (-np.log(_SHORTEST) - 1.0 + _SHORTEST) for depth in depths]
@@ -78,10 +78,10 @@ def too_curved(scene: Scene) -> list[Mistake]:
             "for the solid, an edge without a cusp",
         )
         for name, beam in scene.beams.items()
-        if 0.5 * beam.thickest * largest_curvature(beam.curve) >= 1.0
+        if 0.5 * beam.thickest * shape_of(beam.curve).largest_curvature >= 1.0
     ]
 
 
 def longest(scene: Scene) -> float:
     """Arc length of the longest beam, m."""
-    return max(arc_length(beam.curve) for beam in scene.beams.values())
+    return max(shape_of(beam.curve).length for beam in scene.beams.values())

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm_scene.answer import Array, Ints
-from cprbm_scene.geometry import arc_length
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import BeamForce, DistributedLoad, Scene
 from fea_reference.solid.mesh import Mesh
 
@@ -49,7 +49,7 @@ def on_area(
         fence = np.unique(np.clip(corners, *load.along))
         half = 0.5 * np.diff(fence)
         at = (fence[:-1] + half + half * _POINTS[:, None]).ravel()
-        own = arc_length(scene.beams[load.beam].curve) / length
+        own = shape_of(scene.beams[load.beam].curve).length / length
         share, unit = (half * _WEIGHTS[:, None]).ravel() * own, force / length
     nodes, values = section(mesh, beam, at)
     weights = (values * share[:, None]).ravel()

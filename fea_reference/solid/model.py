@@ -14,7 +14,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from cprbm_scene.answer import Array, Ints
-from cprbm_scene.geometry import arc_length
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.joints import is_apart
 from cprbm_scene.statement import (
     BeamForce,
@@ -237,7 +237,7 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
         units,
         mesh,
         elements,
-        tuple(arc_length(beam.curve) / length for beam in beams),
+        tuple(shape_of(beam.curve).length / length for beam in beams),
         tuple(bodies),
         tuple(ties),
         rows,

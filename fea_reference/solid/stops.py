@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm_scene.answer import Array
-from cprbm_scene.geometry import tangents_on
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import PinnedEnd, Scene
 from fea_reference.solid.bodies import BodyPart, Tie, stands_on
 
@@ -70,7 +70,7 @@ def stops_of(scene: Scene, bodies: Sequence[BodyPart], ties: Sequence[Tie]) -> t
         psi = stands_on(tie, bodies)
         assert psi is not None
         u, way = (0.0, 1.0) if stop.end == "start" else (1.0, -1.0)
-        leaving = way * tangents_on(beam.curve, np.array([u]))[0]
+        leaving = way * shape_of(beam.curve).tangent(np.array([u]))[0]
         line = np.array(scene.place_of(stop.towards)) - np.array(scene.place_of(end.point))
         turn = float(np.arctan2(line[0] * leaving[1] - line[1] * leaving[0], line @ leaving))
         turn += 2.0 * np.pi if turn < -np.pi + _ROUNDED else 0.0

@@ -9,8 +9,7 @@ from pathlib import Path
 from tests.baseline import record
 from tests.baseline.measuring import Entry, Program, heading, measure
 from tests.baseline.runs import Run
-from tests.robustness.apart import Crashed, Limits, OutOfTime, Returned
-from tests.robustness.hosts import Hosts, hosts_of
+from tests.robustness.limited import Calls, Crashed, Limits, OutOfTime, Returned, calls_of
 
 SECONDS = 60.0
 """Limit of processor time for a run of a random scene: no user waits longer for an answer."""
@@ -32,15 +31,15 @@ def record_runs(
     missing = [run for run in runs if run.name not in present]
     if not missing:
         return
-    with hosts_of(workers, partial(load, program), Limits(seconds=SECONDS_BUILT_IN)) as hosts:
-        yield from _ended(folder, hosts, [run for run in missing if run.scene in about.built_in], program)
-        hosts.limits = Limits(seconds=SECONDS)
-        yield from _ended(folder, hosts, [run for run in missing if run.scene not in about.built_in], program)
+    with calls_of(workers, partial(load, program)) as calls:
+        for built_in, seconds in ((True, SECONDS_BUILT_IN), (False, SECONDS)):
+            mine = [run for run in missing if (run.scene in about.built_in) == built_in]
+            yield from _ended(folder, calls, mine, program, Limits(seconds))
 
 
-def _ended(folder: Path, hosts: Hosts[Run, Entry], runs: Sequence[Run], program: Program) -> Iterator[Entry]:
+def _ended(folder: Path, calls: Calls, runs: Sequence[Run], program: Program, limits: Limits) -> Iterator[Entry]:
     """The entries of ``runs`` in the order of their ends, each in the folder before the next."""
-    for run, end in hosts.each(partial(measure, program=program), runs):
+    for run, end in calls.each(partial(measure, program=program), runs, limits):
         match end:
             case Returned(entry):
                 pass

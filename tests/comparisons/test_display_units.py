@@ -12,8 +12,7 @@ from comparisons.cli.main import run
 from comparisons.present.answer_tables import answer_tables
 from comparisons.present.csv_table import csv_of, numbers
 from cprbm import Settings, answer
-from cprbm_scene import scene_from
-from cprbm_scene.units import Units
+from cprbm_scene import Scene, scene_from
 from tests.robustness.toml import toml_of
 
 DATA = {
@@ -98,7 +97,7 @@ def test_a_csv_file_is_in_the_units_of_the_file_and_records_are_in_si(scene, ben
 
 
 def test_units_are_no_part_of_the_question(scene):
-    in_si = scene.displayed_in(Units())
+    in_si = Scene(**dict(scene))
     assert in_si == scene
     assert display_units.load_text(in_si, "bend", math.radians(45.0)) == "0.785398 rad (45.00°)"
     assert display_units.load_text(scene, "bend", math.radians(45.0)) == "45°"

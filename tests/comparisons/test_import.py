@@ -196,9 +196,9 @@ def test_a_spline_is_as_near_as_it_says():
     made = fitted(np.stack([x, np.sin(x)], axis=1), ways, 3e-5)
     assert isinstance(made.curve, Spline)
     assert made.deviation <= 3e-5
-    from cprbm_scene.geometry import points_on
+    from cprbm_scene.curve_records import shape_of
 
-    px, py = points_on(made.curve, np.linspace(0.0, 1.0, 4001)).T
+    px, py = shape_of(made.curve).point(np.linspace(0.0, 1.0, 4001)).T
     true = float(np.max(np.abs(py - np.sin(px)) / np.hypot(1.0, np.cos(px))))
     chord = (3.7 / 8000) ** 2 / 8.0  # measured against a polyline, whose height over a chord is κh²/8 with κ ≤ 1
     assert made.deviation == pytest.approx(true, abs=chord)

@@ -1,6 +1,5 @@
 """The pages: whole, the same bytes every time, without a network, and made of kept parts."""
 
-import gzip
 import json
 import re
 from dataclasses import dataclass, field, replace
@@ -11,6 +10,7 @@ import numpy as np
 import pytest
 
 from comparisons import cases
+from comparisons.answer_file import read_answers
 from comparisons.bench import brief
 from comparisons.case import Comparison, Verdict, compare
 from comparisons.choices import Choices
@@ -360,7 +360,7 @@ def test_the_folder_of_compare_holds_everything(put):
     assert found == {"index.html"} | numbers | figures
     data = json.loads((put / "hinge" / "comparison.json").read_text("utf-8"))
     assert data["cases"][0]["case"] == "hinge"
-    answers = json.loads(gzip.decompress((put / "hinge" / "answers.json.gz").read_bytes()))
+    answers = read_answers(put / "hinge" / "answers.json.gz")
     assert len(answers) == 8
     assert {"cprbm paper", "cprbm shear"} <= answers.keys()
 

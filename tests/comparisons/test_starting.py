@@ -19,7 +19,7 @@ from comparisons.crew import ALONE, crew_of
 from comparisons.starting import present
 from comparisons.starting.begun import SCHEMA, text
 from cprbm_scene import read
-from cprbm_scene.schema import schema
+from cprbm_scene.reading import schema
 
 ROOT = Path(__file__).parents[2]
 

@@ -1,43 +1,59 @@
 """The store: answers as files come back whole, damaged files are solved again, and no file leaves the folder."""
 
 import gzip
-import json
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass, replace
 
 import numpy as np
 import pytest
 
 from comparisons import store
+from comparisons.answer_file import packed, unpacked
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.plain import text_of
 from tests.verdict.made_up import MadeUp
 
 
 def there_and_back(answer):
-    return store.unpacked(json.loads(text_of(store.packed(answer))))
+    return unpacked(packed({"run": answer}))["run"]
+
+
+def bits(value):
+    """Every number of a record as its bits, with shapes and names."""
+    if isinstance(value, np.ndarray):
+        return value.shape, value.tobytes()
+    if isinstance(value, Mapping):
+        return {name: bits(each) for name, each in value.items()}
+    if isinstance(value, tuple):
+        return tuple(map(bits, value))
+    return {each.name: bits(getattr(value, each.name)) for each in fields(value)} if is_dataclass(value) else value
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        [[0.0, -0.0, np.inf, -np.inf, np.nan], [5e-324, -1.7976931348623157e308, 1 / 3, -np.pi, 1.0]],
+        [[1.0], [1.0, 2.0], [], [-3.0], [1.0]],
+        [[[1.0, -2.0]], np.zeros((0, 2)), [[1.0, -2.0], [0.1, 0.2]]],
+        np.random.default_rng(905).integers(0, 2**64, (7, 5), np.uint64).view(float),
+    ],
+    ids=["special", "shapes", "pairs", "any bits"],
+)
+def test_every_bit_of_a_number_survives(hinge, right, rows):
+    answer = right.fea(hinge, Choices())
+    stations = tuple(replace(answer.stations[0], values={"q": np.array(row, float)}) for row in rows)
+    answer = replace(answer, stations=stations)
+    assert bits(there_and_back(answer)) == bits(answer)
+    assert packed({"a": answer, "b": answer}) == packed({"a": there_and_back(answer), "b": answer})
 
 
 def test_an_answer_survives(hinge, right):
     answer = right.fea(hinge, Choices())
     back = there_and_back(answer)
-    assert (back.solver, back.ending, back.events, back.seconds) == (
-        answer.solver,
-        answer.ending,
-        answer.events,
-        answer.seconds,
-    )
-    for old, new in zip(answer.stations, back.stations, strict=True):
-        assert old.certificate == new.certificate
-        assert set(old.values) == set(new.values)
-        for name, values in old.values.items():
-            np.testing.assert_array_equal(new.values[name], values)
-        for name, places in old.touching.items():
-            np.testing.assert_array_equal(new.touching[name], places)
-            assert new.touching[name].shape == places.shape
-        with pytest.raises(ValueError, match="read-only"):
-            new.values["BD.rotation"][0] = 0.0
+    assert bits(back) == bits(answer)
+    with pytest.raises(ValueError, match="read-only"):
+        back.stations[0].values["BD.rotation"][0] = 0.0
 
 
 def test_a_verdict_needs_no_second_solve(hinge, right):

@@ -84,7 +84,7 @@ def test_a_contact_that_is_open_at_one_size_leaves_the_finest_value_as_it_is(hin
     touched = answers[1].stations[-1]
     apart = replace(touched, touching={})
     answers[1] = replace(answers[1], stations=(*answers[1].stations[:-1], apart))
-    value = limits_of(hinge, dict(zip((10, 20, 40), answers, strict=True)), "cprbm").answer
+    value = limits_of(hinge, dict(zip((10, 20, 40), answers, strict=True))).answer
     fine = answers[2].stations[-1].values["contact.force"]
     assert value.stations[-1].values["contact.force"] == fine
     assert value.stations[-2].values["contact.force"] != answers[2].stations[-2].values["contact.force"]
@@ -98,7 +98,7 @@ def test_ends_of_a_zone_that_would_change_places_are_kept(hinge, right):
         values = {**found.stations[-1].values, "contact.ends": frozen_array(ends)}
         last = replace(found.stations[-1], values=frozendict(values))
         answers.append(replace(found, stations=(*found.stations[:-1], last)))
-    value = limits_of(asked, dict(zip((10, 20, 40), answers, strict=True)), "cprbm").answer
+    value = limits_of(asked, dict(zip((10, 20, 40), answers, strict=True))).answer
     assert value.stations[-1].values["contact.ends"].tolist() == [2e-3, 2.1e-3]
 
 

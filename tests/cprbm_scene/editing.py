@@ -7,8 +7,8 @@ import numpy as np
 from comparisons import cases
 from cprbm_scene import Beam, FreeEnd, SceneError, scene_from
 from cprbm_scene.clearance import beam_gap
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.curves import least
-from cprbm_scene.geometry import points_on
 
 HINGE = cases.data("hinge")
 REMOVED = object()
@@ -84,4 +84,4 @@ def line_distance(first, second, near=0.0):
 
 def distance_to(curve, point):
     """Least distance of a neutral line from a point, m."""
-    return least(lambda u: np.hypot(*(points_on(curve, u) - point).T), np.linspace(0.0, 1.0, 2001))[0]
+    return least(lambda u: np.hypot(*(shape_of(curve).point(u) - point).T), np.linspace(0.0, 1.0, 2001))[0]

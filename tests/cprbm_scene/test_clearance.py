@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from cprbm_scene import Arc, FunctionContact, HalfPlaneContact, Line, LineContact, Polynomial, SceneError, scene_from
 from cprbm_scene.clearance import distance_from
-from cprbm_scene.geometry import arc_length, largest_curvature, points_on
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import CircleContact, EllipseContact, SplineContact
 from tests.cprbm_scene.editing import HINGE, REMOVED, distance_to, edited, line_distance, mistakes, two_lines
 from tests.cprbm_scene.scenes import CIRCLE, FUNCTION, HALF_PLANE, LINE, L, R, T, over, over_a_circle
@@ -236,10 +236,10 @@ def test_a_short_arc_is_no_ring():
 def test_no_polynomial_overlaps_itself(coefficients, share):
     """The thickest beam of any polynomial: places nearer than its thickness are neighbours along it."""
     curve = Polynomial(kind="polynomial", axis="x", coefficients=(0.0, *coefficients), range=(-1.0, 1.0))
-    L = arc_length(curve)
-    thickness = share * min(0.2 * L, 0.999 / max(largest_curvature(curve), 1e-9))
+    L = shape_of(curve).length
+    thickness = share * min(0.2 * L, 0.999 / max(shape_of(curve).largest_curvature, 1e-9))
     u = np.linspace(0.0, 1.0, 1500)
-    p = points_on(curve, u)
+    p = shape_of(curve).point(u)
     near = cKDTree(p).query_pairs(thickness, output_type="ndarray")
     assert np.all(L * np.abs(np.diff(u[near], axis=1)) <= 1.1 * thickness)
 
@@ -326,7 +326,7 @@ def test_the_distance_of_a_point_is_the_least_over_samples(x, y, first, turn, di
     start, end = ((0.5 + math.cos(angle), math.sin(angle)) for angle in (first, last))
     arc = Arc(kind="arc", center=(0.5, 0.0), start=start, end=end, direction=direction)
     for curve, length in ((arc, turn), (Line(kind="line", start=start, end=end), math.dist(start, end))):
-        samples = points_on(curve, np.linspace(0.0, 1.0, 4001))
+        samples = shape_of(curve).point(np.linspace(0.0, 1.0, 4001))
         sampled = np.hypot(*(samples - [x, y]).T).min()
         assert sampled - length / 8000 - 1e-12 <= distance_to(curve, (x, y)) <= sampled + 1e-12
 

@@ -7,13 +7,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from cprbm_scene import Line, Polynomial, Profile, Spline, scene_from
-from cprbm_scene.geometry import (
-    arc_length,
-    curvature_on,
-    largest_curvature,
-    points_on,
-    tangents_on,
-)
+from cprbm_scene.curve_records import shape_of
 from tests.cprbm_scene.editing import REMOVED, distance_to, edited, line_distance, mistakes, two_lines
 from tests.cprbm_scene.scenes import PARABOLA, POINTS, TIP, A, bowed, through_points
 
@@ -38,32 +32,32 @@ def up_to(y):
 def test_a_parabola_by_its_closed_form(span):
     curve = parabola(*span)
     length = abs(up_to(span[1]) - up_to(span[0]))
-    assert arc_length(curve) == pytest.approx(length, rel=1e-14)
-    x, y = points_on(curve, FRACTIONS).T
+    assert shape_of(curve).length == pytest.approx(length, rel=1e-14)
+    x, y = shape_of(curve).point(FRACTIONS).T
     assert x == pytest.approx(0.05 + A / 2 * y**2, abs=1e-15)
     along = [abs(up_to(value) - up_to(span[0])) / length for value in y]
     assert along == pytest.approx(FRACTIONS, abs=1e-13)
     sense = np.sign(span[1] - span[0])
     tangents = sense * np.column_stack([A * y, np.ones_like(y)]) / np.hypot(1.0, A * y)[:, None]
-    assert tangents_on(curve, FRACTIONS) == pytest.approx(tangents, abs=1e-13)
+    assert shape_of(curve).tangent(FRACTIONS) == pytest.approx(tangents, abs=1e-13)
 
 
 @pytest.mark.parametrize(("span", "nearest"), [((0.0, TIP), 0.0), ((-0.03, 0.041), 0.0), ((0.02, 0.1), 0.02)])
 def test_the_largest_curvature_of_a_parabola_is_nearest_its_vertex(span, nearest):
     # reference: κ = A/(1 + (A y)²)^(3/2)
-    assert largest_curvature(parabola(*span)) == pytest.approx(A / hypot(1.0, A * nearest) ** 3, rel=1e-12)
+    assert shape_of(parabola(*span)).largest_curvature == pytest.approx(A / hypot(1.0, A * nearest) ** 3, rel=1e-12)
 
 
 def test_a_steep_parabola_turns_sharply_at_its_vertex():
     curve = polynomial("x", [0.0, 0.0, 400.0], (-0.7131, 1.0))
-    assert largest_curvature(curve) == pytest.approx(800.0, rel=1e-12)
+    assert shape_of(curve).largest_curvature == pytest.approx(800.0, rel=1e-12)
 
 
 def test_the_largest_curvature_of_a_cubic_inside_its_range():
     # reference: y = x³, κ' = 0 at x⁴ = 1/45
     x = 45.0**-0.25
     curve = polynomial("x", [0.3, 0.0, 0.0, 1.0], (-0.1, 1.3))
-    assert largest_curvature(curve) == pytest.approx(6.0 * x / (1.0 + 9.0 * x**4) ** 1.5, rel=1e-12)
+    assert shape_of(curve).largest_curvature == pytest.approx(6.0 * x / (1.0 + 9.0 * x**4) ** 1.5, rel=1e-12)
 
 
 @pytest.mark.parametrize("axis", ["x", "y"])
@@ -71,16 +65,18 @@ def test_ends_are_where_the_beam_begins_and_ends(axis):
     curve = polynomial(axis, [1.0, -2.0, 0.0, 3.0], (0.5, -0.25))
     start, end = (0.5, 1.0 - 1.0 + 3.0 / 8.0), (-0.25, 1.0 + 0.5 - 3.0 / 64.0)
     assert (curve.start, curve.end) == ((start, end) if axis == "x" else (start[::-1], end[::-1]))
-    assert points_on(curve, np.array([0.0, 1.0])) == pytest.approx(np.array([curve.start, curve.end]), abs=1e-15)
+    assert shape_of(curve).point(np.array([0.0, 1.0])) == pytest.approx(np.array([curve.start, curve.end]), abs=1e-15)
 
 
 def test_degree_one_is_a_line():
     line = Line(kind="line", start=(0.1, 0.7), end=(-0.2, 0.55))
     curve = polynomial("x", [0.65, 0.5], (0.1, -0.2))
-    for of in (arc_length, largest_curvature, lambda c: distance_to(c, (0.0, 0.0))):
-        assert of(curve) == pytest.approx(of(line), rel=1e-13, abs=1e-15)
-    for at in (points_on, tangents_on):
-        assert at(curve, FRACTIONS) == pytest.approx(at(line, FRACTIONS), abs=1e-14)
+    graph, straight = shape_of(curve), shape_of(line)
+    assert graph.length == pytest.approx(straight.length, rel=1e-13)
+    assert graph.largest_curvature == pytest.approx(0.0, abs=1e-15)
+    assert distance_to(curve, (0.0, 0.0)) == pytest.approx(distance_to(line, (0.0, 0.0)), rel=1e-13)
+    assert graph.point(FRACTIONS) == pytest.approx(straight.point(FRACTIONS), abs=1e-14)
+    assert graph.tangent(FRACTIONS) == pytest.approx(straight.tangent(FRACTIONS), abs=1e-14)
 
 
 def test_distances():
@@ -180,23 +176,23 @@ def test_through_three_points_it_is_a_parabola():
     # reference: y = x²/2a, of arc length a (z √(1 + z²) + arsinh z) between x = ±a z, of curvature 1/a at its vertex
     a, z = 0.7, 1.3
     curve = spline([(-a * z, a * z * z / 2), (0.0, 0.0), (a * z, a * z * z / 2)])
-    assert arc_length(curve) == pytest.approx(a * (z * sqrt(1.0 + z * z) + asinh(z)), rel=1e-14)
-    x, y = points_on(curve, U).T
+    assert shape_of(curve).length == pytest.approx(a * (z * sqrt(1.0 + z * z) + asinh(z)), rel=1e-14)
+    x, y = shape_of(curve).point(U).T
     assert y == pytest.approx(x**2 / (2 * a), abs=1e-15)
-    assert largest_curvature(curve) == pytest.approx(1.0 / a, rel=1e-12)
-    assert curvature_on(curve, U) == pytest.approx(1.0 / a / (1.0 + (x / a) ** 2) ** 1.5, rel=1e-12)
+    assert shape_of(curve).largest_curvature == pytest.approx(1.0 / a, rel=1e-12)
+    assert shape_of(curve).curvature(U) == pytest.approx(1.0 / a / (1.0 + (x / a) ** 2) ** 1.5, rel=1e-12)
     slope = x / a
     tangent = np.column_stack([np.ones_like(x), slope]) / np.hypot(1.0, slope)[:, None]
-    assert tangents_on(curve, U) == pytest.approx(tangent, abs=1e-13)
+    assert shape_of(curve).tangent(U) == pytest.approx(tangent, abs=1e-13)
 
 
 def test_points_of_a_line_are_a_line():
     curve = spline([(0.1, 0.7), (0.0, 0.65), (-0.13, 0.585), (-0.2, 0.55)])
     line = Line(kind="line", start=(0.1, 0.7), end=(-0.2, 0.55))
-    assert arc_length(curve) == pytest.approx(arc_length(line), rel=1e-14)
-    assert points_on(curve, U) == pytest.approx(points_on(line, U), abs=1e-14)
-    assert tangents_on(curve, U) == pytest.approx(tangents_on(line, U), abs=1e-13)
-    assert largest_curvature(curve) < 1e-11
+    assert shape_of(curve).length == pytest.approx(shape_of(line).length, rel=1e-14)
+    assert shape_of(curve).point(U) == pytest.approx(shape_of(line).point(U), abs=1e-14)
+    assert shape_of(curve).tangent(U) == pytest.approx(shape_of(line).tangent(U), abs=1e-13)
+    assert shape_of(curve).largest_curvature < 1e-11
     assert distance_to(curve, (0.0, 0.0)) == pytest.approx(distance_to(line, (0.0, 0.0)), rel=1e-12)
 
 
@@ -207,12 +203,12 @@ def test_points_of_a_circle_come_near_it(directed):
     errors = []
     for n in (9, 17, 33, 65):
         curve = on_a_circle(n, radius, directed=directed)
-        r = np.hypot(*points_on(curve, U).T)
-        errors.append([np.max(np.abs(r - radius)), np.max(np.abs(curvature_on(curve, U) - 1.0 / radius))])
+        r = np.hypot(*shape_of(curve).point(U).T)
+        errors.append([np.max(np.abs(r - radius)), np.max(np.abs(shape_of(curve).curvature(U) - 1.0 / radius))])
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert orders[-1] == pytest.approx([4.0, 2.0], abs=0.25 if directed else 0.7)
     assert np.all(np.array(errors[-1]) < [1e-8, 0.06])
-    assert arc_length(curve) == pytest.approx(2.0 * radius, rel=1e-7)
+    assert shape_of(curve).length == pytest.approx(2.0 * radius, rel=1e-7)
 
 
 def test_it_meets_its_points_with_one_tangent_and_one_curvature():
@@ -221,13 +217,13 @@ def test_it_meets_its_points_with_one_tangent_and_one_curvature():
     for point in curve.points:
         beside = Line(kind="line", start=point, end=(point[0] + 0.01, point[1] - 0.003))
         assert line_distance(curve, beside) == pytest.approx(0.0, abs=1e-9)
-    assert tangents_on(curve, np.array([0.0, 1.0])) == pytest.approx(np.array([[0.0, -1.0], [sqrt(0.5)] * 2]))
+    assert shape_of(curve).tangent(np.array([0.0, 1.0])) == pytest.approx(np.array([[0.0, -1.0], [sqrt(0.5)] * 2]))
     fine = np.linspace(0.0, 1.0, 20_001)
-    assert np.max(np.abs(np.diff(curvature_on(curve, fine)))) < 2e-2 * largest_curvature(curve)
+    assert np.max(np.abs(np.diff(shape_of(curve).curvature(fine)))) < 2e-2 * shape_of(curve).largest_curvature
     # by small steps
-    p = points_on(curve, fine)
-    assert np.sum(np.hypot(*np.diff(p, axis=0).T)) == pytest.approx(arc_length(curve), rel=1e-6)
-    assert largest_curvature(curve) == pytest.approx(np.max(curvature_on(curve, fine)), rel=1e-4)
+    p = shape_of(curve).point(fine)
+    assert np.sum(np.hypot(*np.diff(p, axis=0).T)) == pytest.approx(shape_of(curve).length, rel=1e-6)
+    assert shape_of(curve).largest_curvature == pytest.approx(np.max(shape_of(curve).curvature(fine)), rel=1e-4)
 
 
 def test_the_way_to_another_line():
@@ -264,7 +260,10 @@ def test_a_beam_that_comes_back_to_itself(share, overlaps):
     points = [[0.0, 0.0], [0.02, 0.0], [0.04, 0.0], *bow, [0.04, 0.05], [0.01, 0.012]]
     # reference: distances between the places of two dense halves
     curve = spline(points)
-    first, second = points_on(curve, np.linspace(0.0, 0.4, 2001)), points_on(curve, np.linspace(0.6, 1.0, 2001))
+    first, second = (
+        shape_of(curve).point(np.linspace(0.0, 0.4, 2001)),
+        shape_of(curve).point(np.linspace(0.6, 1.0, 2001)),
+    )
     apart, _ = cKDTree(first).query(second)
     found = mistakes(*through(points, thickness=float(share * apart.min())), base=through_points())
     assert (LOWER in found) is overlaps

@@ -169,6 +169,15 @@ def test_a_scene_with_other_parameters_is_checked_like_a_file():
         scene.model_copy(update={"claims": ()}).with_parameters(t=1e-3)
 
 
+@pytest.mark.parametrize("name", ["hinge", "gripper", "prestressed"])
+def test_every_parameter_of_a_built_in_case_may_change_by_two_percent(name):
+    scene = cases.opened(name)
+    for parameter, record in scene.parameters.items():
+        for factor in (0.98, 1.02):
+            changed = scene.with_parameters(**{parameter: factor * record.value})
+            assert changed.parameters[parameter].value == factor * record.value
+
+
 TODAY = {
     "hinge": lambda scene: (scene.place_of("D"), (0.051, -0.02625)),
     "gripper": lambda scene: (

@@ -6,7 +6,7 @@ import pytest
 from cprbm_scene import Ending, Loss
 from fea_reference import Settings, answer
 from fea_reference.contacts import contacts
-from fea_reference.curvature import smallest_curvature
+from fea_reference.curvature import softest
 from fea_reference.march import begin
 from fea_reference.model import build
 from fea_reference.state import State
@@ -158,4 +158,4 @@ def test_the_smallest_curvature_is_on_what_guides_and_drives_leave_free(stations
     asked = [(names.index(stage.steps), value) for stage in scene.stages for value in stage.stations]
     for number, value in asked[:stations]:
         reach(march, Course(number, 1.0), value / model.stepped[number].unit)
-    assert smallest_curvature(model, march.system) == pytest.approx(dense(model, march.system), rel=1e-3)
+    assert softest(model, march.system).curvature == pytest.approx(dense(model, march.system), rel=1e-3)

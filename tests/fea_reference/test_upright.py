@@ -20,8 +20,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from comparisons.answer_file import packed, unpacked
 from comparisons.audit import audit
-from comparisons.store import packed, unpacked
 from cprbm_scene import Ending, Scene
 from fea_reference import Settings, answer
 from fea_reference.upright import upright
@@ -214,6 +214,6 @@ def test_an_end_is_held_on_a_curved_edge_in_whatever_units(unit, gap, held):
 def test_the_audit_knows_how_shear_begins(scene):
     asked = scene(STOUT, 1.13 * KAPPA)
     answered = answer(asked, Settings(elements=20))
-    found = audit(asked, unpacked(packed(answered)))
+    found = audit(asked, unpacked(packed({"fea": answered}))["fea"])
     assert not found.complaints
     assert found.unbalance < 1e-9

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cprbm_scene import scene_from
-from cprbm_scene.geometry import points_on
+from cprbm_scene.curve_records import shape_of
 from tests.relations.image import Data, Image, copied
 
 AWAY = 7.3
@@ -23,7 +23,7 @@ def far_circle(data: Data) -> Image:
     points = np.concatenate(
         [
             *(np.array(list(body.points.values())) for body in scene.bodies.values()),
-            *(points_on(beam.curve, u) for beam in scene.beams.values()),
+            *(shape_of(beam.curve).point(u) for beam in scene.beams.values()),
         ]
     )
     least, most = points.min(axis=0), points.max(axis=0)

@@ -15,8 +15,8 @@ from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer, fea_answer
 from cprbm_scene import Critical, Loss, Scene, scene_from
 from cprbm_scene.answer import frozen_array
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.geometry import points_on
 from tests.relations.frames import MIRROR, QUARTER, Frame, turned_by
 from tests.relations.image import copied, plain
 from tests.relations.measured import TARGET, violations
@@ -316,11 +316,11 @@ def test_a_polynomial_s_image_is_where_its_points_go():
     """Points of the curve, mapped one by one, lie on the image; of a quarter turn, a mirror and a shift."""
     data = copied(plain(cases.data("gripper")))
     u = np.linspace(0.0, 1.0, 7)
-    before = points_on(scene_from(data).beams["beam2"].curve, u)
+    before = shape_of(scene_from(data).beams["beam2"].curve).point(u)
     for frame in (Frame(Q=QUARTER, b=(0.031, 0.017), length=3.0), Frame(Q=MIRROR, b=(-0.2, 0.1))):
         image = scene_from(frame.image(data, "").data).beams["beam2"].curve
         expected = np.array([frame.placed(list(point)) for point in before])
-        np.testing.assert_allclose(points_on(image, u), expected, rtol=0.0, atol=1e-14)
+        np.testing.assert_allclose(shape_of(image).point(u), expected, rtol=0.0, atol=1e-14)
 
 
 def test_a_reversed_beam_is_where_it_was():
@@ -328,4 +328,6 @@ def test_a_reversed_beam_is_where_it_was():
     u = np.linspace(0.0, 1.0, 7)
     for beam in data["beams"]:
         one, other = scene_from(data).beams[beam], scene_from(reversed_beam(data, beam).data).beams[beam]
-        np.testing.assert_allclose(points_on(other.curve, u)[::-1], points_on(one.curve, u), rtol=0.0, atol=1e-14)
+        np.testing.assert_allclose(
+            shape_of(other.curve).point(u)[::-1], shape_of(one.curve).point(u), rtol=0.0, atol=1e-14
+        )

@@ -53,7 +53,7 @@ def command(
     from comparisons.cli import output
     from comparisons.pairing import solvers_of
     from tests.robustness import tables
-    from tests.robustness.apart import Limits
+    from tests.robustness.limited import Limits
     from tests.robustness.outcomes import Way
     from tests.robustness.running import Crew, Plan, Stress, replayed, run
 

@@ -27,8 +27,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cprbm_scene import Beam, Drive, FreeEnd, Load, Scene
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.freedoms import unit
-from cprbm_scene.geometry import arc_length, points_on
 from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,
@@ -106,7 +106,7 @@ class Estimate:
             self.turns[name] = slice(n, n + BARS)
             n += BARS
         self.unknowns = n
-        self.lengths = {name: arc_length(beam.curve) for name, beam in scene.beams.items()}
+        self.lengths = {name: shape_of(beam.curve).length for name, beam in scene.beams.items()}
         self.nodes: dict[str, list[Sums]] = {name: self._nodes(name) for name in scene.beams}
         self.lines = {name: _stacked(nodes, n) for name, nodes in self.nodes.items()}
         self.stiffness = self._springs()
@@ -162,7 +162,7 @@ class Estimate:
 
     def _nodes(self, name: str) -> list[Sums]:
         beam = self.scene.beams[name]
-        p = points_on(beam.curve, np.linspace(0.0, 1.0, BARS + 1))
+        p = shape_of(beam.curve).point(np.linspace(0.0, 1.0, BARS + 1))
         backwards = isinstance(beam.start, FreeEnd)
         held = beam.end if backwards else beam.start
         assert not isinstance(held, FreeEnd)

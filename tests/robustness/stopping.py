@@ -8,7 +8,7 @@ from math import atan2, tau
 import numpy as np
 
 from cprbm_scene import PinnedEnd
-from cprbm_scene.geometry import tangents_on
+from cprbm_scene.curve_records import shape_of
 from tests.robustness.chance import between, happens
 from tests.robustness.draft import Data, Draft
 from tests.robustness.estimate import Estimate, State
@@ -36,7 +36,7 @@ def put_stops(draft: Draft, model: Estimate, states: Sequence[State]) -> None:
             x, y = points[end.point]
             dx, dy = draft.frame.direction((between(rng, -0.3, 0.3), 0.5))
             points[towards] = list(draft.frame.written((x + dx * draft.frame.size, y + dy * draft.frame.size)))
-            tx, ty = tangents_on(beam.curve, np.array([0.0 if side == "start" else 1.0]))[0]
+            tx, ty = shape_of(beam.curve).tangent(np.array([0.0 if side == "start" else 1.0]))[0]
             out = atan2(ty, tx) if side == "start" else atan2(-ty, -tx)
             angle = out - atan2(points[towards][1] - y, points[towards][0] - x)
             angle -= tau * round(angle / tau)

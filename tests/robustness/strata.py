@@ -23,7 +23,7 @@ from cprbm_scene import (
     Scene,
     SelfContact,
 )
-from cprbm_scene.geometry import arc_length, points_on
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import SlidingBody
 
 FAR_TURN = pi / 3.0  # rad; beyond this a rotation is large
@@ -96,7 +96,9 @@ def met(scene: Scene, answer: Answer) -> frozenset[str]:
         found.add("met: closed contact")
     if len(closed) > 1:
         found.add("met: several closed contacts")
-    rest = {name: _directions(points_on(beam.curve, np.linspace(0.0, 1.0, 81))) for name, beam in scene.beams.items()}
+    rest = {
+        name: _directions(shape_of(beam.curve).point(np.linspace(0.0, 1.0, 81))) for name, beam in scene.beams.items()
+    }
     for station in answer.stations:
         for name, shape in station.shapes.items():
             u = shape.s / shape.s[-1]
@@ -135,7 +137,7 @@ def _of_beams(scene: Scene) -> Iterator[str]:
             yield "beams: width that varies"
         for end in (beam.start, beam.end):
             yield f"joints: {_JOINTS[end.joint]}"
-        ratio = 0.5 * (beam.thinnest + beam.thickest) / arc_length(beam.curve)
+        ratio = 0.5 * (beam.thinnest + beam.thickest) / shape_of(beam.curve).length
         if ratio < SLENDER:
             yield "beams: slender"
         if ratio > THICK:

@@ -18,12 +18,11 @@ from comparisons.cli.main import run as command
 from comparisons.pairing import Solvers
 from cprbm_scene import Ending, SceneError, read, scene_from
 from tests.robustness import auditing
-from tests.robustness.apart import Limits, OutOfTime, Returned
 from tests.robustness.command import exit_code
 from tests.robustness.fates import FATES, WAYS, fated, fated_solvers, nothing
-from tests.robustness.hosts import hosts_of
 from tests.robustness.judging import Effort, judged
 from tests.robustness.kept import Kept, digest
+from tests.robustness.limited import Limits, OutOfTime, Returned, calls_of
 from tests.robustness.outcomes import Outcome, Way, packed, shares, totals, unpacked
 from tests.robustness.running import FAILURES, Crew, Plan, run
 from tests.robustness.shrinking import Patience, shrunk, steps
@@ -42,9 +41,9 @@ def last(steps_):
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """One scene of every fate, judged by two hosts."""
+    """A scene of every fate, judged in two children."""
     folder = tmp_path_factory.mktemp("robustness")
-    crew = Crew(fated_solvers(str(folder / "asked")), 2, fated, Patience(attempts=9))
+    crew = Crew(fated_solvers(str(folder / "asked")), 2, fated, Patience(attempts=5))
     return folder, last(run(PLAN, len(FATES), folder, [], crew))
 
 
@@ -72,8 +71,8 @@ def test_totals_sum_to_the_scenes_and_the_json_says_so(whole):
     ("fate", "said"),
     [
         ("raises", "ZeroDivisionError: a beam of no length (robustness/fates.py:"),
-        ("segfault", "SIGSEGV"),
-        ("leaves", "exit code 7"),
+        ("segfault", "ended with -11"),
+        ("leaves", "ended with 7"),
         ("spins", "1 seconds of the processor"),
         ("devours", "memory"),
         ("stiffer", "rows differ"),
@@ -91,20 +90,17 @@ def test_the_sentence_says_what_happened(whole, fate, said):
 
 
 def test_a_call_that_waits_for_ever_is_ended():
-    with hosts_of(1, nothing, Limits(seconds=1.0, waiting=1.5)) as hosts:
-        ((asked, end),) = hosts.each(time.sleep, [600.0])
+    with calls_of(1, nothing) as calls:
+        ((asked, end),) = calls.each(time.sleep, [600.0], Limits(seconds=1.0, waiting=1.5))
     assert asked == 600.0
     assert end == OutOfTime("no end was reached in 1.5 seconds of the clock")
 
 
-def test_a_host_that_is_ended_by_force_is_replaced():
-    with hosts_of(1, nothing, Limits()) as hosts:
-        calls = hosts.each(abs, [-3, -2, -1])
-        assert next(calls) == (-3, Returned(3))
-        hosts.hosts[0].process.kill()
-        rest = list(calls)
-    assert [asked for asked, _ in rest] == [-2, -1]
-    assert rest[-1] == (-1, Returned(1))
+def test_a_child_that_ended_by_force_is_replaced():
+    with calls_of(1, nothing) as calls:
+        ((_, end),) = calls.each(os._exit, [3], Limits())
+        assert "ended with 3" in end.sentence
+        assert list(calls.each(abs, [-3], Limits())) == [(-3, Returned(3))]
 
 
 def test_an_answer_that_ended_early_names_its_ending(whole):
@@ -128,7 +124,7 @@ def test_what_was_out_of_time_is_shrunk_in_less_and_its_file_says_so(whole):
     folder, there = whole
     texts = {index: (folder / file).read_text("utf-8") for index, file in there.saved.items()}
     hurried = {
-        index for index, text in texts.items() if "# Made smaller for as long as it took more than 0.1 of" in text
+        index for index, text in texts.items() if "# Each smaller scene took more than 0.1 s of the processor" in text
     }
     assert hurried == {index for index, outcome in there.outcomes.items() if outcome.way is Way.TIMED_OUT}
     assert hurried
@@ -146,7 +142,7 @@ def test_a_finished_run_is_not_begun_again(whole):
 
 def test_one_host_finds_what_two_do(whole, tmp_path):
     _, there = whole
-    alone = last(run(PLAN, 3, tmp_path, [], Crew(fated_solvers(), 1, fated)))
+    alone = last(run(PLAN, 3, tmp_path, [], Crew(fated_solvers(), 1, fated, Patience(attempts=2))))
     assert [untimed(alone.outcomes[index]) for index in range(3)] == [
         untimed(there.outcomes[index]) for index in range(3)
     ]
@@ -416,7 +412,7 @@ def test_a_scene_is_replayed_from_its_file(tmp_path, capsys):
     file = tmp_path / "leaves.toml"
     file.write_text(fated(0, FATES.index("leaves")).text, "utf-8")
     assert command(["robustness", "--replay", str(file)], fated_solvers()) == 1
-    assert "crashed. its process ended by itself, with the exit code 7" in capsys.readouterr().out
+    assert "crashed. a process ended with 7" in capsys.readouterr().out
 
 
 INTERRUPTED = """

@@ -5,7 +5,7 @@ Forces are given over EI/L², moments over EI/L, with L the beam's length (of an
 
 from __future__ import annotations
 
-from math import cos, sin, sqrt
+from math import cos, pi, sin, sqrt
 from typing import Any
 
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH
@@ -19,6 +19,7 @@ FORCE, MOMENT = RIGIDITY / LENGTH**2, RIGIDITY / LENGTH
 # one of each kind, with numbers that nothing else has
 PINNED_ARCH, CLAMPED_ARCH = Arch(1.23, "pinned"), Arch(0.79, "clamped")
 SNAP, STOPPED_AT = Snap(0.9), 0.66
+RISE = 0.06  # m, of a double cosine beam over 2 × 1.5 m
 HELD = Held(load=3.21, center=(0.62, 0.15), radius=0.13)
 TOGGLE = Toggle(arc=0.6, base=1.3, arm=0.45)
 
@@ -195,4 +196,30 @@ def toggle(moments: list[float], *, beyond: str = "jump") -> dict[str, Any]:
         loads={"M": {"kind": "moment", "body": "lever"}},
         stages=[_stage("push", "M", [moment * MOMENT for moment in moments], beyond)],
         probes=[{"of": "lever", "quantity": "rotation"}, {"of": "G", "quantity": "reaction"}],
+    )
+
+
+def double_cosine() -> dict[str, Any]:
+    """Two halves of a clamped cosine beam, their middle pushed down by half the rise, without a turn."""
+
+    def half(start: float, end: float) -> dict[str, Any]:
+        share = [i / 12 for i in range(13)]
+        points = [[3.0 * x, 0.5 * RISE * (1.0 - cos(2.0 * pi * x))] for x in (start + s * (end - start) for s in share)]
+        return {"kind": "spline", "points": points, "start_direction": [1.0, 0.0], "end_direction": [1.0, 0.0]}
+
+    strip = {"thickness": 0.1 * RISE, "width": 0.5, "material": "m"}
+    return _scene(
+        "double-cosine",
+        theory="shear",
+        bodies={
+            "ground": {"motion": "fixed", "points": {"A": [0.0, 0.0], "B": [3.0, 0.0]}},
+            "middle": {"motion": "slides", "along": [0.0, 1.0], "points": {"C": [1.5, RISE]}},
+        },
+        beams={
+            "left": {**strip, "curve": half(0.0, 0.5), "start": _weld("A"), "end": _weld("C")},
+            "right": {**strip, "curve": half(0.5, 1.0), "start": _weld("C"), "end": _weld("B")},
+        },
+        drives={"v": {"kind": "displacement", "point": "C", "direction": [0.0, -1.0]}},
+        stages=[_stage("push", "v", [0.05 * RISE, 0.5 * RISE], "jump")],
+        probes=[{"of": "C", "quantity": "reaction"}],
     )

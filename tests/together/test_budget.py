@@ -20,7 +20,6 @@ def hinge() -> Account:
     return account_of(scene.model_copy(update={"probes": probes}), Choices(), AnswerMemory())
 
 
-@pytest.mark.xfail(strict=True, reason="the limit of the links assumes the order 2: 1.6 % off")
 def test_the_hinges_links_and_rest_are_those_of_the_exact_answer(hinge):
     """Reference: tests.references.hinge, the differential equations by shooting."""
     exact = reference.solve(reference.PAPER, 0.67)

@@ -281,3 +281,23 @@ def test_an_end_that_nobody_asked_for_is_told_all_the_same(solve, within):
         assert answer.critical[0].value == pytest.approx(value, rel=within)
         assert answer.critical[0].after is None
         assert len(answer.stations) == 1
+
+
+@pytest.mark.parametrize(
+    ("solver", "sizes"),
+    [
+        (cprbm.answer, (cprbm.Settings(links=20), cprbm.Settings(links=27))),
+        (fea_reference.answer, (fea_reference.Settings(elements=20), fea_reference.Settings(elements=27))),
+    ],
+    ids=["cprbm", "fea"],
+)
+def test_two_halves_that_snap_alone_lean_to_one_side_in_both_solvers(solver, sizes):
+    # Turned about its middle, a half of a cosine beam is the same half, and it buckles to either side: the mechanism
+    # has four branches.  Faint moments 1 + s per length do the work ∫ (1 + s) w′ ds = −∫ w ds on a half with ends at
+    # rest, w the deflection to the left.  The work is positive for a half that bulges to the right: downwards.
+    for settings in sizes:
+        answer = solver(scene_from(branches.double_cosine()), settings)
+        assert lost(answer) == [(Loss.BIFURCATION, "")]
+        for shape in answer.stations[-1].shapes.values():
+            middle = np.interp(0.5 * shape.s[-1], shape.s, shape.y)
+            assert middle < 0.5 * (shape.y[0] + shape.y[-1]) - 0.2 * branches.RISE

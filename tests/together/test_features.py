@@ -14,7 +14,7 @@ import elastica_reference
 import fea_reference
 from comparisons.verdict.point_forces import away_from_point_forces
 from cprbm_scene import Answer, Ending, SceneError, SelfContact, scene_from
-from cprbm_scene.geometry import arc_length
+from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import STRESSES
 from fea_reference import solid
 from tests.together.features import FEATURES, SOLVERS, Feature
@@ -86,7 +86,7 @@ def compared(
     if solver != "solid" or quantity not in STRESSES:
         return np.ones(value.shape, dtype=bool)
     scene = scene_from(feature.data)
-    s = np.linspace(0.0, arc_length(scene.beams[of].curve), value.size)
+    s = np.linspace(0.0, shape_of(scene.beams[of].curve).length, value.size)
     return away_from_point_forces(scene, of, s, (answer.stations[-1], reference.stations[-1]))
 
 

@@ -9,7 +9,7 @@ import cprbm
 import elastica_reference
 import fea_reference
 from cprbm_scene import scene_from
-from cprbm_scene.geometry import points_on
+from cprbm_scene.curve_records import shape_of
 from fea_reference import solid
 from tests.cprbm_scene.editing import edited, mistakes
 
@@ -71,7 +71,7 @@ def test_the_offset_is_along_the_left_normal_of_any_curve():
     beam = scene_from(data).beams["strip"]
     assert (beam.curve.kind, beam.imperfection) == ("spline", None)
     u = np.linspace(0.0, 1.0, 50)
-    x, y = points_on(beam.curve, u).T
+    x, y = shape_of(beam.curve).point(u).T
     turn = np.arctan2(y, x)
     assert np.hypot(x, y) == pytest.approx(L - AMPLITUDE * np.sin(3.0 * pi * turn), abs=1e-6 * AMPLITUDE)
 

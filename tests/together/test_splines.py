@@ -10,7 +10,7 @@ import pytest
 
 import elastica_reference
 from cprbm_scene import Ending, scene_from
-from cprbm_scene.geometry import points_on
+from cprbm_scene.curve_records import shape_of
 from tests.together.bowed import RIGIDITY, cantilever, on_a_beam, on_a_circle
 from tests.together.test_bowed import LENGTH, LOADS, cprbm_answer, fea_answer, values
 from tests.together.test_bowed import exact as parabola
@@ -79,7 +79,7 @@ def test_an_even_moment_turns_a_spline_like_any_beam():
     # reference: M ℓ/EI, with the length by many small steps
     load, value = LOADS["moment"]
     data = cantilever(load, [value], through(5))
-    p = points_on(scene_from(data).beams["beam"].curve, np.linspace(0.0, 1.0, 20_001))
+    p = shape_of(scene_from(data).beams["beam"].curve).point(np.linspace(0.0, 1.0, 20_001))
     turned = value / RIGIDITY * np.sum(np.hypot(*np.diff(p, axis=0).T))
     for solve in (exact_answer, cprbm_answer, fea_answer):
         assert values(solve, data, 20)["tip.rotation"] == pytest.approx([turned], rel=1e-8)

@@ -213,10 +213,10 @@ def test_a_word_follows_from_the_inequality(difference, theory, c, f, r):
     total = c + f + r
     if difference > total:
         expected = (Word.DIFFER, Reason.VALUES)
-    elif theory > LIMIT:
-        expected = (Word.UNDECIDED, Reason.THEORY)
     elif total > LIMIT:
         expected = (Word.UNDECIDED, Reason.COARSE)
+    elif theory > LIMIT:
+        expected = (Word.UNDECIDED, Reason.THEORY)
     else:
         expected = (Word.AGREE, None)
     assert (word, reason) == expected

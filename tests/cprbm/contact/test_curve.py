@@ -8,7 +8,7 @@ import pytest
 from cprbm.chain import add_rows, mechanism_of
 from cprbm.contact import Frames, beam_curve, contact_geometry
 from cprbm.contact.compliance import lost_compliance
-from cprbm_scene.geometry import points_on
+from cprbm_scene.curve_records import shape_of
 from tests.cprbm.contact.workshop import at, mechanism, random_state
 
 INNER, HELD, FREE = range(3)
@@ -22,7 +22,7 @@ def test_a_beams_curve_meets_the_rest_line_at_every_joint():
     m, geometry, rest = mechanism(12)
     curve = named(geometry, "upper")
     joints = curve.arcs[1:-1]
-    line = m.units.place(points_on(m.scene.beams["upper"].curve, joints / curve.arcs[-1])) @ np.array([1.0, 1.0j])
+    line = m.units.place(shape_of(m.scene.beams["upper"].curve).point(joints / curve.arcs[-1])) @ np.array([1.0, 1.0j])
     np.testing.assert_allclose(at(curve, rest, joints), line, atol=1e-13)
 
 
@@ -32,7 +32,7 @@ def test_between_joints_the_curve_is_right_to_fourth_order():
         m, geometry, rest = mechanism(links)
         curve = named(geometry, "upper")
         s = np.linspace(0.3, 0.7, 401) * curve.arcs[-1]
-        line = m.units.place(points_on(m.scene.beams["upper"].curve, s / curve.arcs[-1])) @ np.array([1.0, 1.0j])
+        line = m.units.place(shape_of(m.scene.beams["upper"].curve).point(s / curve.arcs[-1])) @ np.array([1.0, 1.0j])
         # distance across the line: the curve's parameter is not exactly the arc length
         along = np.gradient(line)
         errors.append(np.abs(((at(curve, rest, s) - line) * np.conj(along / np.abs(along))).imag).max())

@@ -1,10 +1,11 @@
-"""Active contacts at a station, and contacts that open between two stations.
+"""Stations of a solve: active contacts, contacts that open between two stations, and progress for a progress bar.
 
 A contact is active where its forces exceed a floor: round-off leaves forces of 1e-15 N in contacts that only touch.
 """
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 
@@ -55,3 +56,22 @@ def openings(scene: Scene, stations: Sequence[StationAnswer]) -> tuple[Event, ..
                 if contact.active and not after.contacts[name].active
             ]
     return tuple(found)
+
+
+def station_reached(logger: logging.Logger, scene: Scene, reached: int, station: StationAnswer) -> None:
+    """Log, at the level INFO, that a solver has come to the ``station`` with the number ``reached`` of the scene."""
+    steps, whole = {stage.name: stage.steps for stage in scene.stages}, sum(len(each.stations) for each in scene.stages)
+    spent = station.certificate.iterations
+    logger.info(
+        "%s: %s, stage %s: station %d of %d, %s = %.6g, %d iteration%s",
+        scene.name,
+        logger.name.rpartition(".")[0],
+        station.stage,
+        reached,
+        whole,
+        steps[station.stage],
+        station.value,
+        spent,
+        "" if spent == 1 else "s",
+        extra={"done": reached, "whole": whole},
+    )

@@ -1,4 +1,9 @@
-"""Notes on an answer of the formulation ``paper``: errors that the form itself leaves.
+"""Inspection of the stations of the formulation ``paper``: beams that have crossed, and notes on the form's own errors.
+
+Joints of a zone dip by a part of h², and joints beyond the related range are free.  An overlap of more than half the
+mean thickness anywhere means that the beams have passed through a contact where no related joint holds them.
+
+The notes name errors that the form itself leaves:
 
 * A joint beside the beam's own pin holds the chord of the half link: first order in 1/N.  The force of the last joint
   flattens the beam over half an element, and grows with N without limit.
@@ -9,11 +14,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 
+from cprbm.chain import Mechanism
 from cprbm.chain.rows import ends_of
+from cprbm.contact import Geometry, fixed_places, near_pairs, new_counters, settle, sides_at_rest
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.newton import Solved
 from cprbm.paper.contacts import FittedLaw, beyond_ends
@@ -21,13 +26,50 @@ from cprbm.paper.fit import Boundary, fitted
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import EdgeContact, PinnedEnd
 
+OVERLAP = 0.5
+"""Allowed overlap over the mean thickness, of two lines over the longest beam."""
 
-@dataclass
-class Remarks:
-    """By contact: station at which a joint beside an own pin first pressed; largest misfit, m, and the station."""
+THINNEST = 1e-3
+"""Least thickness, over the longest beam, by which an overlap with a rigid shape is measured."""
 
-    beside_pins: dict[str, str] = field(default_factory=dict)
-    misfits: dict[str, tuple[float, str]] = field(default_factory=dict)
+SAG = 0.25
+"""Distance of a beam from the chord, over the link's length and the turn of the joint: twice the sag of an arc."""
+
+
+class Inspection:
+    """What the stations of a run show.
+
+    Attributes:
+        geometry, sides: all joints of the beams in contact, and the sides as drawn.
+        beside_pins: by contact the station at which a joint beside an own pin first pressed.
+        misfits: by contact the largest misfit, m, and the station.
+    """
+
+    def __init__(self, m: Mechanism, geometry: Geometry) -> None:
+        """Of a mechanism with all rows and the ``geometry`` of all joints."""
+        self.geometry = geometry
+        self.sides = sides_at_rest(geometry, np.concatenate([m.rest, np.zeros(len(m.rows))]), new_counters())
+        self.beside_pins = dict[str, str]()
+        self.misfits = dict[str, tuple[float, str]]()
+
+    def crossed(self, solved: Solved) -> str:
+        """Sentence on a contact whose beams have crossed; empty without such a contact."""
+        z, counters = solved.state.z, new_counters()
+        arrays, pairs = self.geometry.arrays, self.geometry.columns
+        near = near_pairs(z, arrays, pairs, np.zeros(len(pairs)), counters)
+        places = fixed_places(self.geometry, z, self.sides, near, counters)
+        gaps = np.empty(len(places.pair))
+        settle(z, arrays, places, gaps, np.empty(len(gaps)), counters, 0)
+        rigid, angles = self.geometry.ends.rigid[places.other], z[solved.system.angles]
+        before = solved.system.joints.before
+        sag = SAG * float(solved.system.metric.max() * np.abs(angles[before + 1] - angles[before]).max())
+        thickness = arrays.thickness[places.piece] + arrays.thickness[places.foot] * ~rigid
+        least = np.where(rigid, THINNEST, np.where(thickness > 0.0, 0.0, 1.0))
+        overlap = (-gaps - sag) / np.maximum(thickness, least)
+        if not len(overlap) or overlap.max() <= OVERLAP:
+            return ""
+        name = self.geometry.pairs[int(places.pair[np.argmax(overlap)])].name
+        return f"in contact '{name}' the beams overlap by {overlap.max():.1e} of the mean thickness, allowed {OVERLAP}"
 
     def look(self, solved: Solved, where: str) -> None:
         """Look at a station, called ``where``."""
