@@ -14,6 +14,7 @@
 from cprbm.contact.candidates import (
     Geometry,
     contact_geometry,
+    copied,
     fixed_places,
     half_thicknesses,
     joined,
@@ -87,6 +88,7 @@ __all__ = [
     "beam_curve",
     "contact_geometry",
     "contact_places",
+    "copied",
     "corner_sides",
     "curve_arrays",
     "curve_point",

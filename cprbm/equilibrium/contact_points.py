@@ -22,6 +22,7 @@ from cprbm.contact import (
     Contacts,
     Geometry,
     Places,
+    copied,
     corner_sides,
     is_left,
     joined,
@@ -111,7 +112,7 @@ def _revised(geometry: Geometry, solved: Touched) -> Contacts | None:
     if gone.any():
         return _without(geometry, contacts, gone)
     if light.any():
-        kept = taken(places, np.arange(len(light)))
+        kept = copied(places)
         kept.force[light] = 0.0
         return replace(contacts, places=kept, closed=contacts.closed & ~light)
     if geometry.has_corners:
@@ -133,7 +134,7 @@ def _with_points(contacts: Contacts, created: Places, replaced: Flags) -> Contac
 def _at_ends(geometry: Geometry, solved: Touched) -> Contacts | None:
     """Contacts with the ends of beams in the place of corners that have left the round ends; None without any."""
     contacts, places = solved.contacts, solved.contacts.places
-    kept, closed = taken(places, np.arange(len(contacts.closed))), contacts.closed.copy()
+    kept, closed = copied(places), contacts.closed.copy()
     arcs, moved = arc_of(geometry, places), False
     for k in np.flatnonzero(contacts.closed & places.at_point & on_edge(geometry.arrays, places)).tolist():
         if is_left(geometry, solved.state.z, places, k):
@@ -183,7 +184,7 @@ def _same(places: Places, k: int) -> Flags:
 
 def _flattest(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
     """The moving place with the least curvature of the gap."""
-    places = taken(contacts.places, np.arange(len(contacts.closed)))
+    places = copied(contacts.places)
     gaps, curvatures = np.empty(len(contacts.closed)), np.empty(len(contacts.closed))
     settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, FINDING)
     moving = places.moves & ~on_edge(geometry.arrays, places)
@@ -192,7 +193,7 @@ def _flattest(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
 
 def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
     """Contacts after moving places become joints again; the joints within a piece share the force."""
-    places, closed = taken(contacts.places, np.arange(len(gone))), contacts.closed.copy()
+    places, closed = copied(contacts.places), contacts.closed.copy()
     arcs, span, given_up = arc_of(geometry, places), geometry.arrays.span[places.piece], set(contacts.given_up)
     for k in np.flatnonzero(gone).tolist():
         given_up |= {(int(places.pair[k]), int(places.piece[k]) + e) for e in range(-ISOLATED, ISOLATED + 1)}

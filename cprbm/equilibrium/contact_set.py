@@ -19,6 +19,7 @@ from cprbm.contact import (
     Geometry,
     Places,
     contact_places,
+    copied,
     matched,
     near_pairs,
     on_edge,
@@ -121,7 +122,7 @@ def solve_set(
     z, driven = start.z.copy(), start.driven
     z[system.rows.first :][~driven] = start.target[~driven] * ~start.repeated[~driven]
     m, work, curves = system.numbers, new_work(system), geometry.arrays
-    places, closed = taken(contacts.places, np.ones(len(contacts.closed), dtype=bool)), contacts.closed.copy()
+    places, closed = copied(contacts.places), contacts.closed.copy()
     gaps, curvatures, room = np.empty(len(closed)), np.empty(len(closed)), np.zeros(len(closed))
     linear = z, m, driven, start.target, *pulls(system, springs), work
     settling = curves, places, closed, gaps, curvatures, room, contacts.counters
