@@ -8,7 +8,7 @@ F        sum of the contact forces of a closed pair
 =======  ====================================================================================
 
 The first closing is located on states with the pair kept open, by values and slopes of g along the tangent:
-g = −CLOSED there, so that the active set closes the pair in its least gap.  An opening is the zero of F, continued by
+g = −CLOSED there, so that the active set closes the pair in the least gap.  An opening is the zero of F, continued by
 −g where the pair is open.
 """
 
@@ -30,11 +30,11 @@ from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
 
 CLOSED = 1e-11
-"""Overlap, over the longest beam, at which a contact has closed: ten times the active set's round-off."""
+"""Overlap, over the longest beam, of a contact at the closing: ten times the active set's round-off."""
 
 
 LOCATED = 0.5
-"""Share of ``CLOSED`` to which the overlap at a closing is located."""
+"""Accuracy of the overlap at a closing, over ``CLOSED``."""
 
 ALONG = 1e-6
 """Part of a step along the tangent for the slope of a gap."""
@@ -178,22 +178,22 @@ def _closing(
     if not apart:
         return []
 
-    change = after.state.target - before.state.target
+    change, first = after.state.target - before.state.target, dict[float, int]()
 
     def gap(share: float) -> tuple[float, float]:
         solved = solve(share, apart) if share else before
         moved = solved.state.z + ALONG * tangent(solved, change)
-        pair = min(apart, key=lambda pair: _gap(solved, pair))
-        found = _gap(solved, pair)
-        overlap, slope = found + CLOSED, (_gap(solved, pair, moved) - found) / ALONG
+        gaps = {pair: _gap(solved, pair) for pair in apart}
+        first[share] = min(gaps, key=lambda pair: gaps[pair])
+        found = gaps[first[share]]
+        overlap, slope = found + CLOSED, (_gap(solved, first[share], moved) - found) / ALONG
         return overlap if abs(overlap) > LOCATED * CLOSED else 0.0, slope
 
     end = gap(1.0)
     if end[0] >= 0.0:
         return []
     share = located_by_slopes(gap, end)
-    touched = solve(share, apart)
-    return [ContactChange(share, apart, closes=True, first=min(apart, key=lambda pair: _gap(touched, pair)))]
+    return [ContactChange(share, apart, closes=True, first=first[share])]
 
 
 def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[ContactChange]:

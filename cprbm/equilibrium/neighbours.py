@@ -9,14 +9,14 @@ import numpy as np
 
 from cprbm.chain.compiled import compiled
 from cprbm.contact import CORNER, FINDING, CurveArrays, Places, Sites, movable, picked, settle
-from cprbm.equilibrium.iteration import OVERLAP, beside_points
+from cprbm.equilibrium.iteration import OVERLAP, beside_points, place_on_beam
 from cprbm_scene.answer import Array, Flags, Ints
 
 NEIGHBOURS = 1.6
 """Pieces between neighbouring joints: half links at a beam's end are neighbours too."""
 
 WITHIN = 0.5
-"""Gap, in pieces, of a joint beside which the curves may meet."""
+"""Gap, in pieces, of a joint with a possible contact beside the joint."""
 
 ISOLATED = 4
 """Pieces around a moving place without other closed places of the pair."""
@@ -25,18 +25,7 @@ LONGEST_RUN = 2
 """Longest run of closed neighbours for a point."""
 
 LIGHT = 0.02
-"""Part of a point's force below which the force of a joint beside the point is an overlap closed on the way."""
-
-
-@compiled
-def arc_at(curves: CurveArrays, places: Places, k: int) -> float:  # pragma: no cover
-    """Arc length of a place on its beam: of the foot of a corner."""
-    if curves.angle[places.piece[k]] < 0:
-        foot = places.foot[k]
-        at: float = curves.arc[foot] + places.eta[k] * curves.span[foot]
-    else:
-        at = curves.arc[places.piece[k]] + places.xi[k] * curves.span[places.piece[k]]
-    return at
+"""Smallest part of a point's force on a joint beside the point: a smaller force is left from the way."""
 
 
 @compiled
@@ -50,7 +39,7 @@ def joints_of(curves: CurveArrays, places: Places, columns: Ints, pair: int) -> 
             count += 1
     beside = np.zeros(count, np.bool_)
     for i in range(count - 1):
-        apart = arc_at(curves, places, joints[i + 1]) - arc_at(curves, places, joints[i])
+        apart = place_on_beam(curves, places, joints[i + 1])[1] - place_on_beam(curves, places, joints[i])[1]
         beside[i] = apart < NEIGHBOURS * curves.span[places.piece[joints[i]]]
     return joints[:count], beside
 
@@ -83,12 +72,12 @@ def as_point(
 ) -> tuple[Places, float, float]:  # pragma: no cover
     """A joint as a moving place at the minimum of the gap; gap and curvature there.
 
-    Inf and 0 without a minimum between the neighbouring joints, and at a corner, which is a place.
+    Inf and 0 without a minimum between the neighbouring joints, and at a corner: the corner is a place.
     """
     trial, gap, curvature = picked(places, np.array([k])), np.empty(1), np.empty(1)
     trial.moves[0], trial.force[0] = True, force
     settle(z, curves, trial, gap, curvature, counters, FINDING)
-    apart = abs(arc_at(curves, trial, 0) - arc_at(curves, places, k))
+    apart = abs(place_on_beam(curves, trial, 0)[1] - place_on_beam(curves, places, k)[1])
     at_corner = trial.at_point[0] and curves.corner[trial.foot[0]] == CORNER
     if at_corner or apart > NEIGHBOURS * curves.span[trial.piece[0]]:
         return trial, np.inf, 0.0
@@ -110,11 +99,11 @@ def least_between(
 
 @compiled
 def _is_crowded(curves: CurveArrays, places: Places, closed: Flags, k: int) -> bool:  # pragma: no cover
-    """True if another closed place of the pair is so near that a point of contact beside a joint is not isolated."""
-    arc, reach = arc_at(curves, places, k), (ISOLATED - NEIGHBOURS) * curves.span[places.piece[k]]
+    """True if another closed place of the pair is too near for an isolated point of contact beside a joint."""
+    arc, reach = place_on_beam(curves, places, k)[1], (ISOLATED - NEIGHBOURS) * curves.span[places.piece[k]]
     for j in range(closed.size):
         same = places.pair[j] == places.pair[k] and places.curve[j] == places.curve[k]
-        if closed[j] and same and j != k and abs(arc_at(curves, places, j) - arc) < reach:
+        if closed[j] and same and j != k and abs(place_on_beam(curves, places, j)[1] - arc) < reach:
             return True
     return False
 
@@ -123,7 +112,7 @@ def _is_crowded(curves: CurveArrays, places: Places, closed: Flags, k: int) -> b
 def short_runs(
     z: Array, curves: CurveArrays, sites: Sites, places: Places, closed: Flags, gaps: Array, counters: Ints
 ) -> Ints:  # pragma: no cover
-    """First and last (runs, 2) of short runs of closed joints, and of open joints beside which curves overlap."""
+    """First and last (runs, 2) of short runs of closed joints, and of open joints with an overlap beside the joint."""
     runs, count = np.empty((places.pair.size, 2), np.int64), 0
     depth = beside_points(curves, places, closed)[1]
     for pair in range(len(sites.columns)):
@@ -149,7 +138,7 @@ def short_runs(
 def given_up(
     curves: CurveArrays, sites: Sites, places: Places, closed: Flags, curvatures: Array
 ) -> tuple[Flags, Flags]:  # pragma: no cover
-    """Moving places that become joints again, and joints beside moving places that open."""
+    """Whether moving places become joints again, and whether joints beside moving places open."""
     count = closed.size
     gone, light = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
     if not np.any(places.moves):
@@ -158,9 +147,9 @@ def given_up(
     for k in range(count):
         if not places.moves[k] or curves.angle[places.piece[k]] < 0:
             continue
-        arc, span, force = arc_at(curves, places, k), curves.span[places.piece[k]], 0.0
+        arc, span, force = place_on_beam(curves, places, k)[1], curves.span[places.piece[k]], 0.0
         for j in range(count):
-            apart = abs(arc_at(curves, places, j) - arc)
+            apart = abs(place_on_beam(curves, places, j)[1] - arc)
             near[j] = places.pair[j] == places.pair[k] and places.curve[j] == places.curve[k] and closed[j]
             near[j] = near[j] and not places.moves[j] and span <= apart < ISOLATED * span
             force += places.force[j] if near[j] else 0.0
