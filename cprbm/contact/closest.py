@@ -14,12 +14,13 @@ The closest point minimises R − T(η): Newton's method on
     R (R − T)' = (C − x)·C' − R T',    R (R − T)'' ≈ |C'|² + (C − x)·C'' − R T''.
 
 A step crosses the borders of pieces.  The search rests at the ends of an open curve, and at a convex corner of a
-polyline.  There the steps of both pieces lead to the corner, and the closest point does not move along the curve.
+polyline or of the thickness.  There the steps of both pieces lead to the corner, and the closest point does not move
+along the curve.
 """
 
 from __future__ import annotations
 
-from math import hypot, sqrt
+from math import copysign, hypot, sqrt
 
 import numpy as np
 
@@ -147,13 +148,18 @@ def border_pieces(curves: CurveArrays, curve: int, piece: int, step: float) -> t
 
 @compiled
 def is_corner(
-    z: Array, curves: CurveArrays, piece: int, before: int, x: float, y: float, weights: Array
+    z: Array, curves: CurveArrays, piece: int, before: int, x: float, y: float, side: float, weights: Array
 ) -> bool:  # pragma: no cover
-    """True if the border of two pieces is closest to (x, y): the steps of both pieces lead to the border."""
+    """True if the border of two pieces is closest to (x, y): the steps of both pieces lead to the border.
+
+    R is negative with a negative ``side``.
+    """
     px, py = curve_point(z, curves, piece, 0.0, 0, weights)
     ax, ay = curve_point(z, curves, before, 1.0, 1, weights)
     bx, by = curve_point(z, curves, piece, 0.0, 1, weights)
-    return (px - x) * ax + (py - y) * ay < 0.0 < (px - x) * bx + (py - y) * by
+    R = copysign(hypot(px - x, py - y), side)
+    back, ahead = R * curves.thickening[before], R * curves.thickening[piece]
+    return bool((px - x) * ax + (py - y) * ay < back and ahead < (px - x) * bx + (py - y) * by)
 
 
 @compiled
@@ -189,7 +195,7 @@ def closest_point(
         step = min(1.0, max(-1.0, step))
         if not 0.0 <= eta + step <= 1.0:
             behind, before = border_pieces(curves, curve, piece, step)
-            if behind != before and is_corner(z, curves, behind, before, x, y, weights):
+            if behind != before and is_corner(z, curves, behind, before, x, y, R, weights):
                 return behind, 0.0, True
         piece, eta, rests = moved_along(curves, curve, piece, eta, step)
         if abs(step) < max(ARRIVED, ROUNDED / sqrt(square)) or (rests and abs(step) < 1.0):

@@ -13,7 +13,8 @@ T          half thickness, linear along a piece
 Complex weights add up to 1, and C follows rigid motions exactly; C has no second derivative by the nodes.
 
 1. A beam's curve is the neutral line of its chain, :mod:`cprbm.chain.spline`: real weights of at most six nodes,
-   continuous second derivative.  At rest the spline meets the rest line at the joints.
+   continuous second derivative.  At rest the spline meets the rest line at the joints.  A piece is a link; a corner of
+   the thickness inside a link divides the link into two pieces, so that the thickness is exact.
 2. A rigid curve moves with two nodes A and B of a body.  With w constant in time, P = A + w (B − A): the weights of a
    curve with positions p(ξ) at rest are 1 − w and w, w = (p − A)/(B − A).  A circle is a point with half thickness, a
    polyline has straight pieces, a smooth edge has the pieces of a cubic spline.
@@ -141,31 +142,44 @@ def beam_curve(m: Mechanism, beam: str, *, thick: bool) -> Curve:
     """Neutral line of a beam, with or without half the thickness."""
     chain = m.chains[beam]
     stencil, weights = _line_weights(chain)
-    half_thickness = 0.5 * chain.section.thickness(chain.arcs) if thick else np.zeros(chain.links + 1)
+    arcs, spans = _with_knots(chain) if thick else chain.arcs, np.diff(chain.arcs)
+    link = np.searchsorted(chain.arcs, arcs[:-1], side="right") - 1
+    begin, share = (arcs[:-1] - chain.arcs[link]) / spans[link], np.diff(arcs) / spans[link]
     return Curve(
         name=beam if thick else f"{beam} as a line",
-        stencil=m.beam_nodes(beam)[stencil],
-        weights=weights,
-        arcs=chain.arcs,
-        half_thickness=half_thickness,
-        lost=_lost(m, chain),
-        angles=m.beam_angles(beam),
-        corner=np.zeros(chain.links, dtype=np.int64),
+        stencil=m.beam_nodes(beam)[stencil[link]],
+        weights=weights[link] @ _powers(begin, share, CUBIC_POWERS),
+        arcs=arcs,
+        half_thickness=0.5 * chain.section.thickness(arcs) * thick,
+        lost=np.einsum("pk,pkj->pj", _lost(m, chain)[link], _powers(begin, share, POWERS)),
+        angles=m.beam_angles(beam)[link],
+        corner=np.zeros(len(link), dtype=np.int64),
         beam=beam,
     )
+
+
+def _with_knots(chain: BeamChain) -> Array:
+    """Arc lengths of the nodes, and of the corners of the thickness between nodes; the plain chain has nodes alone."""
+    between = np.interp(chain.knots, chain.arcs, chain.section.thickness(chain.arcs))
+    missed = np.abs(chain.section.thickness(chain.knots) - between) > CLOSED * between
+    return np.union1d(chain.arcs, chain.knots[missed & chain.corrected])
+
+
+def _powers(offset: Array, scale: Array, size: int) -> Array:
+    """Powers of o + r ξ by powers of ξ (pieces, size, size)."""
+    shift = np.zeros((len(scale), size, size))
+    for k in range(size):
+        for j in range(k + 1):
+            shift[:, k, j] = comb(k, j) * offset ** (k - j) * scale**j
+    return shift
 
 
 def _line_weights(chain: BeamChain) -> tuple[Ints, Array]:
     """Stencils and weights of the neutral line's pieces; unused places of a stencil repeat the last node."""
     line, pieces = chain.line, chain.links
     size = len(line.basis)
-    scale = np.diff(line.arcs) / line.size
-    # powers of the line's own parameter o + r ξ by powers of ξ
-    shift = np.zeros((pieces, size, size))
-    for k in range(size):
-        for j in range(k + 1):
-            shift[:, k, j] = comb(k, j) * line.offset ** (k - j) * scale**j
-    factors = np.einsum("ck,pkj->pcj", line.basis, shift)
+    # the line's own parameter is o + r ξ
+    factors = np.einsum("ck,pkj->pcj", line.basis, _powers(line.offset, np.diff(line.arcs) / line.size, size))
     control = line.control.tocoo()
     first = np.full(pieces, len(chain.nodes))
     terms = []

@@ -111,6 +111,7 @@ def settle_place(
 ) -> None:  # pragma: no cover
     """Move the foot of a place, and in at most ``steps`` a moving place; write gap and curvature."""
     gaps[k], curvatures[k] = np.inf, 0.0
+    last, longest = 0.0, LONGEST_STEP
     for _ in range(max(steps, 1)):
         x, y = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights[0])
         force = places.force[k] if places.moves[k] else 0.0
@@ -131,9 +132,11 @@ def settle_place(
             gaps[k] -= 0.5 * f.slope * f.slope / abs(f.curvature)
             break
         step = -f.slope / abs(f.curvature)
-        step = min(LONGEST_STEP, max(-LONGEST_STEP, step))
-        places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], step)
-        if abs(step) < ARRIVED:
+        # beside a corner of the other curve the slope jumps: every step back halves the longest step
+        longest *= 0.5 if step * last < 0.0 else 1.0
+        last = min(longest, max(-longest, step))
+        places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], last)
+        if abs(last) < ARRIVED:
             break
 
 
@@ -177,7 +180,11 @@ def settle_near(
         settle_place(z, curves, places, k, gaps, curvatures, counters, steps, weights)
         room[k] = 0.0
         if not (places.moves[k] or sharing[k] or places.curve[k] == places.other[k]):
-            room[k] = 0.5 * gaps[k] / np.sum(np.abs(weights[:2]))
+            way = 0.0
+            for part in range(2):
+                for i in range(STENCIL):
+                    way += abs(weights[part, 0, i]) + abs(weights[part, 1, i])
+            room[k] = 0.5 * gaps[k] / way
 
 
 @compiled
@@ -230,12 +237,14 @@ def sweeps_any_circle(
 ) -> bool:  # pragma: no cover
     """True if a beam sweeps over the centre of a circle of the ``pairs`` (pairs, 2) in a step."""
     old, new = curve_boxes(before, curves), curve_boxes(after, curves)
-    low, high = np.minimum(old[:, :2], new[:, :2]), np.maximum(old[:, 2:], new[:, 2:])
     for k in range(len(pairs)):
         a, b = pairs[k]
         if curves.is_point[b]:
             counters[BOX_TESTS] += 1
-            met = max(np.max(low[a] - high[b]), np.max(low[b] - high[a])) < 0.0
+            met = True
+            for i in range(2):
+                for c, d in ((a, b), (b, a)):
+                    met = met and min(old[c, i], new[c, i]) < max(old[d, i + 2], new[d, i + 2])
             if met and _sweeps_over(before, after, curves, a, b):
                 return True
     return False

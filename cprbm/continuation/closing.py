@@ -100,11 +100,6 @@ def may_close(state: State) -> State:
     return state if contacts is None else replace(state, contacts=replace(contacts, kept_open=frozenset(), apart=None))
 
 
-def pair_name(system: System, pair: int) -> str:
-    """Name of a pair's contact."""
-    return "" if system.geometry is None else system.geometry.pairs[pair].name
-
-
 class Pressed(NamedTuple):
     """Closed places that may lift off together: a pair, or the joint at the begin of a ``piece`` (−1: all)."""
 

@@ -26,7 +26,7 @@ from cprbm.continuation.closing import Pressed, may_lift, pressing, without
 from cprbm.continuation.path import Reached, tangent
 from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.stability import Mode, softest
-from cprbm_scene import Loss
+from cprbm_scene import BeamContact, Loss, SelfContact
 from cprbm_scene.answer import Array
 
 FOLDING = 0.5
@@ -69,6 +69,14 @@ class CriticalPoint:
         """How the branch ends, for people."""
         return f"{self.loss.value} ('{self.what}')" if self.what else self.loss.value
 
+    @property
+    def has_two_ways(self) -> bool:
+        """True at a bifurcation, and at a slip off a beam's end: the beam may come back on either side of the other."""
+        contact = self.last.system.mechanism.scene.contacts.get(self.what)
+        return self.loss is Loss.BIFURCATION or (
+            self.loss is Loss.SLIP and isinstance(contact, BeamContact | SelfContact)
+        )
+
 
 def opened(before: Solved, after: Solved, t: float, loss: Loss, what: str, width: float = 0.0) -> CriticalPoint:
     """Critical point at an opening stop or contact, with the states before and after."""
@@ -77,8 +85,10 @@ def opened(before: Solved, after: Solved, t: float, loss: Loss, what: str, width
     return CriticalPoint(t, width, loss, what, before, after, Mode(kept, mode.change), mode.curvature)
 
 
-def contact_opens(trail: list[Reached], beyond: float) -> CriticalPoint | None:
-    """The opening of a contact without which the last minimum is none, from the decrease of the force; or None.
+def contact_ends(trail: list[Reached], beyond: float) -> CriticalPoint | None:
+    """The opening of a contact without which the last minimum is none, or the slip of a contact off an end; or None.
+
+    The force of a contact that opens decreases to zero, and the distance to the end of a beam before a slip.
 
     Args:
         trail: last minima on the branch in order.
@@ -88,31 +98,14 @@ def contact_opens(trail: list[Reached], beyond: float) -> CriticalPoint | None:
     geometry, earlier = last.solved.system.geometry, _earlier(trail, width)
     if geometry is None or earlier is None:
         return None
-    for lifted in may_lift(last.solved):
-        zero = _vanishes(lifted.force, earlier, last)
+    slips = [Pressed(pair) for pair in sorted(pressing(last.solved))]
+    ends = [(each, each.force, Loss.CONTACT) for each in may_lift(last.solved)]
+    for ended, value, loss in ends + [(each, partial(_to_end, pair=each.pair), Loss.SLIP) for each in slips]:
+        zero = _vanishes(value, earlier, last)
         if zero - last.t <= NEAR * width:
-            after = without(last.solved, lifted)
-            if after.lost:
-                return opened(last.solved, after, zero, Loss.CONTACT, geometry.pairs[lifted.pair].name, width)
-    return None
-
-
-def contact_slips(trail: list[Reached], beyond: float) -> CriticalPoint | None:
-    """The slip of a contact off an end of a beam, from the decrease of the distance to the end; or None.
-
-    Args:
-        trail: last minima on the branch in order.
-        beyond: fraction of the way at which no minimum was found that continues the branch.
-    """
-    last, width = trail[-1], beyond - trail[-1].t
-    geometry, earlier = last.solved.system.geometry, _earlier(trail, width)
-    if geometry is None or earlier is None:
-        return None
-    for pair in sorted(pressing(last.solved)):
-        zero = _vanishes(partial(_to_end, pair=pair), earlier, last)
-        if zero - last.t <= NEAR * width:
-            name = geometry.pairs[pair].name
-            return opened(last.solved, without(last.solved, Pressed(pair)), zero, Loss.SLIP, name, width)
+            after = without(last.solved, ended)
+            if after.lost or loss is Loss.SLIP:
+                return opened(last.solved, after, zero, loss, geometry.pairs[ended.pair].name, width)
     return None
 
 
@@ -155,11 +148,7 @@ def critical_point(trail: list[Reached], beyond: float, change: Array) -> Critic
     fold = _along(last.solved, mode, change) > FOLDING
     if earlier is None:
         return None
-    power = 2.0 if fold else 1.0
-    now, before = mode.curvature**power, softest(earlier.solved).curvature ** power
-    if not now < before < np.inf:
-        return None
-    zero = last.t + now * (last.t - earlier.t) / (before - now)
+    zero = _vanishes(lambda solved: softest(solved).curvature ** (2.0 if fold else 1.0), earlier, last)
     if not zero - last.t <= NEAR * width:
         return None
     loss = Loss.FOLD if fold else Loss.BIFURCATION

@@ -13,7 +13,7 @@ step is halved; after an accepted step the next step is twice as long.  A step e
 
 A step refused at the smallest size marks the end of the branch.  The zero of κ then tells a fold from a
 bifurcation.  The stage chooses the end of the solve or a descent to a minimum.  Without a
-choice of the stage only a fold is passed, and only to a state near by.
+choice of the stage a branch with two ways on ends, and others are passed only to a state near by.
 """
 
 from __future__ import annotations
@@ -30,16 +30,15 @@ from cprbm.continuation.closing import (
     first_change,
     kept_open,
     may_close,
-    pair_name,
     pressing,
     pressing_names,
 )
-from cprbm.continuation.critical import CriticalPoint, contact_opens, contact_slips, critical_point, opened
+from cprbm.continuation.critical import CriticalPoint, contact_ends, critical_point, opened
 from cprbm.continuation.descent import descend
 from cprbm.continuation.jumps import jumped
 from cprbm.continuation.limits import StopChange, changed, first_event
-from cprbm.continuation.locking import ASKED, elongation, locked_beam, taut_value
-from cprbm.continuation.path import Reached, Way, turned, under
+from cprbm.continuation.locking import ASKED, locked_beam, taut_value
+from cprbm.continuation.path import Reached, Way, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.newton import NotConvergedError, Solved
 from cprbm.equilibrium.solving import equilibrium
@@ -167,7 +166,7 @@ class Driver:
                 alike = [at for (at, apart), one in known.items() if apart == pairs and pressing(one) == closed]
                 near = min(alike, key=lambda at: abs(at - share), default=0.0)
                 state = known[near, pairs].state if abs(near - share) < share else kept_open(self.solved.state, pairs)
-                known[share, pairs] = self._equilibrium(under(state, target))
+                known[share, pairs] = self._equilibrium(replace(state, target=target))
             return known[share, pairs]
 
         try:
@@ -185,7 +184,7 @@ class Driver:
         certificate, ending = certify(solved, self.settings.tolerance, 0, self.acting, with_curvature=False)
         if ending is not Ending.COMPLETED:
             return StepError(ending, certificate.failures[0])
-        if jumped(self.solved, solved, (at - begin) * self._moving(way)):
+        if jumped(self.solved, solved, (at - begin) * self._held(way.change)):
             return StepError(Ending.STEP_TOO_SMALL, "the links went another way than the path's tangents")
         return at, solved, change
 
@@ -212,11 +211,8 @@ class Driver:
         return solved
 
     def _held(self, target: Array) -> Array:
-        """Targets with zeros for stops: a closed stop stays at the limit, an open stop has no force."""
+        """Targets, or changes, with zeros for stops: a closed stop stays at the limit, an open stop has no force."""
         return np.where(self.system.limits, 0.0, target)
-
-    def _moving(self, way: Way) -> Array:
-        return np.where(self.system.limits, 0.0, way.change)
 
     def _accept(self, way: Way, t: float, solved: Solved, trail: list[Reached]) -> None:
         self._note(way, t, pressing_names(solved))
@@ -238,13 +234,13 @@ class Driver:
         Raises:
             StepError: the branch ends there.
         """
-        before, rows = self.solved, self.system.mechanism.rows
+        before, rows, geometry = self.solved, self.system.mechanism.rows, self.system.geometry
         if isinstance(change, StopChange):
             state = changed(before.state, change.row, self.system)
             name = rows[change.row].name.rpartition(".")[0]
         else:
             state = kept_open(before.state, frozenset() if change.closes else change.pairs)
-            name = pair_name(self.system, change.first)
+            name = "" if geometry is None else geometry.pairs[change.first].name
         try:
             after = self._equilibrium(state)
         except NotConvergedError as failure:
@@ -264,7 +260,7 @@ class Driver:
         Raises:
             StepError: the solve ends.
         """
-        point = contact_opens(trail, t) or contact_slips(trail, t) or critical_point(trail, t, self._moving(way))
+        point = contact_ends(trail, t) or critical_point(trail, t, self._held(way.change))
         if point is None:
             point = self._locked(way, t, trail, refused)
         return self._leave(way, point, beyond)
@@ -277,14 +273,14 @@ class Driver:
         """
         if self.system.lengthening:
             raise refused
-        solved, beam = self.solved, locked_beam(self.solved)
+        solved = self.solved
+        beam, longer = locked_beam(solved, self._held(way.change))
         limit = taut_value(trail, way, t)
         if limit is not None:
             where = f"forces grow without limit as {way.name} comes to {limit:.6g}"
             raise StepError(Ending.STEP_TOO_SMALL, f"{where}, where beams would have to become longer")
         if not beam:
             raise refused
-        longer = elongation(solved, self._moving(way))
         if abs(longer) < ASKED:
             held = f"beam '{beam}' is straight between ends that are held"
             raise StepError(Ending.STEP_TOO_SMALL, f"{held}, and cannot give way from there by bending")
@@ -301,7 +297,7 @@ class Driver:
             StepError: the branch ends.
         """
         passed = partial(Passed, point, way.value(point.t), abs(way.value(point.width) - way.value(0.0)))
-        if beyond == "stop" or (beyond is None and point.loss is Loss.BIFURCATION) or len(self.passed) >= ENDS:
+        if beyond == "stop" or (beyond is None and point.has_two_ways) or len(self.passed) >= ENDS:
             self.passed.append(passed(None))
             raise StepError(Ending.BRANCH_ENDS, self._told(way, point))
         furthest = max(point.t, self.reached) + 10.0 * point.width

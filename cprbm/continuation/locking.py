@@ -36,23 +36,20 @@ NEAR = 2.0
 """Times as far as the refused step: a limit farther away does not explain the refusal."""
 
 
-def elongation(solved: Solved, change: Array) -> float:
-    """Elongation asked of a straight beam by a change of the targets, over the longest beam; zero without any."""
+def locked_beam(solved: Solved, change: Array) -> tuple[str, float]:
+    """Name of the straight beam in balance with a repeated row, and the elongation asked of straight beams.
+
+    The elongation belongs to a ``change`` of the targets, over the longest beam.  Without a repeated row the name is
+    empty.
+    """
     system, repeated = solved.system, np.flatnonzero(solved.state.repeated)
     if not len(repeated):
-        return 0.0
+        return "", 0.0
     forces = balanced_forces(solved, int(repeated[0]))
     pull = _pulls(solved, forces)
-    return float(-(forces[system.rows.first :] @ change) / (system.metric @ pull) * len(pull))
-
-
-def locked_beam(solved: Solved) -> str:
-    """Name of the straight beam in balance with a repeated row; empty without a repeated row."""
-    system, repeated = solved.system, np.flatnonzero(solved.state.repeated)
-    if not len(repeated):
-        return ""
-    pull = np.abs(_pulls(solved, balanced_forces(solved, int(repeated[0]))))
-    return list(system.mechanism.chains)[int(np.argmax(np.maximum.reduceat(pull, system.beams.first_link)))]
+    largest = np.maximum.reduceat(np.abs(pull), system.beams.first_link)
+    longer = float(-(forces[system.rows.first :] @ change) / (system.metric @ pull) * len(pull))
+    return list(system.mechanism.chains)[int(np.argmax(largest))], longer
 
 
 def taut_value(trail: list[Reached], way: Way, refused: float) -> float | None:

@@ -13,7 +13,7 @@ f*, μ*   targets of the rows, linear in t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -108,8 +108,3 @@ def turned(before: Solved, after: Solved) -> float:
     """Largest turn of a link or a body between two states, rad."""
     system = before.system
     return float(np.abs(after.state.z - before.state.z)[system.turns].max())
-
-
-def under(state: State, target: Array) -> State:
-    """The state under other targets."""
-    return replace(state, target=target)

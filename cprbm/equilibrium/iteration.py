@@ -33,21 +33,26 @@ def change_set(
     ``pairs`` (pairs, 2) holds the numbers of both curves of every pair.
     """
     opens, closes, gap = _wanted(curves, places, closed, gaps, pairs)
-    if np.sum(opens) + np.sum(closes) > most:
-        worst, any_closes, least = -1, np.any(closes), np.inf
+    changes, any_closes = 0, False
+    for k in range(closed.size):
+        changes += opens[k] or closes[k]
+        any_closes = any_closes or closes[k]
+    if changes > most:
+        worst, least = -1, np.inf
         for k in range(closed.size):
             value = gap[k] if any_closes else places.force[k]
             if (closes[k] if any_closes else opens[k]) and value < least:
                 worst, least = k, value
         for k in range(closed.size):
             opens[k], closes[k] = opens[k] and k == worst, closes[k] and k == worst
+        changes = worst >= 0
     for k in range(closed.size):
         closed[k] = closes[k] or (closed[k] and not opens[k])
     for k in range(closed.size):
         closed[k] = closed[k + places.shares[k]]
         if not closed[k]:
             places.force[k] = 0.0
-    return bool(np.any(opens) or np.any(closes))
+    return changes > 0
 
 
 @compiled

@@ -12,9 +12,9 @@ from cprbm_scene.answer import Array, Flags, Ints
 
 
 class Arms(NamedTuple):
-    """Points of action of forces: index of the x of a displacement, and origin (points, 2)."""
+    """Points on which forces act: ``first`` index (points,) of the displacements, and ``origin`` (points, 2)."""
 
-    points: Ints
+    first: Ints
     origin: Array
 
 
@@ -57,8 +57,8 @@ def resultants(z: Array, m: Numbers, arms: Arms, acting: Array) -> tuple[float, 
     """Resultant force and moment of all rows; ``acting`` holds other forces, and the rows' forces are added."""
     add_row_gradient(z, m.rows, z[m.rows.first :], acting)
     along = across = moment = 0.0
-    for k in range(arms.points.size):
-        i = arms.points[k]
+    for k in range(arms.first.size):
+        i = arms.first[k]
         along, across = along + acting[i], across + acting[i + 1]
         moment += (arms.origin[k, 0] + z[i]) * acting[i + 1] - (arms.origin[k, 1] + z[i + 1]) * acting[i]
     for i in m.turns:

@@ -15,6 +15,12 @@ from cprbm_scene.answer import Array, Flags, Ints
 NEIGHBOURS = 1.6
 """Pieces between neighbouring joints: half links at a beam's end are neighbours too."""
 
+RESTING = 1e-6
+"""Last change of a place at the minimum of the gap, pieces."""
+
+LEANING = 1e-9
+"""Least change of the thickness's slope at a corner: round-off."""
+
 WITHIN = 0.5
 """Gap, in pieces, of a joint with a possible contact beside the joint."""
 
@@ -72,14 +78,23 @@ def as_point(
 ) -> tuple[Places, float, float]:  # pragma: no cover
     """A joint as a moving place at the minimum of the gap; gap and curvature there.
 
-    Inf and 0 without a minimum between the neighbouring joints, and at a corner: the corner is a place.
+    Inf and 0 without a minimum between the neighbouring joints, and at a corner: the corner is a place.  At a corner of
+    the thickness the slope changes its sign, and the place does not come to rest.
     """
     trial, gap, curvature = picked(places, np.array([k])), np.empty(1), np.empty(1)
     trial.moves[0], trial.force[0] = True, force
     settle(z, curves, trial, gap, curvature, counters, FINDING)
-    apart = abs(place_on_beam(curves, trial, 0)[1] - place_on_beam(curves, places, k)[1])
+    curve, piece, found = trial.curve[0], trial.piece[0], place_on_beam(curves, trial, 0)[1]
+    apart = abs(found - place_on_beam(curves, places, k)[1])
     at_corner = trial.at_point[0] and curves.corner[trial.foot[0]] == CORNER
-    if at_corner or apart > NEIGHBOURS * curves.span[trial.piece[0]]:
+    settle(z, curves, trial, gap, curvature, counters, 1)
+    low, high = np.inf, -np.inf
+    for near in range(max(piece - 1, curves.first[curve]), min(piece + 1, curves.last[curve]) + 1):
+        lean = curves.thickening[near] / curves.span[near]
+        low, high = min(low, lean), max(high, lean)
+    moved = abs(place_on_beam(curves, trial, 0)[1] - found)
+    restless = high - low > LEANING and moved > RESTING * curves.span[piece]
+    if at_corner or restless or apart > NEIGHBOURS * curves.span[piece]:
         return trial, np.inf, 0.0
     return trial, gap[0], curvature[0]
 

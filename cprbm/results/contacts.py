@@ -7,7 +7,7 @@ g, s     gap, arc length of a joint on the first beam
 e        arc length of the zone's end
 =======  ====================================================================================
 
-Forces act at joints, so that the outermost force gives e to about one link.  Beyond that force the moment is smooth:
+Forces act at joints: the outermost force gives e to about one link.  Beyond that force the moment is smooth:
 g″ is zero at e and grows evenly.  Second differences of g at the next joints, extrapolated to zero, give e.  The spline
 spreads a force over one joint on either side; such joints do not count.  A moving place at the end of a zone is e.
 
@@ -87,7 +87,7 @@ def touching_places(view: View) -> dict[str, Array]:
 def states_of_contacts(view: View, forces: PointForces, touching: Mapping[str, Array]) -> Mapping[str, ContactState]:
     """States of all contacts.
 
-    A force that a clamp, or a moment at an own pin, shares with the contact beside it is indeterminate.
+    The force of a contact beside a clamp is indeterminate, and beside a moment at an own pin.
     """
     units = view.mechanism.units
     states = contact_states(view.scene.contacts, forces, touching, (units.length, units.force))

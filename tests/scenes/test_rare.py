@@ -10,13 +10,8 @@ from tests.scenes.rare_scenes import ASKED, FOLDER, Expected, departures, expect
 EXPECTED = expectations()
 
 ZONE = "the end of a zone lies between two joints and is 5e-5 m off at this number of links"
-SLIP = "a beam that slips off the end of another goes round the end and completes"
 OPEN = {
     "bypassed-fold": "the set of closed places returns, and no step leads to the fold",
-    "end-slips-off-an-end": SLIP,
-    "end-slips-off-an-end-reversed": SLIP,
-    "bent-past-an-end-in-one-step": SLIP,
-    "bent-past-an-end-in-six-steps": SLIP,
     "pressed-flat-lets-go": "the branch ends as no minimum in place of the opening",
     "zone-off-the-clamp-long": ZONE,
     "zone-off-the-clamp-wide": ZONE,

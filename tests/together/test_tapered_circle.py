@@ -1,4 +1,4 @@
-"""A tapered beam that touches a circle by its edge, in both solvers."""
+"""A tapered beam that touches a circle or a beam by its edge, in both solvers."""
 
 from __future__ import annotations
 
@@ -78,10 +78,7 @@ def test_a_clamped_end_that_just_touches_is_open(solver, load):
     assert values["circle.ends"].size == values["circle.centre"].size == 0
 
 
-CORNER = pytest.mark.xfail(strict=True, reason="a corner of the thickness between two joints is no place of contact")
-
-
-@pytest.mark.parametrize("solver", [pytest.param(by_cprbm, marks=CORNER), by_fea])
+@pytest.mark.parametrize("solver", [by_cprbm, by_fea])
 def test_a_corner_of_the_edge_stands_on_the_circle(solver):
     # reference: the flexibilities as above of a beam that is thickest in its middle, which touches there by its corner
     knot = 0.5137
@@ -100,6 +97,33 @@ def test_a_corner_of_the_edge_stands_on_the_circle(solver):
     values = solver(scene_of(load, center, 0.0041, thickness=sizes))
     assert values["circle.force"][0] == pytest.approx(load * flexibility(LENGTH) / flexibility(a), rel=1e-3)
     assert values["circle.centre"][0] == pytest.approx(a, abs=1e-6 * LENGTH)
+
+
+@pytest.mark.parametrize("n", [20, 41])
+@pytest.mark.parametrize("between", [["beam", "lower"], ["lower", "beam"]])
+def test_a_beam_lies_on_a_corner_of_another_beam(between, n):
+    # reference: flexibilities as above of both beams: F = P f(a, L)/(f(a, a) + f'(a, a))
+    knot, load = 0.5137, 1e-4 * RIGIDITY / LENGTH**2
+    a = knot * LENGTH
+    sizes = {"at": [0.0, knot, 1.0], "values": [0.5 * THICKNESS, THICKNESS, 0.5 * THICKNESS]}
+
+    def rate(s: float) -> float:
+        t = np.interp(s / LENGTH, sizes["at"], sizes["values"])
+        return (a - s) ** 2 * 12.0 / (MODULUS * WIDTH * t**3)
+
+    data = cantilever_data(force(0.0, -1.0), [load])
+    data["bodies"]["wall"]["points"]["Q"] = [0.0, -THICKNESS]
+    data["beams"]["lower"] = data["beams"]["beam"] | {
+        "curve": {"kind": "line", "start": [0.0, -THICKNESS], "end": [LENGTH, -THICKNESS]},
+        "thickness": sizes,
+        "start": {"joint": "weld", "point": "Q"},
+        "end": {"joint": "free"},
+    }
+    data["contacts"] = {"c": {"kind": "beam-beam", "between": between}}
+    data["probes"] += [{"of": "c", "quantity": "force"}]
+    own, other = a**3 / (3.0 * RIGIDITY), quad(rate, 0.0, a, epsrel=1e-12)[0]
+    expected = load * a**2 * (3.0 * LENGTH - a) / (6.0 * RIGIDITY) / (own + other)
+    assert by_cprbm(scene_from(data), n)["c.force"][0] == pytest.approx(expected, rel=1e-4)
 
 
 def test_a_circle_that_overlaps_the_beam_where_it_is_thick_is_named():
