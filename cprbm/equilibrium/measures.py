@@ -1,4 +1,4 @@
-"""Sizes that judge a state, compiled: residual, violation, moments, turns, strains, and balance."""
+"""Sizes of a state for the certificate, compiled: residual, violation, moments, turns, strains, and balance."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def residuals(gradient: Array, equations: Flags) -> tuple[float, float]:  # prag
 def sizes(z: Array, m: Numbers, lean: Array) -> tuple[float, float, float, float]:  # pragma: no cover
     """Largest angle of a link, turn of a joint, and share of a link's normal force in 12 EI/h²; largest moment.
 
-    The moment is that of a joint, of a link's force on the link, or of a row.
+    Moments are moments of joints, of forces on their links, and of rows.
     """
     angle = turn = strain = moment = 0.0
     for j in range(m.links.length.size):
