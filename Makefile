@@ -71,8 +71,9 @@ $(READY): requirements.lock pyproject.toml
 	  || { echo "Python's venv module is needed; on Debian or Ubuntu: apt install python3-venv"; exit 1; }
 	$(ENVIRONMENT) $(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
 	$(ENVIRONMENT) $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
-	$(ENVIRONMENT) $(BIN)/python -c "from cprbm import answer; from cprbm_scene import read; \
-	  [answer(read(f'comparisons/cases/{case}.toml')) for case in ('tapered', 'hinge')]"  # stores the compiled kernels
+	$(ENVIRONMENT) $(BIN)/python -c "from cprbm import Settings, answer; from cprbm_scene import read; \
+	  [answer(read(f'comparisons/cases/{case}.toml'), Settings(formulation=formulation)) for case, formulation \
+	  in (('hinge', 'auto'), ('wrapped', 'auto'), ('five-bar', 'auto'), ('hinge', 'paper'))]"  # stores the compiled kernels
 	touch $(READY)
 
 # The extra 'view' is left out: VTK's modules take 565 MB, and nothing but pictures in space needs them.

@@ -2,9 +2,9 @@
 
 A column has the arrays of one name and shape, in the order of the stations.  Let b[k, i] be the 64 bits of number i at
 station k, read as an integer.  The integer grows with the number, so it is as smooth along stations and places as the
-number.  The second differences along both have mostly zero leading bits:
+number.  The third differences along both have mostly zero leading bits:
 
-    d = Δᵢ² Δₖ² b  (mod 2⁶⁴),    z = 2d for d ≥ 0,  -2d - 1 for d < 0.
+    d = Δᵢ³ Δₖ³ b  (mod 2⁶⁴),    z = 2d for d ≥ 0,  -2d - 1 for d < 0.
 
 Integers of fixed size add and subtract without rounding: the sums of the differences are the bits of the numbers.  The
 file has the first bytes of all z, then the second bytes, and so on, compressed.  Equal arrays stand once.
@@ -38,8 +38,8 @@ DAMAGES = (EOFError, zlib.error, gzip.BadGzipFile, KeyError, IndexError, TypeErr
 _COMPRESSION = 4
 """Level of gzip: level 6 takes 2.5 times as long for two per cent."""
 
-_AXES = (0, 0, 1, 1)
-"""Axes of the differences: twice along stations, twice along places."""
+_AXES = (0, 0, 0, 1, 1, 1)
+"""Axes of the differences: along stations and along places; second or fourth differences take more room."""
 
 Integers = NDArray[np.int64]
 
@@ -59,7 +59,7 @@ def unpacked(content: bytes) -> dict[str, Answer]:
     """The answers of :func:`packed` by name; fields that the content lacks have their defaults.
 
     Raises:
-        one of :data:`DAMAGES`: ``content`` has no answers.
+        ValueError: ``content`` has no answers; other errors of damaged bytes are in ``DAMAGES``.
     """
     document = json.loads(gzip.decompress(content))
     arrays = _read_columns(document["columns"], document["differences"])
@@ -71,7 +71,7 @@ def read_answers(path: str | Path) -> dict[str, Answer]:
 
     Raises:
         OSError: the file cannot be read.
-        one of :data:`DAMAGES`: the file is damaged.
+        ValueError: the file is damaged; other errors of damaged files are in ``DAMAGES``.
     """
     return unpacked(Path(path).read_bytes())
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 from comparisons import sentences as said
 from comparisons.audit import Audit, audit
 from comparisons.branch_words import BranchVerdict, branch_verdicts
-from comparisons.pairing import Runs
 from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.tolerances.result import Tolerance
 from comparisons.verdict.completeness import complete_part, ends_at_critical
 from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows
 from comparisons.verdict.judge import Judged, judge_case, judge_rows
 from comparisons.verdict.rows import Row, build_rows
+from comparisons.verdict.runs import SOLVERS, Runs
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.station_events import station_events
 from comparisons.verdict.words import SEVERITY, Reason, Word
@@ -88,7 +88,7 @@ def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
     judged = judge_rows(table, rows)
     audits = {
         answer.solver: look(scene, replace(answer, stations=tuple(table.stations[name].values())))
-        for name, answer in zip(table.compared, table.pair, strict=True)
+        for name, answer in zip(SOLVERS, table.pair, strict=True)
     }
     verdict = _verdict(table, rows, judged, criticals, closings, audits)
     return Comparison(scene, runs, rows, verdict, criticals, _reactions(table), audits=audits)
@@ -154,7 +154,7 @@ def _completed(table: RunsTable, criticals: Sequence[CriticalRow]) -> bool:
 
 def _lacking(table: RunsTable) -> bool:
     """Whether a compared answer is not complete."""
-    return any(name in table.problems for name in table.compared)
+    return any(name in table.problems for name in SOLVERS)
 
 
 def _reactions(table: RunsTable) -> tuple[WorkEnergyReaction, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -13,7 +12,7 @@ Kinematics = Literal["bending", "stretch", "shear"]
 KINEMATICS: tuple[Kinematics, ...] = ("bending", "stretch", "shear")
 """The beam theories of both solvers, each with one freedom more than the one before."""
 
-Count = int | Mapping[str, int]
+Count = int | dict[str, int]
 
 LOOSEST = 0.05
 """Largest penetration of a family of sizes, over the thickness."""

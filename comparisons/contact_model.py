@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from comparisons.pairing import Runs
 from comparisons.quantities import norm
 from comparisons.stations import station_of
 from comparisons.verdict.rows import Row
+from comparisons.verdict.runs import Runs
 from cprbm_scene import Answer
 from cprbm_scene.answer import Array
 

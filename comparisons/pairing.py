@@ -1,6 +1,7 @@
-"""The runs of a comparison: only this module imports the solvers, at the place of use.
+"""The solvers, and the runs of a comparison: only this module imports the solvers, at the place of use.
 
-Seven runs in one theory, the theory of the finite elements (:meth:`comparisons.choices.Choices.kinematics_of`):
+Seven runs (:mod:`comparisons.verdict.runs`) in one theory, the theory of the finite elements
+(:meth:`comparisons.choices.Choices.kinematics_of`):
 
 * CPRBM at N, N + N/7 and 2N links, at the last two always in ``auto``; in ``paper`` also at N in ``auto``;
 * finite elements at n, n + n/7 and 2n elements;
@@ -25,29 +26,24 @@ use the reaction.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import Protocol
 
 from pydantic import ValidationError
 
-from comparisons.choices import Choices, Kinematics, check
+from comparisons.choices import Choices, check
 from comparisons.crew import ALONE, Crew, Job, Solver
 from comparisons.reactions import perturbed_scene
+from comparisons.verdict.runs import Runs, other_theory
 from cprbm_scene import Answer, Ending, Mistake, RigidContact, Scene, SceneError, Spacing
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import BodyLoad, Curve, Spline
 
-if TYPE_CHECKING:
-    from comparisons.verdict.uncertainty import Error
-
 Prepared = Callable[[], Answer]
-
-Uncertainties: TypeAlias = "Mapping[tuple[str, float, str], Error]"
-"""Stated uncertainties by stage, station and probe."""
 
 PAPER_BESIDE_AUTO = 160
 """Largest number of links per beam of a run in ``paper`` beside ``auto``: the time grows with the cube of N."""
@@ -79,20 +75,11 @@ def cprbm_prepared(scene: Scene, choices: Choices) -> Prepared:
     import cprbm
 
     with _named("links"):
-        settings = cprbm.Settings(links=_plain(choices.links), formulation=choices.formulation)
+        settings = cprbm.Settings(links=choices.links, formulation=choices.formulation)
     theory = choices.theory_of(scene)
-    run = cprbm.prepared(in_theory(scene, theory), settings)
-    return lambda: _with_theory(run.answer(), theory)
-
-
-def _with_theory(answer: Answer, theory: Kinematics) -> Answer:
-    """The answer with the beam theory among its settings, as the finite elements state it."""
-    return replace(answer, settings=frozendict({**answer.settings, "kinematics": theory}))
-
-
-def in_theory(scene: Scene, theory: Kinematics) -> Scene:
-    """The scene with a beam theory."""
-    return scene if scene.theory == theory else scene.model_copy(update={"theory": theory})
+    run = cprbm.prepared(scene.model_copy(update={"theory": theory}), settings)
+    # with the theory among the settings, as the finite elements state the theory
+    return lambda: replace(answer := run.answer(), settings=frozendict({**answer.settings, "kinematics": theory}))
 
 
 def fea_answer(scene: Scene, choices: Choices) -> Answer:
@@ -114,7 +101,7 @@ def fea_prepared(scene: Scene, choices: Choices) -> Prepared:
 
     with _named("elements"):
         settings = fea_reference.Settings(
-            elements=_plain(choices.elements),
+            elements=choices.elements,
             kinematics=choices.kinematics_of(scene),
             penetration=choices.penetration,
         )
@@ -127,11 +114,8 @@ def prepared(solver: Solver, scene: Scene, choices: Choices) -> Prepared:
     Raises:
         SceneError: the solver refuses the question.
     """
-    if solver is cprbm_answer:
-        return cprbm_prepared(scene, choices)
-    if solver is fea_answer:
-        return fea_prepared(scene, choices)
-    return lambda: solver(scene, choices)
+    own: dict[Solver, Callable[[Scene, Choices], Prepared]] = {cprbm_answer: cprbm_prepared, fea_answer: fea_prepared}
+    return own[solver](scene, choices) if solver in own else partial(solver, scene, choices)
 
 
 def exact_answer(scene: Scene, choices: Choices) -> Answer:
@@ -147,8 +131,8 @@ def exact_pieces(scene: Scene) -> int:
     inner = [
         len(beam.knots) - 2 + (len(beam.curve.points) - 2 if isinstance(beam.curve, Spline) else 0) for beam in beams
     ]
-    loads = [load for load in scene.loads.values() if not isinstance(load, BodyLoad)]
-    return len(beams) + sum(inner) + len(loads) + len(scene.contacts)
+    loads = sum(not isinstance(load, BodyLoad) for load in scene.loads.values())
+    return len(beams) + sum(inner) + loads + len(scene.contacts)
 
 
 def exact_by_rule(scene: Scene, choices: Choices) -> Answer:
@@ -177,7 +161,7 @@ def solid_answer(scene: Scene, choices: Choices) -> Answer:
     from fea_reference import solid
 
     with _named("elements"):
-        settings = solid.Settings(elements=_plain(choices.elements), across=choices.across)
+        settings = solid.Settings(elements=choices.elements, across=choices.across)
     return solid.answer(scene, settings)
 
 
@@ -241,80 +225,6 @@ def load_solvers() -> None:
 def workers_for(planted: object) -> int:
     """Number of processes for the runs; planted solvers stay in this process."""
     return 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
-
-
-@dataclass(frozen=True, slots=True)
-class Runs:
-    """All answers to one scene in a comparison; a failed run is a failed answer.
-
-    Attributes:
-        theory: beam theory of the comparison.
-        cprbm: the CPRBM at N and 2N links, at 2N always in the formulation ``auto``; at N alone where the answers at N
-            and n have nothing in common.
-        fea: the finite elements at n and 2n elements; at n alone likewise.
-        auto: the CPRBM at N links in ``auto``, if another formulation is chosen.
-        paper: the CPRBM at N links in ``paper`` and in ``bending``, beside ``auto``; no part of the verdict.
-        beside: the CPRBM in ``auto`` at N + N/7 links.
-        ratio: N over N + N/7.
-        fea_beside: the finite elements at n + n/7.
-        fea_ratio: n over n + n/7.
-        other: the CPRBM at N links in ``auto`` in :attr:`other_theory`; None without this run.
-        other_absence: why the CPRBM refuses the other theory; empty otherwise.
-        perturbed: the CPRBM at N links at :func:`comparisons.reactions.perturbed_scene`; no part of the verdict.
-        exact: the exact answer at the covered stations; None without any, and outside ``bending``.
-        exact_absence: why the exact reference covers no station; empty if the reference was not asked.
-        solid: the solid at n and 2n elements, or on the meshes of a tolerance, from coarse to fine; no part of the
-            verdict.
-        settled: stated uncertainties by stage, station and probe, by name of a run with extrapolated values or further
-            grids.
-    """
-
-    theory: Kinematics
-    cprbm: tuple[Answer, ...]
-    fea: tuple[Answer, ...]
-    auto: Answer | None = None
-    paper: Answer | None = None
-    beside: Answer | None = None
-    ratio: float = 1.0
-    fea_beside: Answer | None = None
-    fea_ratio: float = 1.0
-    other: Answer | None = None
-    other_absence: str = ""
-    perturbed: Answer | None = None
-    exact: Answer | None = None
-    exact_absence: str = ""
-    solid: tuple[Answer, ...] | None = None
-    settled: Mapping[str, Uncertainties] = frozendict()
-
-    @property
-    def reference(self) -> Answer:
-        """The finite elements' answer at n elements."""
-        return self.fea[0]
-
-    @property
-    def other_theory(self) -> Kinematics:
-        """``bending``, the paper's theory; ``shear`` where the comparison is in ``bending``."""
-        return _other(self.theory)
-
-    @property
-    def formulations(self) -> tuple[Answer, Answer] | None:
-        """The CPRBM at N links in ``paper`` and in ``auto``, in one theory; None without both runs."""
-        if self.auto is not None:
-            return self.cprbm[0], self.auto
-        even = self.cprbm[0] if self.theory == "bending" else self.other
-        return None if self.paper is None or even is None else (self.paper, even)
-
-    def everything(self) -> Iterator[tuple[str, Answer]]:
-        """Names and answers of all runs in the theory of the comparison."""
-        for name, answers in (("cprbm", self.cprbm), ("fea", self.fea)):
-            for level, answer in enumerate(answers):
-                yield f"{name} finer" if level else name, answer
-        others = {"cprbm auto": self.auto, "cprbm beside": self.beside, "fea beside": self.fea_beside}
-        yield from ((name, answer) for name, answer in others.items() if answer is not None)
-
-
-def _other(theory: Kinematics) -> Kinematics:
-    return "shear" if theory == "bending" else "bending"
 
 
 def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE, *, bare: bool = False) -> Runs:
@@ -416,7 +326,7 @@ def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
 
 def in_other_theory(scene: Scene, choices: Choices, solvers: Solvers) -> tuple[Answer | None, str]:
     """The CPRBM in the other theory (:attr:`Runs.other_theory`), or None and the mistakes of a refusal."""
-    return _unless_refused(solvers, scene, choices.within(_other(choices.kinematics_of(scene))))
+    return _unless_refused(solvers, scene, choices.within(other_theory(choices.kinematics_of(scene))))
 
 
 def _unless_refused(solvers: Solvers, scene: Scene, choices: Choices) -> tuple[Answer | None, str]:
@@ -443,7 +353,3 @@ def _named(key: str) -> Iterator[None]:
                 for details in error.errors()
             ]
         ) from None
-
-
-def _plain(count: int | Mapping[str, int]) -> int | dict[str, int]:
-    return count if isinstance(count, int) else dict(count)

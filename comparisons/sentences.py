@@ -9,12 +9,12 @@ from functools import partial
 
 from comparisons.display_units import at_station, distance_text, with_unit
 from comparisons.formats import number, percent
-from comparisons.pairing import Runs
-from comparisons.verdict.calibration import SOLVERS, error_ratios, tally, true_errors
+from comparisons.verdict.calibration import error_ratios, tally, true_errors
 from comparisons.verdict.completeness import problems
 from comparisons.verdict.events import ClosingRow, CriticalRow, mechanism
 from comparisons.verdict.judge import Judged
 from comparisons.verdict.rows import Row
+from comparisons.verdict.runs import SOLVERS, Runs
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.station_events import MIRRORED, PASSED, passed_by
 from comparisons.verdict.words import Reason, Word
@@ -234,7 +234,7 @@ def _coarse(table: RunsTable, row: Row) -> str:
     needed = {}
     for solver, stated in (("cprbm", row.bounds.cprbm), ("fea", row.bounds.fea)):
         option, key = _OPTIONS[solver]
-        size = table.answers[table.compared[SOLVERS.index(solver)]].settings.get(key)
+        size = table.answers[solver].settings.get(key)
         room = 0.4 * limit * row.scale
         if isinstance(size, int) and stated > room:
             needed[solver] = f"{option} {math.ceil(size * math.sqrt(stated / room) / 10.0) * 10}"

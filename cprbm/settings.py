@@ -51,14 +51,16 @@ class Settings(BaseModel):
 
     def finer(self) -> Settings:
         """The same with twice the elements."""
-        return self.model_copy(update={"links": _doubled(self.links)})
+        links = self.links
+        twice = 2 * links if isinstance(links, int) else _frozen({beam: 2 * number for beam, number in links.items()})
+        return self.model_copy(update={"links": twice})
 
     def plain(self) -> dict[str, object]:
         """The settings as plain values for the answer sheet."""
         return self.model_dump(mode="json")
 
     def check(self, scene: Scene) -> None:
-        """Refuse numbers of links that fit no beam of ``scene``, and requirements that the CPRBM does not meet.
+        """Refuse numbers of links without a beam of ``scene``, and requirements beyond the CPRBM.
 
         Raises:
             SceneError: a beam has no number, a number has no beam, a number is too small, or the scene
@@ -78,12 +80,6 @@ class Settings(BaseModel):
         if scene.contacts and self.formulation == "auto" and contacts_may_hold(scene):
             met += ("support",)
         refuse(scene, "the CPRBM", *met)
-
-
-def _doubled(links: int | Mapping[str, int]) -> int | Mapping[str, int]:
-    if isinstance(links, int):
-        return 2 * links
-    return frozendict({beam: 2 * number for beam, number in links.items()})
 
 
 def loose_bodies(scene: Scene) -> list[str]:

@@ -1,4 +1,4 @@
-"""How far answers are from the truth in the theory of bending, each in one number per measure.
+"""Errors of answers in the theory of bending: a number for every measure.
 
 ==========  ==============================================================================================
 symbol      meaning
@@ -38,18 +38,18 @@ SMALL = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """The true ``values`` by probe, how far they may be off (each as its value), and ``by`` what they are known."""
+    """Reference ``values`` by probe, their ``uncertainty`` in the same shapes, and their origin ``by``."""
 
     by: str
-    values: Mapping[str, Array]
-    uncertainty: Mapping[str, Array]
+    values: Mapping[str, Array] = frozendict()
+    uncertainty: Mapping[str, Array] = frozendict()
 
 
-NOTHING = Reference("nothing: no reference is known", frozendict(), frozendict())
+NOTHING = Reference("nothing: no reference is known")
 
 
 def reference(scene: Scene, solvers: Solvers) -> Reference:
-    """The reference of a scene as :func:`comparisons.bench.question.asked` leaves it."""
+    """The reference of a scene of :func:`comparisons.bench.question.asked`."""
     if solvers.exact is not None:
         exact = solvers.exact(scene, Choices(kinematics="bending"))
         if exact.completed and exact.stations:
@@ -61,41 +61,38 @@ def reference(scene: Scene, solvers: Solvers) -> Reference:
         return NOTHING
     if not all(answer.completed for answer in answers):
         return NOTHING
-    values, uncertainty = dict[str, Array](), dict[str, Array]()
-    for probe in scene.probes:
-        found = [answer.stations[-1].values[probe.name] for answer in answers]
-        if len({one.shape for one in found}) == 1 and found[0].size:
-            limited = limit(FINE, np.array(found))
-            values[probe.name], uncertainty[probe.name] = limited.value, limited.uncertainty
-    by = f"the CPRBM's limit (auto, N = {', '.join(map(str, FINE))})"
-    return Reference(by, frozendict(values), frozendict(uncertainty))
+    found = {probe.name: [answer.stations[-1].values[probe.name] for answer in answers] for probe in scene.probes}
+    limits = {
+        name: limit(FINE, np.array(values))
+        for name, values in found.items()
+        if len({value.shape for value in values}) == 1 and values[0].size
+    }
+    return Reference(
+        f"the CPRBM's limit (auto, N = {', '.join(map(str, FINE))})",
+        frozendict({name: each.value for name, each in limits.items()}),
+        frozendict({name: each.uncertainty for name, each in limits.items()}),
+    )
 
 
 def errors(scene: Scene, known: Reference, values: Mapping[str, Array]) -> Mapping[Measure, float]:
-    """e of each measure that has a probe whose value and reference are known."""
-    apart = {
-        name: float(np.linalg.norm(values[name] - true))
-        for name, true in known.values.items()
-        if name in values and values[name].shape == true.shape
-    }
-    return _worst(scene, known, apart)
+    """e of each measure with a probe of known value and reference."""
+    pairs = {name: (values[name], true) for name, true in known.values.items() if name in values}
+    return _worst(scene, known, {name: v - true for name, (v, true) in pairs.items() if v.shape == true.shape})
 
 
 def uncertainties(scene: Scene, known: Reference) -> Mapping[Measure, float]:
     """U of each measure."""
-    return _worst(scene, known, {name: float(np.linalg.norm(u)) for name, u in known.uncertainty.items()})
+    return _worst(scene, known, known.uncertainty)
 
 
-def _worst(scene: Scene, known: Reference, apart: Mapping[str, float]) -> Mapping[Measure, float]:
+def _worst(scene: Scene, known: Reference, apart: Mapping[str, Array]) -> Mapping[Measure, float]:
     sizes = {name: float(np.linalg.norm(true)) for name, true in known.values.items()}
-    largest: dict[str, float] = {}
+    largest = {probe.quantity: 0.0 for probe in scene.probes}
     for probe in scene.probes:
-        largest[probe.quantity] = max(largest.get(probe.quantity, 0.0), sizes.get(probe.name, 0.0))
-    found: dict[Measure, float] = {}
-    for probe in scene.probes:
-        measure = measure_of(scene, probe)
-        if measure is not None and probe.name in apart:
-            natural = natural_value(scene, probe.quantity, scene.stages[-1], contact=probe.of)
-            scale = max(sizes[probe.name], SMALL * largest[probe.quantity], NATURAL_SHARE * natural)
-            found[measure] = max(found.get(measure, 0.0), apart[probe.name] / scale)
-    return frozendict({measure: found[measure] for measure in MEASURES if measure in found})
+        largest[probe.quantity] = max(largest[probe.quantity], sizes.get(probe.name, 0.0))
+    found: dict[Measure | None, list[float]] = {}
+    for probe in (each for each in scene.probes if each.name in apart):
+        natural = natural_value(scene, probe.quantity, scene.stages[-1], contact=probe.of)
+        scale = max(sizes[probe.name], SMALL * largest[probe.quantity], NATURAL_SHARE * natural)
+        found.setdefault(measure_of(scene, probe), []).append(float(np.linalg.norm(apart[probe.name])) / scale)
+    return frozendict({measure: max(found[measure]) for measure in MEASURES if measure in found})

@@ -30,13 +30,9 @@ def asked(scene: Scene) -> Scene:
 
 
 def measure_of(scene: Scene, probe: Probe) -> Measure | None:
-    """The measure that a probe counts for, or none."""
+    """The measure that a probe counts for, or None."""
     driven = {drive.point if isinstance(drive, DisplacementDrive) else drive.body for drive in scene.drives.values()}
-    match probe.quantity:
-        case "displacement" | "rotation":
-            return "places"
-        case "force":
-            return "forces"
-        case "reaction" | "reaction_moment" if probe.of in driven:
-            return "forces"
-    return None
+    if probe.quantity in ("displacement", "rotation"):
+        return "places"
+    at_drive = probe.quantity in ("reaction", "reaction_moment") and probe.of in driven
+    return "forces" if at_drive or probe.quantity == "force" else None

@@ -51,7 +51,6 @@ class Commands(click.Group):
             known = self.list_commands(ctx)
             near = get_close_matches(name.casefold(), known, n=1)
             meant = f" (is {near[0]!r} meant?)" if near else ""
-            said = f"found {name!r}, no command of '{ctx.command_path}'{meant}; allowed: {', '.join(known)}"
-            ctx.fail(said)
+            ctx.fail(f"found {name!r}, no command of '{ctx.command_path}'{meant}; allowed: {', '.join(known)}")
         _, command, rest = super().resolve_command(ctx, args)
         return name, command.loaded() if isinstance(command, ToolCommand) else command, rest

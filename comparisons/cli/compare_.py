@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from logging import NOTSET
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import click
 
 from comparisons import logs
-from comparisons.choices import Kinematics
 from comparisons.cli.completion import candidates
 from comparisons.cli.options import (
+    choices_for,
     exactness,
     exports,
     folder,
@@ -32,8 +32,9 @@ if TYPE_CHECKING:
     from comparisons.cli.output import Steps
     from comparisons.crew import Crew
     from comparisons.offset_verdict import OffsetComparison
-    from comparisons.pairing import Runs, Solvers
+    from comparisons.pairing import Solvers
     from comparisons.tolerances.result import Tolerance
+    from comparisons.verdict.runs import Runs
     from cprbm_scene import Question
 
 
@@ -52,13 +53,6 @@ def command(
     planted: object,
     arguments: tuple[str, ...],
     asking_solid: bool,  # noqa: FBT001 - click passes a keyword
-    links: int | Mapping[str, int],
-    elements: int | Mapping[str, int],
-    formulation: Literal["auto", "paper"],
-    theory: Kinematics | None,
-    kinematics: Kinematics | None,
-    penetration: float,
-    across: int,
     tol: float | None,
     exact: bool | None,  # noqa: FBT001 - click passes a keyword
     csv_file: Path | None,
@@ -71,22 +65,17 @@ def command(
 
     The verdict of a scene is AGREE, DIFFER or UNDECIDED, with a reason.
     """
-    from comparisons.choices import Choices, check
     from comparisons.cli import output
     from comparisons.cli.questions import read_questions
     from comparisons.pairing import solvers_of, with_solid, workers_for
     from comparisons.present.brief import WIDTH, summary
     from comparisons.present.page import Chapter, case_chapter, document_of, figures_of, put_case, put_page, report_page
     from comparisons.store import run_into
-    from cprbm_scene import OffsetQuestion
 
     refuse_sizes_with(tol)
     taking_part = with_solid(solvers_of(planted, exact=exact)) if asking_solid else solvers_of(planted, exact=exact)
     scenes = read_questions(arguments)
-    choices = Choices(links, formulation, elements, kinematics, penetration, across, theory)
-    for scene in scenes:
-        if not isinstance(scene, OffsetQuestion):
-            check(choices, scene)
+    choices = choices_for(*scenes)
     if out is None and "all" in arguments:
         out = Path("report")
     for file in (json_file, csv_file, plot_file):

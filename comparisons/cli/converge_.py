@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import click
 
-from comparisons.choices import Kinematics
 from comparisons.cli.completion import candidates
-from comparisons.cli.options import exactness, family_sizes, folder, opinions, output_options, parameters, variants
+from comparisons.cli.options import (
+    choices_for,
+    exactness,
+    family_sizes,
+    folder,
+    opinions,
+    output_options,
+    parameters,
+    variants,
+)
 
 if TYPE_CHECKING:
     from comparisons.plain import Plain
@@ -43,9 +51,6 @@ def command(
     arguments: tuple[str, ...],
     asking_solid: bool,  # noqa: FBT001 - click passes a keyword
     sizes: tuple[int, ...],
-    formulation: Literal["auto", "paper"],
-    theory: Kinematics | None,
-    kinematics: Kinematics | None,
     exact: bool | None,  # noqa: FBT001 - click passes a keyword
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click passes a keyword
@@ -55,7 +60,6 @@ def command(
 
     The error budget splits every difference of the solvers into parts.
     """
-    from comparisons.choices import Choices
     from comparisons.cli import output
     from comparisons.cli.questions import read_questions
     from comparisons.pairing import solvers_of, with_solid, workers_for
@@ -68,7 +72,7 @@ def command(
         out = Path("convergence")
     output.room_for(json_file, out)
     taking_part = with_solid(solvers_of(planted, exact=exact)) if asking_solid else solvers_of(planted, exact=exact)
-    choices = Choices(formulation=formulation, kinematics=kinematics, theory=theory)
+    choices = choices_for()
     printing = str(json_file) != "-"
     finished: list[Section] = []
     chapters: tuple[Chapter, ...] = ()

@@ -64,5 +64,4 @@ def _in_sum(left: list[str]) -> str:
     """Summary for a new user."""
     if not left:
         return "All libraries are installed."
-    names = ", ".join(left)
-    return f"Answers, verdicts and reports work; {names}: only for the purpose beside the name."
+    return f"Answers, verdicts and reports work; {', '.join(left)}: only for the purpose beside the name."

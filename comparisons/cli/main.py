@@ -10,6 +10,7 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 import click
@@ -55,35 +56,11 @@ class _SubCommands(Commands):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The sub-command with a name, or None."""
-        match cmd_name:
-            case "new":
-                from comparisons.cli.new_ import command
-            case "import":
-                from comparisons.cli.import_ import command
-            case "solve":
-                from comparisons.cli.solve_ import command
-            case "compare":
-                from comparisons.cli.compare_ import command
-            case "converge":
-                from comparisons.cli.converge_ import command
-            case "view":
-                from comparisons.cli.view_ import command
-            case "report":
-                from comparisons.cli.report_ import command
-            case "list":
-                from comparisons.cli.list_ import command
-            case "bench":
-                from comparisons.cli.bench_ import command
-            case "study":
-                from comparisons.cli.study_ import command
-            case "schema":
-                from comparisons.cli.schema_ import command
-            case "doctor":
-                from comparisons.cli.doctor_ import command
-            case "robustness" | "stress":
-                command = ToolCommand(cmd_name)
-            case _:
-                return _of_many_analyses(cmd_name)
+        if cmd_name in workshop.TOOLS:
+            return ToolCommand(cmd_name)
+        if cmd_name not in self.list_commands(ctx):
+            return None
+        command: click.Command = import_module(f"comparisons.cli.{cmd_name}_").command
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -93,20 +70,6 @@ class _SubCommands(Commands):
             found = [self.get_command(ctx, name) for name in names if name in self.list_commands(ctx)]
             with formatter.section(heading):
                 formatter.write_dl([(str(each.name), each.get_short_help_str(room)) for each in found if each])
-
-
-def _of_many_analyses(name: str) -> click.Command | None:
-    """The sub-command that solves a scene at many points, or None."""
-    match name:
-        case "sweep":
-            from comparisons.cli.sweep_ import command
-        case "tolerance":
-            from comparisons.cli.tolerance_ import command
-        case "optimise":
-            from comparisons.cli.optimise_ import command
-        case _:
-            return None
-    return command
 
 
 def _version(ctx: click.Context, param: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's form

@@ -4,11 +4,20 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from pathlib import Path
 
 import click
 
-from comparisons.cli.options import Decorated, parameters, positive, settings, sized, variants, verbose
+from comparisons.cli.options import (
+    folder,
+    group,
+    parameters,
+    quietness,
+    settings,
+    sized,
+    time_limit,
+    variants,
+    verbose,
+)
 
 
 def _place(ctx: click.Context, param: click.Parameter, value: str | None) -> str:
@@ -22,24 +31,19 @@ def _place(ctx: click.Context, param: click.Parameter, value: str | None) -> str
     return value
 
 
-def solved_often(command: Decorated) -> Decorated:
-    """The command with the values of parameters, sizes and variants, and with workers, time limit and folder."""
-    for option in (
-        click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
-                     help="Folder of tables and page; a stopped command goes on from there.  [default: COMMAND-NAME]"),
-        verbose,
-        click.option("-q", "--quiet", is_flag=True, help="Print neither tables nor progress."),
-        click.option("--at-most", callback=positive, metavar="SECONDS", default="600", show_default=True,
-                     help="Time limit of a solve; a solve that crashes or takes longer is tried twice."),
-        click.option("--on", "place", callback=_place, metavar="local:N|dask://HOST:PORT",
-                     help="Worker processes, or the scheduler of a Dask cluster.  [default: a process per core, at "
-                     "most two]"),
-        variants,
-        sized,
-        parameters,
-    ):  # fmt: skip
-        command = option(command)
-    return command
+solved_often = group(
+    parameters,
+    sized,
+    variants,
+    click.option("--on", "place", callback=_place, metavar="local:N|dask://HOST:PORT",
+                 help="Worker processes, or the scheduler of a Dask cluster.  [default: a process per core, at most "
+                 "two]"),
+    time_limit("Time limit of a solve; a solve that crashes or takes longer is tried twice.", "600"),
+    quietness,
+    verbose,
+    folder("Folder of tables and page; a stopped command goes on from there.  [default: COMMAND-NAME]"),
+)  # fmt: skip
+"""Options of a command that solves often: parameters, sizes, variants, workers, time limit and folder."""
 
 
 def in_si(case: str) -> Callable[[str, str], float]:

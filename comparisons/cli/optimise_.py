@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Literal
 
 import click
 
-from comparisons.choices import Kinematics
 from comparisons.cli.completion import candidates
 from comparisons.cli.many import in_si, solved_often
-from comparisons.cli.options import settings
+from comparisons.cli.options import choices_for, settings
 
 NO_OPTIMUM, UNDECIDED = 1, 3
 
@@ -35,11 +32,6 @@ def command(
     vary: tuple[str, ...],
     starts: int,
     solves: int,
-    links: int | Mapping[str, int],
-    elements: int | Mapping[str, int],
-    formulation: Literal["auto", "paper"],
-    theory: Kinematics | None,
-    kinematics: Kinematics | None,
     place: str,
     at_most: float,
     quiet: bool,  # noqa: FBT001 - click passes a keyword
@@ -51,7 +43,6 @@ def command(
     optimum only if the solvers agree. A search that was stopped goes on with the same command.
     """
     from comparisons.cases import opened
-    from comparisons.choices import Choices
     from comparisons.cli import output
     from comparisons.optimum.problem import problem_of
     from comparisons.optimum.result import optimum, result_of
@@ -65,7 +56,7 @@ def command(
     scene = opened(case, settings())
     axes = [axis_of(text, in_si(case)) for text in vary]
     problem = problem_of(scene, axes, goal)
-    choices = Choices(links, formulation, elements, kinematics, theory=theory)
+    choices = choices_for(scene)
     out = Path(f"optimise-{scene.name}") if out is None else out
     with workers_on(place) as workers, output.counted(starts * solves, shown=not quiet) as moved:
         output.room_for(None, out)

@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import click
 
-from comparisons.choices import Kinematics
 from comparisons.cli.completion import candidates
-from comparisons.cli.options import exactness, family_sizes, folder, output_options, parameters, sized, variants
+from comparisons.cli.options import (
+    choices_for,
+    exactness,
+    family_sizes,
+    folder,
+    output_options,
+    parameters,
+    sized,
+    variants,
+)
 
 if TYPE_CHECKING:
-    from comparisons.pairing import Runs
     from comparisons.present.columns import Section
     from comparisons.present.page import Chapter
+    from comparisons.verdict.runs import Runs
 
 PARTS = ("convergence", "times")
 
@@ -37,11 +45,6 @@ PARTS = ("convergence", "times")
 def command(
     planted: object,
     arguments: tuple[str, ...],
-    links: int | Mapping[str, int],
-    elements: int | Mapping[str, int],
-    formulation: Literal["auto", "paper"],
-    theory: Kinematics | None,
-    kinematics: Kinematics | None,
     sizes: tuple[int, ...],
     without: tuple[str, ...],
     exact: bool | None,  # noqa: FBT001 - click passes a keyword
@@ -55,7 +58,6 @@ def command(
     from the folder, and an interrupted run goes on. Exit code 0 means a written report, with any verdict.
     """
     from comparisons import provenance
-    from comparisons.choices import Choices, check
     from comparisons.cli import output
     from comparisons.cli.questions import read_questions
     from comparisons.pairing import begin, solvers_of, workers_for
@@ -65,10 +67,7 @@ def command(
     from cprbm_scene import OffsetQuestion
 
     wanted = read_questions(arguments or ("all",))
-    choices = Choices(links, formulation, elements, kinematics, theory=theory)
-    for question in wanted:
-        if not isinstance(question, OffsetQuestion):
-            check(choices, question)
+    choices = choices_for(*wanted)
     out = out or Path("full-report")
     output.room_for(json_file, out)
     parts = Parts(choices, () if "convergence" in without else sizes, times="times" not in without)

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Literal
 
 import click
 
-from comparisons.choices import Kinematics
 from comparisons.cli.answers import SOLVERS, SolverName, report_problems, solve_scene
 from comparisons.cli.completion import candidates
-from comparisons.cli.options import exports, numerical, output_options, parameters, refuse_sizes_with, settings
+from comparisons.cli.options import (
+    choices_for,
+    exports,
+    numerical,
+    output_options,
+    parameters,
+    refuse_sizes_with,
+    settings,
+)
 
 
 @click.command("solve")
@@ -27,13 +32,6 @@ def command(
     planted: object,
     case: str,
     solver: SolverName,
-    links: int | Mapping[str, int],
-    elements: int | Mapping[str, int],
-    formulation: Literal["auto", "paper"],
-    theory: Kinematics | None,
-    kinematics: Kinematics | None,
-    penetration: float,
-    across: int,
     tol: float | None,
     csv_file: Path | None,
     plot_file: Path | None,
@@ -42,13 +40,11 @@ def command(
 ) -> int:
     """Solve a scene with a single solver and print all stations."""
     from comparisons import cases
-    from comparisons.choices import Choices, check
     from comparisons.cli import output
 
     refuse_sizes_with(tol)
     scene = cases.opened(case, settings())
-    choices = Choices(links, formulation, elements, kinematics, penetration, across, theory)
-    check(choices, scene)
+    choices = choices_for(scene)
     for file in (json_file, csv_file, plot_file):
         output.room_for(file)
     answer, found = solve_scene(planted, scene, solver, choices, tol, shown=not quiet)

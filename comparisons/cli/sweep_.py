@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import click
 
-from comparisons.choices import Kinematics
 from comparisons.cli.completion import candidates
 from comparisons.cli.many import in_si, solved_often
-from comparisons.cli.options import settings
+from comparisons.cli.options import choices_for, settings
 
 if TYPE_CHECKING:
     from comparisons.sweeps.points import Axis, Point
@@ -55,11 +54,6 @@ def command(
     sample: str | None,
     solver: Literal["cprbm", "fea", "compare"],
     check: int,
-    links: int | Mapping[str, int],
-    elements: int | Mapping[str, int],
-    formulation: Literal["auto", "paper"],
-    theory: Kinematics | None,
-    kinematics: Kinematics | None,
     place: str,
     shard: tuple[int, int],
     merge: tuple[Path, ...],
@@ -74,7 +68,6 @@ def command(
     goes on with the same command, and a larger grid takes over the points of a smaller grid.
     """
     from comparisons.cases import opened
-    from comparisons.choices import Choices
     from comparisons.cli import output
     from comparisons.pairing import solvers_of
     from comparisons.sweeps.netcdf import write_netcdf
@@ -86,7 +79,7 @@ def command(
 
     scene = opened(case, settings())
     axes, points = _asked(scene, vary, sample, in_si(case))
-    choices = Choices(links, formulation, elements, kinematics, theory=theory)
+    choices = choices_for(scene)
     tasks = tasks_of(scene, points, solver, chosen_for_check(points, axes, check), choices, shard)
     out = Path(f"sweep-{scene.name}") if out is None else out
     output.room_for(None, out)

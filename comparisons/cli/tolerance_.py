@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal
 
 import click
 
-from comparisons.choices import Kinematics
 from comparisons.cli.completion import candidates
 from comparisons.cli.many import solved_often
-from comparisons.cli.options import settings
+from comparisons.cli.options import choices_for, settings
 
 INCOMPLETE = 1
 
@@ -41,11 +39,6 @@ def command(
     sobol: bool,  # noqa: FBT001 - click passes a keyword
     limits: Path | None,
     solver: Literal["cprbm", "fea"],
-    links: int | Mapping[str, int],
-    elements: int | Mapping[str, int],
-    formulation: Literal["auto", "paper"],
-    theory: Kinematics | None,
-    kinematics: Kinematics | None,
     place: str,
     at_most: float,
     quiet: bool,  # noqa: FBT001 - click passes a keyword
@@ -57,7 +50,6 @@ def command(
     sweep, tolerance.json and a page. A study that was stopped goes on with the same command.
     """
     from comparisons.cases import opened
-    from comparisons.choices import Choices
     from comparisons.cli import output
     from comparisons.pairing import solvers_of
     from comparisons.present.page import Page, put_page, put_section
@@ -69,7 +61,7 @@ def command(
     from comparisons.sweeps.workers import workers_on
 
     scene = opened(case, settings())
-    choices = Choices(links, formulation, elements, kinematics, theory=theory)
+    choices = choices_for(scene)
     bounds = bounds_of(scene, read_demands(limits) if limits else Demands(), str(limits))
     asked = study(scene, distributions_of(scene), samples, solver, choices, indexed=sobol, bounds=bounds)
     out = Path(f"tolerance-{scene.name}") if out is None else out

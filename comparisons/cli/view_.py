@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import click
 
-from comparisons.choices import Kinematics
 from comparisons.cli.answers import SOLVERS, SolverName, report_problems, solve_scene
 from comparisons.cli.completion import candidates
-from comparisons.cli.options import numerical, parameters, refuse_sizes_with, settings, verbose
+from comparisons.cli.options import choices_for, numerical, parameters, refuse_sizes_with, settings, verbose
 
 if TYPE_CHECKING:
     from comparisons.present.strips import Coloured
@@ -48,20 +46,12 @@ def command(
     out: Path | None,
     quantity: Coloured,
     station: str | None,
-    links: int | Mapping[str, int],
-    elements: int | Mapping[str, int],
-    formulation: Literal["auto", "paper"],
-    theory: Kinematics | None,
-    kinematics: Kinematics | None,
-    penetration: float,
-    across: int,
     tol: float | None,
     quiet: bool,  # noqa: FBT001 - click passes a keyword
 ) -> int:
     """Draw a solver's answer: picture, animation or VTU files."""
     from comparisons import cases
     from comparisons.audit import audit
-    from comparisons.choices import Choices, check
     from comparisons.cli import output
     from comparisons.display_units import at_station
     from comparisons.present.animation import KINDS, files, kind_of
@@ -77,8 +67,7 @@ def command(
         raise click.BadParameter(f"found {path.name!r}; allowed: a name that ends in {', '.join(KINDS)}",
                                  param_hint="--out")  # fmt: skip
     wanted = None if station is None else _wanted(scene, station)
-    choices = Choices(links, formulation, elements, kinematics, penetration, across, theory)
-    check(choices, scene)
+    choices = choices_for(scene)
     output.room_for(None, path.parent)
     answer, found = solve_scene(planted, scene, solver, choices, tol, shown=not quiet)
     code = report_problems(scene, answer, found, audit(scene, answer).complaints)

@@ -6,6 +6,7 @@ The same answers give the same bytes: no dates, and identifiers from a fixed sal
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -71,7 +72,31 @@ def finished(drawing: Drawing, name: str, caption: str) -> Figure:
     if layout is not None:  # made once, it serves both formats
         layout.execute(drawing)
         drawing.set_layout_engine("none")
-    return Figure(name, caption, image(drawing, "svg"), image(drawing, "png"))
+    return Figure(name, caption, _short_svg(image(drawing, "svg")), _palette_png(image(drawing, "png")))
+
+
+def _short_svg(svg: bytes) -> bytes:
+    """The picture without indentation and metadata, with coordinates to a hundredth of a point.
+
+    Equal markers of a line take their style from the line.
+    """
+    svg = re.sub(rb"\s*<metadata>.*?</metadata>", b"", svg, flags=re.DOTALL)
+    svg = re.sub(rb'(?<= d=")[^"]*', lambda path: path[0].replace(b"\n", b""), svg)
+    # six decimals are coordinates; the scale of a letter, 1/64 to a last digit 5, has its own attribute
+    svg = re.sub(rb"(?<![(\d.])(-?\d+\.\d\d)\d+(?=[\s\"])", rb"\1", svg)
+    svg = re.sub(rb"\n *", b"\n", svg)
+    markers = rb'(<g[^>]*)>((?:\n<use [^>]*?( style="[^"]*")/>)+)'
+    return re.sub(markers, lambda line: line[1] + line[3] + b">" + line[2].replace(line[3], b""), svg)
+
+
+def _palette_png(png: bytes) -> bytes:
+    """The picture with a palette of 64 colours: few colours and their blends with white take a quarter of the room."""
+    from PIL import Image
+
+    stream = io.BytesIO()
+    picture = Image.open(io.BytesIO(png)).convert("RGB")
+    picture.quantize(64, dither=Image.Dither.NONE).save(stream, "png")
+    return stream.getvalue()
 
 
 def image(drawing: Drawing, kind: str, dots: float | None = None) -> bytes:

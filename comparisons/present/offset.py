@@ -145,7 +145,9 @@ def _errors(compared: OffsetComparison) -> Figure:
             axes.set_visible(False)
         for axes, spacing in zip(plots, question.spacings, strict=False):
             z = np.array([[max(found[spacing, n, t], least) for n in numbers] for t in offsets])
-            mesh = axes.pcolormesh(numbers, offsets, z, norm="log", vmin=least, vmax=most, shading="nearest")
+            mesh = axes.pcolormesh(
+                numbers, offsets, z, norm="log", vmin=least, vmax=most, shading="nearest", rasterized=True
+            )
             bounds = sorted({bound for claim in question.claims if z.min() < (bound := 100.0 * claim.bound) < z.max()})
             if bounds and min(z.shape) > 1:
                 lines = axes.contour(numbers, offsets, z, levels=bounds, colors="white", linewidths=1.2)

@@ -12,8 +12,9 @@ from comparisons.formats import number, percent, vector
 from comparisons.geometry import bentness
 from comparisons.present.columns import Column, Table, table_of
 from comparisons.quantities import norm
-from comparisons.verdict.calibration import EXACT_FACTOR, SOLVERS, ErrorRatio, error_ratios, tally, true_errors
+from comparisons.verdict.calibration import EXACT_FACTOR, ErrorRatio, error_ratios, tally, true_errors
 from comparisons.verdict.rows import ROUND_OFF, Row
+from comparisons.verdict.runs import SOLVERS
 from comparisons.verdict.station_events import Place
 from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Scene

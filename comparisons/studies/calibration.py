@@ -13,8 +13,9 @@ from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
 from comparisons.crew import ALONE, Crew
 from comparisons.pairing import Solvers, exact_answer, paired
-from comparisons.verdict.calibration import SOLVERS, ErrorRatio, Solver, Tally, error_ratios, tally
+from comparisons.verdict.calibration import ErrorRatio, Tally, error_ratios, tally
 from comparisons.verdict.completeness import complete_part
+from comparisons.verdict.runs import SOLVERS, Solver
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 

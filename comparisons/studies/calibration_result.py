@@ -9,7 +9,8 @@ from comparisons.plain import Plain
 from comparisons.present.canvas import GREY, canvas, finished
 from comparisons.present.columns import Figure, Section, Table
 from comparisons.studies.calibration import Calibration, Trial, tallies
-from comparisons.verdict.calibration import LARGEST_MEDIAN, SHARE_WITHIN, SOLVERS, ErrorRatio, Tally
+from comparisons.verdict.calibration import LARGEST_MEDIAN, SHARE_WITHIN, ErrorRatio, Tally
+from comparisons.verdict.runs import SOLVERS
 from comparisons.verdict.words import Word
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA in bending"}

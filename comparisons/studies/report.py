@@ -5,19 +5,31 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from comparisons import cases
-from comparisons.bench import brief
+from comparisons import cases, provenance
+from comparisons.bench.contenders import OURS, contenders
+from comparisons.bench.errors import reference
+from comparisons.bench.question import asked
+from comparisons.bench.running import CLOCKS, Plan, Session
 from comparisons.bench.section import bench_section
 from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
 from comparisons.crew import Crew
 from comparisons.offset_verdict import OffsetComparison, compared_offset
-from comparisons.pairing import Runs, Solvers, paired
+from comparisons.pairing import Solvers, paired
 from comparisons.present.columns import Figure, Section
 from comparisons.present.page import figures_of
 from comparisons.studies import table1, table1_result
 from comparisons.studies.convergence import convergence_section
-from cprbm_scene import OffsetQuestion, Question, SceneError
+from comparisons.verdict.runs import Runs
+from cprbm_scene import OffsetQuestion, Question, Scene, SceneError
+from cprbm_scene.frozendict import frozendict
+
+SIZES = (10, 20, 40, 80, 160)
+"""N of the run times."""
+
+REPEAT = 3
+AT_MOST = 4.0
+"""Seconds after which a size is not repeated and no larger size begins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +92,7 @@ def gathered(
             )
         )
     if parts.times and not isinstance(question, OffsetQuestion):
-        further.append(_or_refusal("run times", lambda: bench_section(brief.measured(question, timed, solvers))))
+        further.append(_or_refusal("run times", lambda: _run_times(question, timed, solvers)))
     return Content(found, figures_of(found), tuple(further))
 
 
@@ -99,6 +111,26 @@ def has_table(questions: Sequence[Question]) -> bool:
     return all(cases.asked(name) in questions for name in {cell.case for cell in table1.CELLS})
 
 
+def _run_times(scene: Scene, timed: Solvers, knowing: Solvers) -> Section:
+    """Run times at the last load by the processor's clock, since reports are made on machines with other work.
+
+    Args:
+        scene: the question.
+        timed: solvers without kept answers.
+        knowing: solvers for the reference of the errors, with kept answers.
+
+    Raises:
+        SceneError: every method refuses the question.
+    """
+    scene = asked(scene)
+    plan = Plan(frozendict(dict.fromkeys(OURS, SIZES)), repeat=REPEAT, at_most=AT_MOST, clock="cpu")
+    taking = contenders(timed, Choices(kinematics=plan.kinematics))
+    session = Session(scene, plan, taking, provenance.machine(), CLOCKS[plan.clock])
+    for job in session.jobs():
+        session.do(job)
+    return bench_section(session.done(reference(scene, knowing)))
+
+
 def table_section(timed: Solvers, made_on: Mapping[str, str | int]) -> Section:
     """The paper's Table 1 beside our run times.
 
@@ -107,6 +139,6 @@ def table_section(timed: Solvers, made_on: Mapping[str, str | int]) -> Section:
         made_on: the machine and the versions.
     """
     found = table1.begun(timed, made_on)
-    for cell in table1.runs(brief.REPEAT):
-        found = table1.solved(found, cell, timed, brief.AT_MOST)
+    for cell in table1.runs(REPEAT):
+        found = table1.solved(found, cell, timed, AT_MOST)
     return table1_result.result_of(found)

@@ -12,8 +12,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
+import numpy as np
+
 from comparisons import cases
-from comparisons.bench.timing import Method, middle, quartiles_apart, timed
+from comparisons.bench.timing import Method, timed
 from comparisons.choices import Choices, Count
 from comparisons.crew import Solver
 from comparisons.pairing import Solvers
@@ -89,12 +91,12 @@ class Times:
     @property
     def median(self) -> float | None:
         """Median, s."""
-        return middle(self.seconds) if self.seconds else None
+        return float(np.median(self.seconds)) if self.seconds else None
 
     @property
     def spread(self) -> float | None:
         """Distance of the quartiles, s."""
-        return quartiles_apart(self.seconds) if self.seconds else None
+        return float(np.subtract(*np.percentile(self.seconds, (75.0, 25.0)))) if self.seconds else None
 
 
 @dataclass(frozen=True, slots=True)

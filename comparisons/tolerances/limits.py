@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from comparisons.pairing import Uncertainties
 from comparisons.stations import station_of
+from comparisons.verdict.runs import Uncertainties
 from comparisons.verdict.uncertainty import Error, error, limit
 from cprbm_scene import Answer, Probe, Scene, StationAnswer
 from cprbm_scene.answer import Array, PointForces, frozen_array

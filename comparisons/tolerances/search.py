@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 
 from comparisons.choices import Choices
 from comparisons.crew import Crew, Job
-from comparisons.pairing import Runs, Solvers, exact_or_why, in_other_theory, paired, with_solid
+from comparisons.pairing import Solvers, exact_or_why, in_other_theory, paired, with_solid
 from comparisons.reactions import perturbed_scene
 from comparisons.sentences import problem_sentences
 from comparisons.store import AnswerMemory
@@ -34,6 +34,7 @@ from comparisons.tolerances.result import (
     worst_row,
 )  # fmt: skip
 from comparisons.verdict.rows import Row, rows_of
+from comparisons.verdict.runs import Runs
 from comparisons.verdict.station_events import Place
 from cprbm_scene import Answer, Scene, SceneError
 from cprbm_scene.frozendict import frozendict

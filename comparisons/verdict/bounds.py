@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from comparisons.pairing import Runs
+from comparisons.verdict.runs import Runs
 from comparisons.verdict.uncertainty import Error, error
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
@@ -52,7 +52,7 @@ def bounds_of(
 
     Args:
         runs: the runs.
-        values: values (k,) by name of the run, as :meth:`comparisons.pairing.Runs.everything` names it.
+        values: values (k,) by name of the run, as :meth:`comparisons.verdict.runs.Runs.everything` names it.
         size: norm of a difference (k,).
         round_off: r.
         known: uncertainties of settled runs, by name.

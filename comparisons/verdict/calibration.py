@@ -19,12 +19,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from statistics import median
-from typing import Literal
 
 from comparisons.verdict.rows import Row
-
-Solver = Literal["cprbm", "fea"]
-SOLVERS: tuple[Solver, ...] = ("cprbm", "fea")
+from comparisons.verdict.runs import Solver
 
 SHARE_WITHIN = 0.95
 LARGEST_MEDIAN = 10.0

@@ -34,6 +34,7 @@ from comparisons.quantities import load_unit
 from comparisons.stages import event_tolerance, span_of
 from comparisons.verdict.bounds import Bounds, bounds_of
 from comparisons.verdict.completeness import ends_at_critical
+from comparisons.verdict.runs import SOLVERS
 from comparisons.verdict.runs_table import RunsTable, solver_of
 from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Critical, Stage
@@ -155,9 +156,9 @@ def critical_rows(table: RunsTable) -> tuple[CriticalRow, ...]:
     for stage in table.scene.stages:
         own = {
             name: tuple(one for one in answer.critical if one.stage == stage.name)
-            for name, answer in {**table.following, **dict(zip(table.compared, table.pair, strict=True))}.items()
+            for name, answer in {**table.following, "cprbm": table.pair[0], "fea": table.pair[1]}.items()
         }
-        for place in range(max(len(own[name]) for name in table.compared)):
+        for place in range(max(len(own[name]) for name in SOLVERS)):
             here = {name: each[place] if len(each) > place else None for name, each in own.items()}
             row = _critical_row(table, stage, place, here)
             found.append(row if row.word is Word.AGREE else _with_passed_points(table, stage, row, here))
@@ -186,20 +187,19 @@ def _with_passed_points(
 
 
 def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str, Critical | None]) -> CriticalRow:
-    first, second = table.compared
     span, allowed = span_of(table.scene, stage), event_tolerance(table.scene, stage)
     mechanisms = {name: None if one is None else mechanism(one) for name, one in here.items()}
     row = CriticalRow(
         stage=stage.name,
         place=place,
         unit=load_unit(table.scene, stage),
-        cprbm=here[first],
-        fea=here[second],
+        cprbm=here["cprbm"],
+        fea=here["fea"],
         span=span,
         allowed=allowed,
         largest=max(allowed, table.scene.verdict_limit * span) if table.runs.theory == "bending" else math.inf,
         steady=not disagree_within_a_solver(mechanisms),
-        ended_before=_ended_before(table, here[first], here[second]),
+        ended_before=_ended_before(table, here["cprbm"], here["fea"]),
     )
     present = {name: one for name, one in here.items() if one is not None}
     if len(present) < len(here):
@@ -209,7 +209,7 @@ def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str,
         for solver in ("cprbm", "fea")
     )
     bounds = _on_load_axis(table, {name: one.value for name, one in present.items()}, located)
-    difference = abs(present[first].value - present[second].value)
+    difference = abs(present["cprbm"].value - present["fea"].value)
     return replace(row, difference=difference, theory=_step_of_theory(table, row), bounds=bounds)
 
 
@@ -227,7 +227,7 @@ def _ended_before(table: RunsTable, cprbm: Critical | None, fea: Critical | None
     known = cprbm or fea
     if known is None or None not in (cprbm, fea):
         return False
-    name, answer = (table.compared[1], table.pair[0]) if fea is None else (table.compared[0], table.pair[1])
+    name, answer = ("fea", table.pair[0]) if fea is None else ("cprbm", table.pair[1])
     if name in table.following or known not in answer.critical:
         return False
     before = sum(station.branch <= answer.critical.index(known) for station in answer.stations)
@@ -247,11 +247,11 @@ def closing_rows(table: RunsTable) -> tuple[ClosingRow, ...]:
     stages = {stage.name: stage for stage in table.scene.stages}
     found = []
     for (stage, contact, _), here in loads.items():
-        if len(here) < len(table.following) or not set(table.compared) <= set(here):
+        if len(here) < len(table.following) or not set(SOLVERS) <= set(here):
             continue
         bounds = _on_load_axis(table, here, 0.0)
         allowed = event_tolerance(table.scene, stages[stage])
-        cprbm, fea = (here[name] for name in table.compared)
+        cprbm, fea = (here[name] for name in SOLVERS)
         if bounds is not None and abs(cprbm - fea) > max(allowed, bounds.total):
             unit = load_unit(table.scene, stages[stage])
             found.append(ClosingRow(stage, contact, unit, cprbm, fea, bounds.total, allowed))

@@ -30,6 +30,7 @@ from comparisons.verdict.calibration import true_errors
 from comparisons.verdict.completeness import ABSENT_WHILE_OPEN
 from comparisons.verdict.point_forces import resultant
 from comparisons.verdict.rows import ROUND_OFF, Row
+from comparisons.verdict.runs import SOLVERS
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.station_events import MIRRORED, PASSED, Place
 from comparisons.verdict.words import Reason, Word
@@ -97,7 +98,7 @@ def _is_notable(table: RunsTable, row: Row) -> bool:
     """Whether a contact in one solver only has an effect: by its force, or by another probe's difference."""
     if row.probe.of not in row.events.contradictory or row.probe.quantity != "force":
         return row.bounds is not None and row.difference > row.bounds.total + 10.0 * ROUND_OFF * row.scale
-    stations = [table.stations[name][row.where] for name in table.compared]
+    stations = [table.stations[name][row.where] for name in SOLVERS]
     forces = [np.hypot(*station.forces.force.T).max(initial=0.0) for station in stations]
     moments = [np.abs(beam.M).max() / beam.s[-1] for station in stations for beam in station.beams.values()]
     return row.difference > table.scene.limit(row.probe) * float(max(*forces, *moments))
@@ -124,7 +125,7 @@ def _same_resultant(table: RunsTable, row: Row) -> bool:
     beam, others = row.shared
     sums = {name: resultant(station, {row.probe.of, *others}, beam) for name, station in table.at(row.where).items()}
     bounds = bounds_of(table.runs, sums, lambda difference: float(np.linalg.norm(difference)), 0.0)
-    v_c, v_f = (sums[name] for name in table.compared)
+    v_c, v_f = (sums[name] for name in SOLVERS)
     return bounds is not None and float(np.linalg.norm(v_c - v_f)) <= bounds.total
 
 

@@ -23,11 +23,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from comparisons.pairing import Runs
 from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, norm, unit_of
 from comparisons.stations import station_of
 from comparisons.verdict.bounds import Bounds, bounds_of
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
+from comparisons.verdict.runs import Runs
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.scales import denominator, probe_scales
 from comparisons.verdict.station_events import NO_EVENTS, Place, StationEvents, station_events
@@ -137,7 +137,6 @@ def build_rows(table: RunsTable, events: Mapping[tuple[str, float], StationEvent
     scales = probe_scales(scene, table.pair)
     stages = {stage.name: stage for stage in scene.stages}
     found = []
-    first, second = table.compared
     for where in table.reached:
         stations = table.at(where)
         exact, other = (
@@ -145,7 +144,7 @@ def build_rows(table: RunsTable, events: Mapping[tuple[str, float], StationEvent
         )
         missing = tuple(name for name in table.answers if name not in stations)
         for probe in scene.probes_in(where[0]):
-            pair = stations[first], stations[second]
+            pair = stations["cprbm"], stations["fea"]
             row = bare_row(scene, pair, probe, stages[where[0]], where[1], scales[where[0], probe.name])
             shared = sharing_sources(scene, stations.values(), probe.of) if probe.quantity in SHARED else None
             row = replace(row, events=events[where], shared=shared, missing=missing)
@@ -233,8 +232,8 @@ def _measured(
 def _true_errors(row: Row, exact: StationAnswer | None, size: Callable[[Array], float]) -> TrueErrors | None:
     if exact is None or row.exact is None or row.exact.shape != row.fea.shape:
         return None
-    residual = max(exact.certificate.residual, exact.certificate.residual_floor, ROUND_OFF)
-    return TrueErrors(size(row.cprbm - row.exact), size(row.fea - row.exact), residual * row.scale)
+    allowance = max(exact.certificate.residual, exact.certificate.residual_floor, ROUND_OFF) * row.scale
+    return TrueErrors(size(row.cprbm - row.exact), size(row.fea - row.exact), allowance)
 
 
 def _station(answer: Answer | None, where: tuple[str, float], branch: int | None) -> StationAnswer | None:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from comparisons.pairing import Runs
 from comparisons.verdict.completeness import Where, complete_stations, ends_at_critical, problems, stations_of
+from comparisons.verdict.runs import SOLVERS, Runs
 from cprbm_scene import Answer, Scene, StationAnswer
 
 
@@ -22,11 +22,6 @@ class RunsTable:
     def answers(self) -> Mapping[str, Answer]:
         """Answer of every run."""
         return dict(self.runs.everything())
-
-    @property
-    def compared(self) -> tuple[str, str]:
-        """Names of the two compared runs."""
-        return "cprbm", "fea"
 
     @property
     def pair(self) -> tuple[Answer, Answer]:
@@ -47,8 +42,8 @@ class RunsTable:
     @cached_property
     def reached(self) -> tuple[Where, ...]:
         """Stations of both compared runs, in order."""
-        first, second = (self.stations[name] for name in self.compared)
-        return tuple(where for where in stations_of(self.scene) if where in first and where in second)
+        both = [self.stations[name] for name in SOLVERS]
+        return tuple(where for where in stations_of(self.scene) if all(where in each for each in both))
 
     def at(self, where: Where) -> dict[str, StationAnswer]:
         """Stations of all runs with this station, by name of the run."""

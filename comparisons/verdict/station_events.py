@@ -26,6 +26,7 @@ from comparisons.stages import begins_at, event_tolerance
 from comparisons.verdict.completeness import Where
 from comparisons.verdict.events import disagree_within_a_solver
 from comparisons.verdict.point_forces import active_contacts
+from comparisons.verdict.runs import SOLVERS
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.scales import deflection
 from cprbm_scene import Answer, Loss, Scene, Stage, StationAnswer
@@ -108,7 +109,7 @@ def _events(
 ) -> StationEvents:
     """Events by one station, with the states of the runs there and the loads of critical and of passed points."""
     between, unsettled, contradictory = set[str](), set[str](), set[str]()
-    for part in here[table.compared[0]]:
+    for part in here[SOLVERS[0]]:
         values = {name: state[part] for name, state in here.items()}
         if len(set(values.values())) == 1:
             continue
@@ -124,7 +125,7 @@ def _events(
     if _on_mirror_images(table, table.at(where)):
         unsettled.add(MIRRORED)
     return StationEvents(
-        None if BRANCH in between else here[table.compared[0]][BRANCH],
+        None if BRANCH in between else here[SOLVERS[0]][BRANCH],
         Place.BETWEEN if between or critical else Place.COMPARED,
         frozenset(unsettled),
         frozenset(contradictory - unsettled),
@@ -158,12 +159,12 @@ def _on_mirror_images(table: RunsTable, here: Mapping[str, StationAnswer]) -> bo
     """Whether a compared run has met a bifurcation, and beams of some runs lie far from the compared CPRBM's."""
     points_met = (
         one
-        for answer, name in zip(table.pair, table.compared, strict=True)
+        for answer, name in zip(table.pair, SOLVERS, strict=True)
         for one in (*answer.critical[: here[name].branch], *(each.end for each in answer.gone_over))
     )
     if not any(one.loss is Loss.BIFURCATION for one in points_met):
         return False
-    first = here[table.compared[0]].shapes
+    first = here[SOLVERS[0]].shapes
     beams = table.scene.beams.items()
     bent = max(deflection(beam, first[name]) for name, beam in beams)
     apart = max(_distance(first[name], station.shapes[name]) for station in here.values() for name, _ in beams)

@@ -238,9 +238,8 @@ def _assumed(n: Array, v: Array, order: float, floor: float) -> tuple[float, flo
     three = sorted((_third(n), _coarse(n), len(n) - 1))
     q, why = observed(n[three], v[three], floor)
     fall = STANDARD if why in (_ROUND_OFF, _SUDDEN) else _fall(n[three], v[three])
-    if q is not None and abs(q - order) <= _NEAR * order:
-        return order, q, why
-    return min(order, STANDARD if fall >= _SHOWN * STANDARD else 1.0), q, why
+    own = q is not None and abs(q - order) <= _NEAR * order
+    return order if own else min(order, STANDARD if fall >= _SHOWN * STANDARD else 1.0), q, why
 
 
 def _coarse(n: Array) -> int:

@@ -2,13 +2,12 @@
 
 The machine code is stored beside the module or in the user's cache.  Where neither can be written, every process
 compiles anew.  With the environment variable ``NUMBA_DISABLE_JIT=1`` the same functions are interpreted.
-An installation without stored machine code compiles at the first solve, and says so on the log.
+An installation without stored machine code compiles at the first solve, and says so once.
 """
 
 from __future__ import annotations
 
 import logging
-import time
 from collections.abc import Callable
 from typing import TypeVar, cast
 
@@ -18,29 +17,30 @@ from numba.core.event import Event, Listener, register
 Function = TypeVar("Function", bound=Callable[..., object])
 
 LOGGER = logging.getLogger("cprbm.compiled")
-
-UNNOTICED = 1.0
-"""Compilation, s, that a user does not notice."""
+"""Without handlers, Python prints warnings on standard error."""
 
 
 class Compilation(Listener):
-    """Says once that kernels are compiled, when the compilation has taken longer than ``unnoticed`` seconds."""
+    """Says once that kernels are compiled.
 
-    def __init__(self, unnoticed: float = UNNOTICED) -> None:
-        self.unnoticed, self.spent, self.begin, self.depth = unnoticed, 0.0, 0.0, 0
+    Attributes:
+        said: whether the process has said so.
+        stored: whether the machine code is stored.
+    """
+
+    said = False
+    stored = True
 
     def on_start(self, event: Event) -> None:
-        """Take the time at the begin of a kernel; kernels within a kernel do not count twice."""
-        self.begin = self.begin if self.depth else time.perf_counter()
-        self.depth += 1
+        """Say that the first kernel of this package is compiled."""
+        if not self.said and event.data["dispatcher"].py_func.__module__.startswith("cprbm."):
+            self.said = True
+            later = "later runs find the stored machine code"
+            none = "no folder for the machine code can be written, so that every process compiles: set NUMBA_CACHE_DIR"
+            LOGGER.warning("cprbm compiles its kernels, a minute or two; %s", later if self.stored else none)
 
     def on_end(self, event: Event) -> None:
-        """Add the time of a kernel."""
-        self.depth -= 1
-        if self.depth == 0 and self.spent <= self.unnoticed:
-            self.spent += time.perf_counter() - self.begin
-            if self.spent > self.unnoticed:
-                LOGGER.info("cprbm compiles its kernels; later runs find the stored machine code")
+        """Nothing is said at the end."""
 
 
 COMPILATION = Compilation()
@@ -52,6 +52,6 @@ def compiled(function: Function) -> Function:
     try:
         kernel = njit(cache=True, error_model="numpy")(function)
     except RuntimeError:
-        # no folder for stored machine code
+        COMPILATION.stored = False
         kernel = njit(error_model="numpy")(function)
     return cast("Function", kernel)

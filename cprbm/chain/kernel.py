@@ -51,9 +51,6 @@ import numpy as np
 from cprbm.chain.compiled import compiled
 from cprbm_scene.answer import Array, Ints
 
-FD, FDD = 0, 1
-FN, FQ, FNN, FNQ, FQQ = 0, 1, 2, 3, 4
-
 
 class Links(NamedTuple):
     """Links of all beams: ``first`` index of p_j; lengths; compliances c and s."""

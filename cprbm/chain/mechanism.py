@@ -70,21 +70,9 @@ class Form:
         return float(self.constant + linear + turned)
 
 
-def unknown(index: int, rest: float = 0.0) -> Form:
-    """Change of an unknown from the value at rest."""
-    return Form(-rest, ((index, 1.0),))
-
-
 def node_coordinate(index: int, direction: Direction) -> Form:
     """Coordinate along ``direction`` of the node whose x is the unknown ``index``."""
     return Form(linear=((index, direction[0]), (index + 1, direction[1])))
-
-
-def carried_coordinate(body: int, reference: Array, place: Array, direction: Direction) -> Form:
-    """Coordinate along ``direction`` of a point of a body whose displacement and rotation begin at index ``body``."""
-    d, arm = np.array(direction), place - reference
-    turning = ((body + 2, float(d @ arm), float(d[1] * arm[0] - d[0] * arm[1])),)
-    return Form(float(d @ place), node_coordinate(body, direction).linear, turning if np.any(arm) else ())
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +166,9 @@ class Mechanism:
         """Coordinate along ``direction`` of a place on a body, at ``place`` (2,) at rest."""
         if body not in self.bodies:
             return Form(float(np.dot(direction, place)))
-        return carried_coordinate(self.bodies[body], self.reference(body), place, direction)
+        index, d, arm = self.bodies[body], np.array(direction), place - self.reference(body)
+        turning = ((index + 2, float(d @ arm), float(d[1] * arm[0] - d[0] * arm[1])),)
+        return Form(float(d @ place), node_coordinate(index, direction).linear, turning if np.any(arm) else ())
 
     def point(self, point: str, direction: Direction) -> Form:
         """Coordinate along ``direction`` of a named point."""
@@ -191,12 +181,12 @@ class Mechanism:
 
     def rotation(self, body: str) -> Form:
         """Rotation of a body."""
-        return unknown(self.bodies[body] + 2) if body in self.bodies else Form()
+        return Form(linear=((self.bodies[body] + 2, 1.0),) if body in self.bodies else ())
 
     def angle(self, beam: str, link: int) -> Form:
         """Rotation of a beam's link, counted from the end for a negative number."""
         index = int(self.beam_angles(beam)[link])
-        return unknown(index, self.rest[index])
+        return Form(-self.rest[index], ((index, 1.0),))
 
     def attach_node(self, body: str, place: Array) -> int:
         """Index of the x of a new node on a body, at ``place`` (2,) at rest."""

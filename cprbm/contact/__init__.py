@@ -14,6 +14,7 @@
 from cprbm.contact.candidates import (
     Geometry,
     contact_geometry,
+    copied,
     fixed_places,
     half_thicknesses,
     joined,
@@ -27,7 +28,7 @@ from cprbm.contact.closest import curve_point, lost_at
 from cprbm.contact.contacts import TOUCHING, Contacts, open_contacts, touching_as_drawn
 from cprbm.contact.curve import BEND, CORNER, STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
 from cprbm.contact.edges import corner_sides, is_left, left_corner
-from cprbm.contact.fixed import contact_places, matched
+from cprbm.contact.fixed import Sites, contact_places, matched, movable, picked
 from cprbm.contact.gap import (
     COUPLING,
     GRADIENT,
@@ -83,9 +84,11 @@ __all__ = [
     "Pair",
     "Places",
     "Row",
+    "Sites",
     "beam_curve",
     "contact_geometry",
     "contact_places",
+    "copied",
     "corner_sides",
     "curve_arrays",
     "curve_point",
@@ -101,11 +104,13 @@ __all__ = [
     "lost_at",
     "matched",
     "may_move",
+    "movable",
     "move_places",
     "near_pairs",
     "new_counters",
     "on_edge",
     "open_contacts",
+    "picked",
     "places_at",
     "separations",
     "settle",

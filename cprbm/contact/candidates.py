@@ -86,6 +86,11 @@ def taken(places: Places, which: Flags | Ints) -> Places:
     return Places._make(column[which] for column in places)
 
 
+def copied(places: Places) -> Places:
+    """All places, as copies."""
+    return Places._make(column.copy() for column in places)
+
+
 def joined(places: Places, others: Places) -> Places:
     """Both groups of places, in this order."""
     return Places._make(np.concatenate(columns) for columns in zip(places, others, strict=True))

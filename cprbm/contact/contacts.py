@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm.contact.candidates import Geometry, fixed_places, sides_at_rest, taken
+from cprbm.contact.candidates import Geometry, copied, fixed_places, sides_at_rest, taken
 from cprbm.contact.gap import Places
 from cprbm.contact.settling import new_counters, settle
 from cprbm_scene.answer import Array, Flags, Ints
@@ -38,9 +38,8 @@ class Contacts:
 
     def gaps(self, geometry: Geometry, z: Array) -> Array:
         """Gaps of all places at a state, the feet moved; the present feet stay."""
-        count = len(self.closed)
-        places, gaps = taken(self.places, np.arange(count)), np.empty(count)
-        settle(z, geometry.arrays, places, gaps, np.empty(count), self.counters, 0)
+        places, gaps = copied(self.places), np.empty(len(self.closed))
+        settle(z, geometry.arrays, places, gaps, np.empty(len(gaps)), self.counters, 0)
         if geometry.law is not None:
             geometry.law.write_gaps(z, places, gaps)
         return gaps

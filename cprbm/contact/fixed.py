@@ -1,4 +1,4 @@
-"""Fixed places at the nearest feet, compiled, and the state that known places keep.
+"""Fixed places at the nearest feet, compiled, and the state of known places.
 
 A place is the same in two groups if pair, curve, piece and parameter are equal; a corner or a bend has a single place.
 Both groups have the order of all possible places, so that the search for the same place goes on behind the last.
@@ -23,7 +23,7 @@ BESIDE = 1
 """Pieces from a beam's end within which a foot counts as lying on the end's body."""
 
 REACH = 0.1
-"""Distance of two boxes, over the longest beam, up to which a pair has places."""
+"""Distance of two boxes, over the longest beam, for places of a pair: farther boxes cannot meet in a step."""
 
 BEYOND = 0.1
 """Share of the half thicknesses, or of a piece for lines, by which a place is on the other side of a beam."""
@@ -47,7 +47,7 @@ class Sites(NamedTuple):
         possible: places, feet not found; node: number of a place's node on its curve.
         columns: numbers of the two curves of every pair (pairs, 2).
         ends: bodies of the curves.
-        sharing: ends (curves, 2) behind which the first joint has the force of the second.
+        sharing: ends (curves, 2) with a shared force: the first joint has the force of the second.
     """
 
     possible: Places
@@ -188,10 +188,10 @@ def matched(curves: CurveArrays, places: Places, others: Places) -> Ints:  # pra
 def _turn_side(
     z: Array, curves: CurveArrays, places: Places, k: int, counters: Ints, room: Array, weights: Array
 ) -> None:  # pragma: no cover
-    """Turn the side of a place beyond another beam: it has come round an end there, and not through the beam.
+    """Turn the side of a place beyond another beam: the place has come round an end, not through the beam.
 
-    Beams that overlap by less than ``BEYOND`` of their half thicknesses, or lines of a piece, are in contact.  A place
-    before an end has no side until it is seen beside the beam.  The foot stays; ``room`` (2, places) is scratch space.
+    Beams with an overlap below ``BEYOND`` of their half thicknesses, or lines of a piece, are in contact.  A place
+    before an end has no side until the place is seen beside the beam.  The foot stays; ``room`` is lost.
     """
     foot, eta, at_point = places.foot[k], places.eta[k], places.at_point[k]
     settle_place(z, curves, places, k, room[0], room[1], counters, 0, weights)
@@ -230,7 +230,7 @@ def contact_places(
         sides, corner_sides: of the contacts.
         kept_open: pairs (pairs,) without places.
         old, closed: the known places.
-        apart: places of pairs that were kept open, for their sides.
+        apart: earlier places of open pairs, for their sides.
         counters: count the searches.
     """
     ends, nothing = sites.ends, np.zeros(curves.first.size, np.bool_)

@@ -180,7 +180,11 @@ def settle_near(
         settle_place(z, curves, places, k, gaps, curvatures, counters, steps, weights)
         room[k] = 0.0
         if not (places.moves[k] or sharing[k] or places.curve[k] == places.other[k]):
-            room[k] = 0.5 * gaps[k] / np.sum(np.abs(weights[:2]))
+            way = 0.0
+            for part in range(2):
+                for i in range(STENCIL):
+                    way += abs(weights[part, 0, i]) + abs(weights[part, 1, i])
+            room[k] = 0.5 * gaps[k] / way
 
 
 @compiled
@@ -233,12 +237,14 @@ def sweeps_any_circle(
 ) -> bool:  # pragma: no cover
     """True if a beam sweeps over the centre of a circle of the ``pairs`` (pairs, 2) in a step."""
     old, new = curve_boxes(before, curves), curve_boxes(after, curves)
-    low, high = np.minimum(old[:, :2], new[:, :2]), np.maximum(old[:, 2:], new[:, 2:])
     for k in range(len(pairs)):
         a, b = pairs[k]
         if curves.is_point[b]:
             counters[BOX_TESTS] += 1
-            met = max(np.max(low[a] - high[b]), np.max(low[b] - high[a])) < 0.0
+            met = True
+            for i in range(2):
+                for c, d in ((a, b), (b, a)):
+                    met = met and min(old[c, i], new[c, i]) < max(old[d, i + 2], new[d, i + 2])
             if met and _sweeps_over(before, after, curves, a, b):
                 return True
     return False

@@ -7,8 +7,9 @@ g        least gap of an open pair of curves
 F        sum of the contact forces of a closed pair
 =======  ====================================================================================
 
-Brent's method locates the first closing on states with the pair kept open: g = −CLOSED there, so that the active set
-closes the pair in its least gap.  An opening is the zero of F, continued by −g where the pair is open.
+The first closing is located on states with the pair kept open, by values and slopes of g along the tangent:
+g = −CLOSED there, so that the active set closes the pair in the least gap.  An opening is the zero of F, continued by
+−g where the pair is open.
 """
 
 from __future__ import annotations
@@ -20,19 +21,23 @@ from typing import NamedTuple
 import numpy as np
 
 from cprbm.contact import TOUCHING, taken, touching_as_drawn
-from cprbm.continuation.limits import located
+from cprbm.continuation.limits import located, located_by_slopes
+from cprbm.continuation.path import tangent
 from cprbm.equilibrium.contact_gaps import least_gap
 from cprbm.equilibrium.newton import NotConvergedError, Solved
 from cprbm.equilibrium.solving import at_state
 from cprbm.equilibrium.system import State, System
-from cprbm_scene.answer import Flags
+from cprbm_scene.answer import Array, Flags
 
 CLOSED = 1e-11
-"""Overlap, over the longest beam, at which a contact has closed: ten times the active set's round-off."""
+"""Overlap, over the longest beam, of a contact at the closing: ten times the active set's round-off."""
 
 
 LOCATED = 0.5
-"""Share of ``CLOSED`` to which the overlap at a closing is located."""
+"""Accuracy of the overlap at a closing, over ``CLOSED``."""
+
+ALONG = 1e-6
+"""Part of a step along the tangent for the slope of a gap."""
 
 LET_GO = 0.1
 """Force of an opening contact, over the force at the begin of the step: a larger force jumps to zero."""
@@ -154,30 +159,36 @@ def first_change(
         NotConvergedError: a state on the way was not found.
     """
     old, new = pressing(before), pressing(after)
-    found = _closing(before, new - old, solve)
+    found = _closing(before, after, new - old, solve)
     for pair in sorted(old - new):
         found += _opening(pair, solve)
     return min(found, default=None)
 
 
 def _closing(
-    before: Solved, pairs: frozenset[int], solve: Callable[[float, frozenset[int]], Solved]
+    before: Solved, after: Solved, pairs: frozenset[int], solve: Callable[[float, frozenset[int]], Solved]
 ) -> list[ContactChange]:
     """The first closing of some pairs; empty for pairs that touch already, or stay apart when kept open."""
     apart = frozenset(pair for pair in pairs if _gap(before, pair) > TOUCHING)
     if not apart:
         return []
 
-    def gap(share: float) -> float:
-        solved = solve(share, apart)
-        overlap = min(_gap(solved, pair) for pair in apart) + CLOSED
-        return overlap if abs(overlap) > LOCATED * CLOSED else 0.0
+    change, first = after.state.target - before.state.target, dict[float, int]()
 
-    if gap(1.0) >= 0.0:
+    def gap(share: float) -> tuple[float, float]:
+        solved = solve(share, apart) if share else before
+        moved = solved.state.z + ALONG * tangent(solved, change)
+        gaps = {pair: _gap(solved, pair) for pair in apart}
+        first[share] = min(gaps, key=lambda pair: gaps[pair])
+        found = gaps[first[share]]
+        overlap, slope = found + CLOSED, (_gap(solved, first[share], moved) - found) / ALONG
+        return overlap if abs(overlap) > LOCATED * CLOSED else 0.0, slope
+
+    end = gap(1.0)
+    if end[0] >= 0.0:
         return []
-    share = located(gap)
-    touched = solve(share, apart)
-    return [ContactChange(share, apart, closes=True, first=min(apart, key=lambda pair: _gap(touched, pair)))]
+    share = located_by_slopes(gap, end)
+    return [ContactChange(share, apart, closes=True, first=first[share])]
 
 
 def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[ContactChange]:
@@ -200,9 +211,9 @@ def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> lis
     return [ContactChange(share, frozenset([pair]), closes=False, first=pair)]
 
 
-def _gap(solved: Solved, pair: int) -> float:
-    """g; a pair without places is far apart."""
+def _gap(solved: Solved, pair: int, z: Array | None = None) -> float:
+    """g at a state, or at other unknowns ``z``; a pair without places is far apart."""
     geometry, state = solved.system.geometry, solved.state
     if geometry is None or state.contacts is None:
         raise NotConvergedError("the scene has no contacts")
-    return least_gap(geometry, state.z, state.contacts, pair)
+    return least_gap(geometry, state.z if z is None else z, state.contacts, pair)

@@ -31,6 +31,9 @@ TOUCHING = 1e-10
 LOCATED = 1e-12
 """Accuracy of the fraction of a step."""
 
+STEPS = 60
+"""Most states on which an event is located by slopes."""
+
 CHANGES = 20
 """Changes of the stops after which their search ends."""
 
@@ -73,6 +76,31 @@ def located(event: Callable[[float], float]) -> float:
     from scipy.optimize import brentq  # steps without events load no optimisers
 
     return float(brentq(event, 0.0, 1.0, xtol=LOCATED))
+
+
+def located_by_slopes(event: Callable[[float], tuple[float, float]], end: tuple[float, float]) -> float:
+    """Share of a step at which an event function with a slope vanishes; ``end`` holds both at the end of the step.
+
+    The share is the zero of the cubic through both ends of the bracket.  The bracket is halved after a state with more
+    than half the least value so far.
+    """
+    low, high, halved = (0.0, *event(0.0)), (1.0, *end), False
+    for _ in range(STEPS):
+        known = np.isfinite((low, high)).all() and not halved
+        share = _zero_of_cubic(low, high) if known else 0.5 * (low[0] + high[0])
+        here = (share, *event(share))
+        if here[1] == 0.0 or high[0] - low[0] < LOCATED:
+            break
+        halved = not halved and abs(here[1]) > 0.5 * min(abs(low[1]), abs(high[1]))
+        low, high = (here, high) if (here[1] > 0.0) == (low[1] > 0.0) else (low, here)
+    return share
+
+
+def _zero_of_cubic(low: tuple[float, float, float], high: tuple[float, float, float]) -> float:
+    """Share between two shares at which the cubic with their values and slopes vanishes."""
+    (a, f, df), (b, g, dg) = low, high
+    bend, turn = 3.0 * (g - f) - (b - a) * (2.0 * df + dg), 2.0 * (f - g) + (b - a) * (df + dg)
+    return a + (b - a) * located(lambda x: f + x * ((b - a) * df + x * (bend + x * turn)))
 
 
 def changed(state: State, row: int, system: System) -> State:

@@ -12,8 +12,8 @@ and made points anew; then the moving place with the flattest gap is given up.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from cprbm.contact import (
     Contacts,
     Geometry,
     Places,
+    copied,
     corner_sides,
     is_left,
     joined,
@@ -31,29 +32,23 @@ from cprbm.contact import (
     settle,
     taken,
 )
-from cprbm.equilibrium.contact_gaps import as_point, joints_of, minima
 from cprbm.equilibrium.contact_set import (
-    ISOLATED,
     Touched,
     arc_of,
+    near_contacts,
     passed_through,
     solve_set,
     with_fixed_places,
 )
 from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.iteration import OVERLAP, beside_points
+from cprbm.equilibrium.neighbours import ISOLATED, as_point, given_up, short_runs
 from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.system import State, System
-from cprbm_scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Flags
 
 ROUNDS = 12
 """Solves under the same targets."""
-
-LONGEST_RUN = 2
-"""Longest run of closed neighbours for a point."""
-
-LIGHT = 0.02
-"""Part of a point's force below which the force of a joint beside the point is an overlap closed on the way."""
 
 
 def touched_equilibrium(
@@ -74,7 +69,8 @@ def touched_equilibrium(
     places, closed = taken(contacts.places, kept), contacts.closed[kept]
     contacts = replace(contacts, places=places, closed=closed, given_up=frozenset(), corner_sides=corners)
     contacts = with_fixed_places(geometry, start.z, contacts)
-    joints_tried, before, old = False, start.z, _of_all_pairs(geometry, start.z, contacts)
+    joints_tried, before = False, start.z
+    old = contacts.places if not contacts.kept_open else _of_all_pairs(geometry, before, contacts)
     for _ in range(ROUNDS):
         try:
             solved = solve_set(system, geometry, start, contacts, iterations, springs)
@@ -91,11 +87,11 @@ def touched_equilibrium(
             continue
         revised = _revised(geometry, solved)
         if revised is None:
-            new = with_fixed_places(geometry, solved.state.z, solved.contacts)
-            every = _of_all_pairs(geometry, solved.state.z, new)
+            new = _come_near(geometry, solved)
+            every = partial(_of_all_pairs, geometry, solved.state.z, solved.contacts)
             if passed_through(geometry, before, old, solved.state.z, every, contacts.counters):
                 raise NotConvergedError("a beam passed through itself or over a circle")
-            if not _come_near(geometry, solved, new):
+            if new is None:
                 return solved
             revised = new
         start, contacts = solved.state, with_fixed_places(geometry, solved.state.z, revised)
@@ -104,8 +100,6 @@ def touched_equilibrium(
 
 def _of_all_pairs(geometry: Geometry, z: Array, contacts: Contacts) -> Places:
     """Places of all pairs, those that are kept open included: an open pair must not pass through itself either."""
-    if not contacts.kept_open:
-        return contacts.places
     return with_fixed_places(geometry, z, replace(contacts, kept_open=frozenset())).places
 
 
@@ -114,38 +108,33 @@ def _revised(geometry: Geometry, solved: Touched) -> Contacts | None:
     if geometry.joints_alone:
         return None
     contacts, places = solved.contacts, solved.contacts.places
-    arcs, span = arc_of(geometry, places), geometry.arrays.span[places.piece]
-    allowed = may_move(geometry, places)
-    gone, light = np.zeros(len(arcs), dtype=bool), np.zeros(len(arcs), dtype=bool)
-    corners = on_edge(geometry.arrays, places)
-    for k in np.flatnonzero(places.moves & ~corners).tolist():
-        apart = np.abs(arcs - arcs[k])
-        near = _same(places, k) & ~places.moves & contacts.closed & (apart >= span[k]) & (apart < ISOLATED * span[k])
-        pressed = places.force[near].sum() > LIGHT * places.force[k]
-        gone[k] = pressed or not (contacts.closed[k] and solved.curvatures[k] > 0.0 and allowed[k])
-        light |= near & ~gone[k]
+    gone, light = given_up(geometry.arrays, geometry.sites, places, contacts.closed, solved.curvatures)
     if gone.any():
         return _without(geometry, contacts, gone)
     if light.any():
-        kept = taken(places, np.arange(len(arcs)))
+        kept = copied(places)
         kept.force[light] = 0.0
         return replace(contacts, places=kept, closed=contacts.closed & ~light)
-    ends = _at_ends(geometry, solved)
-    if ends is not None:
-        return ends
-    created, replaced = _leaving_corners(geometry, solved)
-    if not len(created.pair):
-        created, replaced = _points(geometry, solved)
-    if not len(created.pair):
-        return None
+    if geometry.has_corners:
+        ends = _at_ends(geometry, solved)
+        if ends is not None:
+            return ends
+        created, replaced = _leaving_corners(geometry, solved)
+        if len(created.pair):
+            return _with_points(contacts, created, replaced)
+    return _points(geometry, solved)
+
+
+def _with_points(contacts: Contacts, created: Places, replaced: Flags) -> Contacts:
+    """Contacts with new points of contact in place of others."""
     closed = np.concatenate([contacts.closed[~replaced], np.ones(len(created.pair), dtype=bool)])
-    return replace(contacts, places=joined(taken(places, ~replaced), created), closed=closed)
+    return replace(contacts, places=joined(taken(contacts.places, ~replaced), created), closed=closed)
 
 
 def _at_ends(geometry: Geometry, solved: Touched) -> Contacts | None:
     """Contacts with the ends of beams in the place of corners that have left the round ends; None without any."""
     contacts, places = solved.contacts, solved.contacts.places
-    kept, closed = taken(places, np.arange(len(contacts.closed))), contacts.closed.copy()
+    kept, closed = copied(places), contacts.closed.copy()
     arcs, moved = arc_of(geometry, places), False
     for k in np.flatnonzero(contacts.closed & places.at_point & on_edge(geometry.arrays, places)).tolist():
         if is_left(geometry, solved.state.z, places, k):
@@ -176,10 +165,16 @@ def _leaving_corners(geometry: Geometry, solved: Touched) -> tuple[Places, Flags
     return created, replaced
 
 
-def _come_near(geometry: Geometry, solved: Touched, contacts: Contacts) -> bool:
-    """True if pairs without places at the start overlap at the end."""
-    late = ~np.isin(contacts.places.pair, solved.contacts.places.pair)
-    return bool(late.any() and contacts.gaps(geometry, solved.state.z)[late].min() < -OVERLAP)
+def _come_near(geometry: Geometry, solved: Touched) -> Contacts | None:
+    """Contacts with the places of pairs without places at the start that overlap at the end; None without any."""
+    z, contacts = solved.state.z, solved.contacts
+    late = near_contacts(geometry, z, contacts)
+    late[contacts.places.pair] = False
+    if not late.any():
+        return None
+    new = with_fixed_places(geometry, z, contacts)
+    late = ~np.isin(new.places.pair, contacts.places.pair)
+    return new if late.any() and new.gaps(geometry, z)[late].min() < -OVERLAP else None
 
 
 def _same(places: Places, k: int) -> Flags:
@@ -189,7 +184,7 @@ def _same(places: Places, k: int) -> Flags:
 
 def _flattest(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
     """The moving place with the least curvature of the gap."""
-    places = taken(contacts.places, np.arange(len(contacts.closed)))
+    places = copied(contacts.places)
     gaps, curvatures = np.empty(len(contacts.closed)), np.empty(len(contacts.closed))
     settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, FINDING)
     moving = places.moves & ~on_edge(geometry.arrays, places)
@@ -198,7 +193,7 @@ def _flattest(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
 
 def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
     """Contacts after moving places become joints again; the joints within a piece share the force."""
-    places, closed = taken(contacts.places, np.arange(len(gone))), contacts.closed.copy()
+    places, closed = copied(contacts.places), contacts.closed.copy()
     arcs, span, given_up = arc_of(geometry, places), geometry.arrays.span[places.piece], set(contacts.given_up)
     for k in np.flatnonzero(gone).tolist():
         given_up |= {(int(places.pair[k]), int(places.piece[k]) + e) for e in range(-ISOLATED, ISOLATED + 1)}
@@ -209,20 +204,25 @@ def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
     return replace(contacts, places=taken(places, ~gone), closed=closed[~gone], given_up=frozenset(given_up))
 
 
-def _points(geometry: Geometry, solved: Touched) -> tuple[Places, Flags]:
-    """Moving places for lonely closed joints and for minima that overlap between open joints; the replaced joints."""
+def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
+    """Contacts with moving places for lonely closed joints and for minima that overlap; None without any."""
     contacts, places, z = solved.contacts, solved.contacts.places, solved.state.z
+    curves, counters = geometry.arrays, contacts.counters
+    runs = short_runs(z, curves, geometry.sites, places, contacts.closed, solved.gaps, counters)
+    if not len(runs):
+        return None
     replaced = np.zeros(len(contacts.closed), dtype=bool)
     created = taken(places, replaced)
     arcs, span = arc_of(geometry, places), geometry.arrays.span[places.piece]
     depth = beside_points(geometry.arrays, places, contacts.closed)[1]
-    for run in _runs(geometry, solved):
-        given_up = any((int(places.pair[k]), int(places.piece[k])) in contacts.given_up for k in run)
-        if len(run) > LONGEST_RUN or given_up:
+    for first, last in runs.tolist():
+        # the joints of a run are neighbours
+        run = np.array([first, last] if last > first else [first])
+        if any((int(places.pair[k]), int(places.piece[k])) in contacts.given_up for k in run):
             continue
         best = run[int(np.argmax(places.force[run]))]
         run = np.flatnonzero(np.isin(np.arange(len(arcs)) + places.shares, run))
-        trial, gap, curvature = as_point(geometry, z, contacts, best, places.force[run].sum())
+        trial, gap, curvature = as_point(z, curves, places, best, places.force[run].sum(), counters)
         overlaps = contacts.closed[best] or gap < -OVERLAP - depth[best]
         if not overlaps or curvature <= 0.0 or not may_move(geometry, trial)[0]:
             continue
@@ -234,15 +234,4 @@ def _points(geometry: Geometry, solved: Touched) -> tuple[Places, Flags]:
         if lonely and np.any(np.abs(arcs[run] - at) < span[best]):
             replaced[run] = contacts.closed[run]
             created = joined(created, trial)
-    return created, replaced
-
-
-def _runs(geometry: Geometry, solved: Touched) -> Iterator[Ints]:
-    """Runs of neighbouring closed joints on the first curves of all pairs, and open joints at minima of the gap."""
-    contacts = solved.contacts
-    for pair in range(len(geometry.pairs)):
-        joints, beside = joints_of(geometry, contacts.places, pair)
-        closed = contacts.closed[joints]
-        ends = np.flatnonzero(~(beside & closed[1:] & closed[:-1])) + 1
-        yield from (run for run in np.split(joints, ends) if len(run) and contacts.closed[run[0]])
-        yield from minima(geometry, contacts, solved.gaps, pair)[:, None]
+    return _with_points(contacts, created, replaced) if len(created.pair) else None

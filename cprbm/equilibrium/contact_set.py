@@ -9,6 +9,7 @@ piece.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -21,7 +22,9 @@ from cprbm.contact import (
     Geometry,
     Places,
     contact_places,
+    copied,
     matched,
+    near_pairs,
     on_edge,
     separations,
     settle_near,
@@ -40,6 +43,7 @@ from cprbm.equilibrium.iteration import (
     follow_leaders,
 )
 from cprbm.equilibrium.linear import Numbers, Work, reduced_system
+from cprbm.equilibrium.neighbours import ISOLATED
 from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
@@ -49,9 +53,6 @@ FEW_CHANGES = 4
 
 FREE_CHANGES = 12
 """Iterations with any change of the set where the linearised problem cannot choose; later a single place changes."""
-
-ISOLATED = 4
-"""Pieces around a moving place without other closed places of the pair."""
 
 ARRIVED = 1e-6
 """Largest last change of a moving place, pieces."""
@@ -75,6 +76,14 @@ class Touched:
     iterations: int
 
 
+def near_contacts(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
+    """Pairs that are near each other, without those that are kept open."""
+    reach = np.full(len(geometry.pairs), REACH)
+    near = near_pairs(z, geometry.arrays, geometry.columns, reach, contacts.counters)
+    near[list(contacts.kept_open)] = False
+    return near
+
+
 def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Contacts:
     """Contacts with fixed places at the nearest feet; known places keep force and state, moving places stay."""
     kept_open, old = np.zeros(len(geometry.pairs), dtype=bool), contacts.places
@@ -85,9 +94,12 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     return replace(contacts, places=places, closed=closed)
 
 
-def passed_through(geometry: Geometry, before: Array, old: Places, after: Array, new: Places, counters: Ints) -> bool:
+def passed_through(
+    geometry: Geometry, before: Array, old: Places, after: Array, places: Callable[[], Places], counters: Ints
+) -> bool:
     """True if a beam went through itself or over a circle: the vector from a foot or a centre to a place turned round.
 
+    ``places`` returns the places after the step.
     The gaps of a beam to itself and to a circle have no sign: only the way between two states shows a passage.
     """
     if geometry.arrays.is_point.any() and sweeps_any_circle(before, after, geometry.arrays, geometry.columns, counters):
@@ -97,6 +109,7 @@ def passed_through(geometry: Geometry, before: Array, old: Places, after: Array,
     unsigned = ((old.curve == old.other) | ((old.side == 0.0) & thick)) & ~old.moves
     if not unsigned.any():
         return False
+    new = places()
     first, second = separations(before, geometry.arrays, old), separations(after, geometry.arrays, new)
     number = matched(geometry.arrays, old, new)
     seen = np.flatnonzero(unsigned & (number >= 0) & (np.hypot(*first.T) < REACH))
@@ -126,7 +139,7 @@ def solve_set(
     z, driven = start.z.copy(), start.driven
     z[system.rows.first :][~driven] = start.target[~driven] * ~start.repeated[~driven]
     m, work, curves = system.numbers, new_work(system), geometry.arrays
-    places, closed = taken(contacts.places, np.ones(len(contacts.closed), dtype=bool)), contacts.closed.copy()
+    places, closed = copied(contacts.places), contacts.closed.copy()
     gaps, curvatures, room = np.empty(len(closed)), np.empty(len(closed)), np.zeros(len(closed))
     linear = z, m, driven, start.target, *pulls(system, springs), work
     settling = curves, places, closed, gaps, curvatures, room, contacts.counters

@@ -261,13 +261,19 @@ def reached_chains(beams: Beams, border: Border, columns: Columns) -> Reached:  
     count, entries = beams.first.size, columns.entry_index.size
     entry_beam, entry_slot = np.full(entries, -1), np.full(entries, -1)
     slot = np.full((count, columns.diagonal.size), -1)
+    beam = reach = 0
     for t in range(entries):
-        if columns.entry_index[t] < border.first:
-            beam = np.searchsorted(beams.first, columns.entry_index[t], side="right") - 1
+        i, c = columns.entry_index[t], columns.entry_column[t]
+        if i < border.first:
+            while i < beams.first[beam]:
+                beam -= 1
+            while beam + 1 < count and beams.first[beam + 1] <= i:
+                beam += 1
             entry_beam[t] = beam
-            slot[beam, columns.entry_column[t]] = 0
+            reach += slot[beam, c] < 0
+            slot[beam, c] = 0
     begin, offset = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
-    column = np.empty(border.column.size + np.sum(slot == 0), np.int64)
+    column = np.empty(border.column.size + reach, np.int64)
     for beam in range(count):
         own = border.column[border.begin[beam] : border.begin[beam + 1]]
         end = begin[beam] + own.size

@@ -33,9 +33,12 @@ def change_set(
     the largest pull opens.  ``pairs`` (pairs, 2) holds the numbers of both curves of every pair.
     """
     opens, closes, gap = _wanted(curves, places, closed, gaps, pairs)
-    count = int(np.sum(opens) + np.sum(closes))
+    count, any_closes = 0, False
+    for k in range(closed.size):
+        count += opens[k] or closes[k]
+        any_closes = any_closes or closes[k]
     if count > most == 1:
-        worst, any_closes, least = -1, np.any(closes), np.inf
+        worst, least = -1, np.inf
         for k in range(closed.size):
             value = gap[k] if any_closes else places.force[k]
             if (closes[k] if any_closes else opens[k]) and value < least:

@@ -1,4 +1,4 @@
-"""Sizes that judge a state, compiled: residual, violation, moments, turns, strains, and balance."""
+"""Sizes of a state for the certificate, compiled: residual, violation, moments, turns, strains, and balance."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from cprbm_scene.answer import Array, Flags, Ints
 
 
 class Arms(NamedTuple):
-    """Points on which forces act: index of the x of each point's displacement, and origin (points, 2)."""
+    """Points on which forces act: ``first`` index (points,) of the displacements, and ``origin`` (points, 2)."""
 
-    index: Ints
+    first: Ints
     origin: Array
 
 
@@ -34,7 +34,7 @@ def residuals(gradient: Array, equations: Flags) -> tuple[float, float]:  # prag
 def sizes(z: Array, m: Numbers, lean: Array) -> tuple[float, float, float, float]:  # pragma: no cover
     """Largest angle of a link, turn of a joint, and share of a link's normal force in 12 EI/h²; largest moment.
 
-    The moment is that of a joint, of a link's force on the link, or of a row.
+    Moments are moments of joints, of forces on their links, and of rows.
     """
     angle = turn = strain = moment = 0.0
     for j in range(m.links.length.size):
@@ -57,8 +57,8 @@ def resultants(z: Array, m: Numbers, arms: Arms, acting: Array) -> tuple[float, 
     """Resultant force and moment of all rows; ``acting`` holds other forces, and the rows' forces are added."""
     add_row_gradient(z, m.rows, z[m.rows.first :], acting)
     along = across = moment = 0.0
-    for k in range(arms.index.size):
-        i = arms.index[k]
+    for k in range(arms.first.size):
+        i = arms.first[k]
         along, across = along + acting[i], across + acting[i + 1]
         moment += (arms.origin[k, 0] + z[i]) * acting[i + 1] - (arms.origin[k, 1] + z[i + 1]) * acting[i]
     for i in m.turns:

@@ -17,10 +17,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
+from cprbm.chain.compiled import compiled
+from cprbm.equilibrium.linear import Bordered, Numbers, Work, solve_system
 from cprbm.equilibrium.newton import Solved
-from cprbm_scene.answer import Array
+from cprbm_scene.answer import Array, Flags, Ints
 
 ACCURACY = 1e-6
 """Relative accuracy of a curvature: it judges and extrapolates, and no result contains it."""
@@ -28,11 +29,8 @@ ACCURACY = 1e-6
 STIFF = 1e-3
 """Share of the stiffest spring's compliance below which a compliance is round-off: no direction is free."""
 
-VECTORS = 6
-"""Lanczos vectors: the softest mode is well apart from the others, and more vectors cost more than new starts."""
-
-DENSE = 12
-"""Links up to which all eigenvalues are computed at once."""
+VECTORS = 60
+"""Most Lanczos vectors: the softest mode is well apart from the others, and five to ten are enough."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,33 +44,58 @@ class Mode:
 def softest(solved: Solved) -> Mode:
     """Smallest curvature and mode at a state; infinite if no direction is free."""
     system = solved.system
-    root, count = np.sqrt(system.metric), len(system.metric)
-
-    def response(x: Array) -> Array:
-        load = np.zeros(system.size)
-        load[system.angles] = root * x.ravel()
-        return solved.response(load)
-
-    def compliance(x: Array) -> Array:
-        return np.asarray(root * response(x)[system.angles])
-
-    which = "SA" if solved.lost else "LA"
-    if count <= DENSE:
-        matrix = np.array([compliance(column) for column in np.eye(count)])
-        values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
-        place = 0 if solved.lost else -1
-        value, vector = float(values[place]), vectors[:, place]
-    else:
-        operator = LinearOperator((count, count), matvec=compliance, dtype=np.float64)
-        start = root * (1.0 + np.cumsum(system.metric))
-        try:
-            values, vectors = eigsh(operator, k=1, which=which, v0=start, tol=ACCURACY, ncv=VECTORS)
-        except ArpackNoConvergence:
-            return Mode(float("nan"), np.zeros(system.size))
-        value, vector = float(values[0]), vectors[:, 0]
+    root = np.sqrt(system.metric)
+    start = root * (1.0 + np.cumsum(system.metric))
+    sense = -1.0 if solved.lost else 1.0
+    value, vector = _largest(*solved.factors.arrays, root, start / np.linalg.norm(start), sense)
+    if not np.isfinite(value):
+        return Mode(value, np.zeros(system.size))
     stiffest = float(np.max(np.maximum(system.metric[:-1], system.metric[1:]))) / float(np.max(system.joints.stiffness))
     if abs(value) <= STIFF * stiffest:
         return Mode(float("inf"), np.zeros(system.size))
-    change = response(vector)
+    load = np.zeros(system.size)
+    load[system.angles] = root * vector
+    change = solved.response(load)
     largest = float(np.abs(change[system.angles]).max())
     return Mode(1.0 / value, change / largest)
+
+
+@compiled
+def _largest(
+    m: Numbers,
+    work: Work,
+    driven: Flags,
+    bordered: Bordered,
+    factored: Array,
+    order: Ints,
+    root: Array,
+    start: Array,
+    sense: float,
+) -> tuple[float, Array]:  # pragma: no cover
+    """Eigenvalue of √M S √M that is largest in a ``sense``, and eigenvector, by Lanczos's method; nan if not found."""
+    most = min(VECTORS, root.size)
+    basis, T, x = np.zeros((most + 1, root.size)), np.zeros((most, most)), np.zeros(root.size)
+    basis[0] = start
+    for k in range(most):
+        load = np.zeros(m.rows.first + driven.size)
+        for j in range(root.size):
+            load[m.angles[j]] = root[j] * basis[k, j]
+        solve_system(m, work, driven, bordered, factored, order, np.zeros(0), load)
+        for j in range(root.size):
+            x[j] = root[j] * load[m.angles[j]]
+        T[k, k] = np.sum(basis[k] * x)
+        for _ in range(2):
+            for i in range(k + 1):
+                x -= np.sum(basis[i] * x) * basis[i]
+        rest = np.sqrt(np.sum(x * x))
+        values, vectors = np.linalg.eigh(T[: k + 1, : k + 1].copy())
+        at = k if sense > 0.0 else 0
+        if rest * abs(vectors[k, at]) <= ACCURACY * abs(values[at]) or k + 1 == root.size:
+            found = np.zeros(root.size)
+            for i in range(k + 1):
+                found += vectors[i, at] * basis[i]
+            return values[at], found
+        basis[k + 1] = x / rest
+        if k + 1 < most:
+            T[k, k + 1], T[k + 1, k] = rest, rest
+    return np.nan, x

@@ -1,9 +1,9 @@
 """The paper's related joints, and the boundaries fitted to them in contacts of two beams.
 
-Related joints are joints of a beam with possible contact, by their place at rest.
+Related joints are joints of a beam with possible contact, by the place at rest.
 
-The paper draws the boundary's beam with an offset towards the other beam.  Which side that is, and on which side of the
-boundary the joints stay, follows from the nearest related joints at rest.
+The paper draws the boundary's beam with an offset towards the other beam.  The nearest related
+joints at rest show the side of the offset, and the side of the boundary on which the joints stay.
 """
 
 from __future__ import annotations

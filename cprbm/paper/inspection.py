@@ -1,7 +1,7 @@
 """Inspection of the stations of the formulation ``paper``: beams that have crossed, and notes on the form's own errors.
 
 Joints of a zone dip by a part of h², and joints beyond the related range are free.  An overlap of more than half the
-mean thickness anywhere means that the beams have passed through a contact where no related joint holds them.
+mean thickness anywhere is a crossing: no related joint holds the beams apart there.
 
 The notes name errors that the form itself leaves:
 

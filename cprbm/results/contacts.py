@@ -98,7 +98,7 @@ def touching_places(view: View) -> dict[str, Array]:
 def states_of_contacts(view: View, forces: PointForces, touching: Mapping[str, Array]) -> Mapping[str, ContactState]:
     """States of all contacts.
 
-    A force that a clamp, or a moment at an own pin, shares with the contact beside it is indeterminate.
+    The force of a contact beside a clamp is indeterminate, and beside a moment at an own pin.
     """
     units = view.mechanism.units
     states = contact_states(view.scene.contacts, forces, touching, (units.length, units.force))

@@ -12,9 +12,10 @@ import numpy as np
 
 from cprbm.chain.mechanism import AXES
 from cprbm.chain.rows import END, ends_of, unit_direction
+from cprbm.contact import Geometry
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.results.view import View
-from cprbm_scene import FreeEnd
+from cprbm_scene import BeamContact, FreeEnd
 from cprbm_scene.answer import Array, PointForce
 from cprbm_scene.statement import DisplacementDrive, EdgeContact, SlidingBody, TurningBody
 
@@ -108,14 +109,10 @@ def _stops(view: View) -> Iterator[PointForce]:
 
 def _contacts(view: View) -> Iterator[PointForce]:
     """Forces of all contacts on beams and bodies, and moments at own pins."""
-    spread = frozenset[str]()
-    geometry, contacts = view.solved.system.geometry, view.solved.state.contacts
-    if geometry is not None and geometry.law is not None and contacts is not None:
-        measured = geometry.law.measures(contacts.places)
-        spread = frozenset(geometry.pairs[pair].name for pair in contacts.places.pair[measured].tolist())
+    geometry = view.solved.system.geometry
     for name, contact in view.scene.contacts.items():
-        if name in spread:
-            yield from _spread_forces(view, name)
+        if geometry is not None and geometry.law is not None and isinstance(contact, BeamContact):
+            yield from _spread_forces(view, name, geometry)
             continue
         targets = (contact.beams[0], getattr(contact, "body", contact.beams[-1]))
         for each in view.pressed[name]:
@@ -125,10 +122,9 @@ def _contacts(view: View) -> Iterator[PointForce]:
             yield from _at_end(view, name, beam, end, NO_FORCE, moment)
 
 
-def _spread_forces(view: View, contact: str) -> Iterator[PointForce]:
+def _spread_forces(view: View, contact: str, geometry: Geometry) -> Iterator[PointForce]:
     """Forces on nodes and moments on links of both beams of a contact that a law measures."""
-    geometry, contacts = view.solved.system.geometry, view.solved.state.contacts
-    assert geometry is not None
+    contacts = view.solved.state.contacts
     assert contacts is not None
     pair = next(k for k, each in enumerate(geometry.pairs) if each.name == contact)
     pull = contact_terms(geometry, view.z, contacts.places, contacts.pressing(pair))[1]

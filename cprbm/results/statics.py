@@ -12,7 +12,7 @@ n, M     force and moment of the part beyond the cut
     n = −Σ F_i,    M = −Σ [(x_i − x) × F_i + M_i],    N = n·e(α),    Q = n·e′(α).
 
 Equilibrium gives n and M at every place, whatever the section, with all kinks and jumps.  A distributed load q adds
-q (c − a) and q ∫ x ds from its begin a to c, the nearer of its end and the cut.
+q (c − a) and q ∫ x ds from the load's begin a to c, the nearer of the load's end and the cut.
 With shear α differs from θ by the angle of (1 + N/EA, Q/GA_s); in the other theories α = θ.
 """
 
@@ -30,9 +30,9 @@ from cprbm_scene.statement import BeamForce, BeamMoment, DistributedLoad
 
 
 class Cuts(NamedTuple):
-    """Cuts of one beam at its samples: N, Q, M, α and θ (k,).
+    """Cuts of a beam at the samples: N, Q, M, α and θ (k,).
 
-    At a load they are limits from the end's side, at both ends limits from inside.
+    Cuts at a load are limits from the end's side, cuts at both ends limits from inside.
     """
 
     N: Array

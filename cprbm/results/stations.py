@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from cprbm.chain import add_rows, mechanism_of
 from cprbm.contact import contact_geometry
@@ -41,6 +41,7 @@ class Run:
 
     Attributes:
         scene, settings: the question.
+        plain: whether beams are plain chains in the formulation ``auto`` too.
         driver: at the first state once the run has begun.
         values: present values (SI) of loads and drives.
         closing: values (SI) at which contacts first closed.
@@ -50,6 +51,7 @@ class Run:
 
     scene: Scene
     settings: Settings
+    plain: bool = False
     driver: Driver | None = None
     values: dict[str, float] = field(default_factory=dict)
     closing: dict[str, float] = field(default_factory=dict)
@@ -57,13 +59,13 @@ class Run:
     events: list[Event] = field(default_factory=list)
     critical: list[Critical] = field(default_factory=list)
     gone_over: list[GoneOver] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
     inspection: Inspection | None = None
     seconds: float = 0.0
 
     def __post_init__(self) -> None:
         began = time.perf_counter()
-        self.system = self._system(corrected=self.settings.formulation == "auto")
+        self.system = self._system(corrected=self.settings.formulation == "auto" and not self.plain)
+        self.notes = [PLAIN] if self.plain else []
         self.seconds = time.perf_counter() - began
 
     def _system(self, *, corrected: bool) -> System:
@@ -84,13 +86,10 @@ class Run:
         began = time.perf_counter()
         with one_thread():
             ending, sentence = self._solve()
-            if ending is Ending.TURNED_TOO_FAR and self.settings.formulation == "auto":
-                # elements longer than the bends have no corrections
-                self.system = self._system(corrected=False)
-                self.stations, self.events, self.critical, self.gone_over = [], [], [], []
-                self.values, self.closing = {}, {}
-                self.notes = [PLAIN]
-                ending, sentence = self._solve()
+        if ending is Ending.TURNED_TOO_FAR and self.settings.formulation == "auto" and not self.plain:
+            # elements longer than the bends have no corrections
+            plain = Run(self.scene, self.settings, plain=True).answer()
+            return replace(plain, seconds=self.seconds + time.perf_counter() - began)
         touched = {name for station in self.stations for name in station.touching}
         never = [f"contact '{name}' never closed at a station" for name in self.scene.contacts if name not in touched]
         if self.inspection is not None and self.driver is not None:
@@ -121,7 +120,8 @@ class Run:
                 try:
                     self._go(self.driver, stage, station)
                 except StepError as failure:
-                    reached = self._value_reached(self.driver, stage, station)
+                    before = self.values.get(stage.steps, 0.0)
+                    reached = before + min(1.0, self.driver.reached) * (station - before)
                     last = f"the last good value of {stage.steps} is {reached:.6g}"
                     return failure.ending, f"{failure.ending.value}: {failure}; {last}"
         return Ending.COMPLETED, Ending.COMPLETED.value
@@ -155,10 +155,6 @@ class Run:
             self.inspection.look(driver.solved, f"{stage.name} {station:.6g}")
         self.stations.append(self._station(driver, stage, station, certificate))
         station_reached(LOGGER, self.scene, len(self.stations), self.stations[-1])
-
-    def _value_reached(self, driver: Driver, stage: Stage, station: float) -> float:
-        before = self.values.get(stage.steps, 0.0)
-        return before + min(1.0, driver.reached) * (station - before)
 
     def _note(self, stage: Stage, passed: list[Passed]) -> None:
         """Add the critical points of the way to a station to the answer."""

@@ -146,7 +146,7 @@ class View:
 
     def nodes(self, beam: str) -> Array:
         """Positions (N + 2, 2) of a beam's nodes, in units."""
-        return self.z[self.mechanism.beam_nodes(beam)[:, None] + [0, 1]]
+        return np.asarray(self.z[self.mechanism.beam_nodes(beam)[:, None] + [0, 1]])
 
     @cached_property
     def lines(self) -> dict[str, Array]:

@@ -11,14 +11,14 @@ import pytest
 
 from comparisons import cases
 from comparisons.answer_file import read_answers
-from comparisons.bench import brief
 from comparisons.case import Comparison, Verdict, compare
 from comparisons.choices import Choices
 from comparisons.cli.main import run
-from comparisons.pairing import Runs, Solvers, cprbm_answer, fea_answer, paired
+from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
 from comparisons.present import page, stepper
 from comparisons.present.columns import Section
 from comparisons.studies import report
+from comparisons.verdict.runs import Runs
 from comparisons.verdict.words import Word
 from comparisons.writing import write
 from cprbm_scene import Mistake, SceneError
@@ -101,7 +101,7 @@ def written(tmp_path_factory):
     out = tmp_path_factory.mktemp("reporting") / "of" / "hinge"
     file = out.parent.parent / "numbers.json"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(brief, "SIZES", (20, 40))
+        patch.setattr(report, "SIZES", (20, 40))
         code, page = reported(out, counting()[0], "--json", str(file))
     assert code == 0
     return out, page.decode(), json.loads(file.read_text("utf-8"))
@@ -180,7 +180,7 @@ def test_what_is_there_is_not_solved_again_and_keeps_its_run_times(written):
 
 @pytest.mark.usefixtures("undrawn")
 def test_run_times_are_of_solves_and_not_of_what_was_kept(tmp_path, files, monkeypatch):
-    monkeypatch.setattr(brief, "SIZES", (20, 40))
+    monkeypatch.setattr(report, "SIZES", (20, 40))
     asked = []
     for name, left_out in (("with", SHORT[2:]), ("without", SHORT)):
         solvers, so_far = counting()

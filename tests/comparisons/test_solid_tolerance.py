@@ -10,11 +10,12 @@ import pytest
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.crew import ALONE
-from comparisons.pairing import Runs, Solvers, solid_answer
+from comparisons.pairing import Solvers, solid_answer
 from comparisons.solid_limits import solid_limit
 from comparisons.tolerances.result import LARGEST
 from comparisons.tolerances.search import runs_within, solve_within
 from comparisons.verdict.rows import rows_of
+from comparisons.verdict.runs import Runs
 from cprbm_scene import Ending
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
 from tests.verdict.made_up import MadeUp

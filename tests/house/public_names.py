@@ -81,6 +81,7 @@ DOCUMENTED = {
     "cprbm_scene.offset": ("OffsetClaim", "OffsetQuestion", "Spacing"),
     # docs/api/comparisons.md: settings, built-in cases, the verdict and the rows, an answer as numbers, the audit
     "comparisons.choices": ("Choices",),
+    "comparisons.answer_file": ("read_answers",),
     "comparisons.cases": ("asked", "names", "opened"),
     "comparisons.mechanism": ("Mechanism", "MechanismComparison"),
     "comparisons.case": ("Comparison", "Verdict"),

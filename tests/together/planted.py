@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from comparisons.choices import Choices
 from comparisons.crew import Solver
-from comparisons.pairing import Runs, Solvers
+from comparisons.pairing import Solvers
+from comparisons.verdict.runs import Runs
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict

@@ -33,7 +33,8 @@ from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.crew import Solver
 from comparisons.geometry import length, points
-from comparisons.pairing import Runs, Solvers, cprbm_answer, fea_answer, paired
+from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
+from comparisons.verdict.runs import Runs
 from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Arc, BeamContact, CircleContact, Ending, Polynomial, Probe, Scene, StationAnswer
 from cprbm_scene.answer import frozen_array

@@ -27,7 +27,8 @@ from comparisons import cases
 from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
 from comparisons.crew import Solver
-from comparisons.pairing import Runs, Solvers, cprbm_answer, fea_answer, paired
+from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
+from comparisons.verdict.runs import Runs
 from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import frozen_array

@@ -10,9 +10,10 @@ from math import degrees, radians
 import pytest
 
 from comparisons.choices import Choices
-from comparisons.pairing import Runs, Solvers, paired
+from comparisons.pairing import Solvers, paired
 from comparisons.stages import begins_at, event_tolerance, span_of
 from comparisons.verdict.events import critical_rows
+from comparisons.verdict.runs import Runs
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.station_events import Place
 from comparisons.verdict.words import Word

@@ -1,4 +1,4 @@
-"""The line on the log when kernels are compiled."""
+"""The line on standard error when kernels are compiled."""
 
 import logging
 
@@ -8,24 +8,39 @@ from numba.core.event import install_listener
 
 from cprbm.chain.compiled import COMPILATION, Compilation, compiled
 
+pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+
 
 @pytest.fixture(autouse=True)
-def _told(monkeypatch):
-    # the process has said so already
-    monkeypatch.setattr(COMPILATION, "spent", 1e9)
+def _said(monkeypatch):
+    # the process's own listener is silent here
+    monkeypatch.setattr(COMPILATION, "said", True)
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
-def test_a_long_compilation_is_said_once(caplog):
-    # functions without a file have no stored machine code, so that each is compiled here
-    with caplog.at_level(logging.INFO, logger="cprbm"), install_listener("numba:compile", Compilation(0.0)):
+def kernel(text, module):
+    """A function without a file: without stored machine code, the function is compiled here."""
+    function = eval(text)  # noqa: S307 - own text
+    function.__module__ = module
+    return compiled(function)
+
+
+def test_a_compilation_is_said_once_and_at_once(caplog):
+    with caplog.at_level(logging.WARNING, logger="cprbm"), install_listener("numba:compile", Compilation()):
         for text in ("lambda x: x + 1.0", "lambda x: 2.0 * x"):
-            compiled(eval(text))(1.0)  # noqa: S307 - own text
-    assert [record.getMessage() for record in caplog.records].count(caplog.records[0].getMessage()) == 1
+            kernel(text, "cprbm.chain.kernel")(1.0)
+    assert len(caplog.records) == 1
     assert "compiles its kernels" in caplog.records[0].getMessage()
 
 
-def test_a_short_compilation_is_not_mentioned(caplog):
-    with caplog.at_level(logging.INFO, logger="cprbm"), install_listener("numba:compile", Compilation(1e6)):
-        compiled(eval("lambda x: 3.0 * x"))(1.0)  # noqa: S307 - own text
+def test_where_no_machine_code_is_stored_the_line_says_what_to_do(caplog, monkeypatch):
+    listener = Compilation()
+    monkeypatch.setattr(listener, "stored", False)
+    with caplog.at_level(logging.WARNING, logger="cprbm"), install_listener("numba:compile", listener):
+        kernel("lambda x: x + 2.0", "cprbm.chain.kernel")(1.0)
+    assert "set NUMBA_CACHE_DIR" in caplog.records[0].getMessage()
+
+
+def test_the_compilation_of_another_program_is_not_mentioned(caplog):
+    with caplog.at_level(logging.WARNING, logger="cprbm"), install_listener("numba:compile", Compilation()):
+        kernel("lambda x: 3.0 * x", "elsewhere")(1.0)
     assert not caplog.records
