@@ -132,8 +132,8 @@ def settle_place(
             gaps[k] -= 0.5 * f.slope * f.slope / abs(f.curvature)
             break
         step = -f.slope / abs(f.curvature)
-        # beside a corner of the other curve the slope jumps: every step back halves the longest step
-        longest *= 0.5 if step * last < 0.0 else 1.0
+        # beside a corner of the other beam's thickness the slope jumps: every step back halves the longest step
+        longest *= 0.5 if step * last < 0.0 <= curves.angle[places.foot[k]] else 1.0
         last = min(longest, max(-longest, step))
         places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], last)
         if abs(last) < ARRIVED:
