@@ -3,24 +3,13 @@
 =======  ====================================================================================
 symbol   meaning
 =======  ====================================================================================
-F_i, d_i force of the place i of a zone, distance from the outermost place, ascending
-q        contact force per length in the zone
-P        force at the zone's end
-d        distance of a joint's border inside the zone from the outermost place
-x        distance of the zone's end from that border
+g, s     gap, arc length of a joint on the first beam
+e        arc length of the zone's end
 =======  ====================================================================================
 
-A zone ends in a force P, with q behind.  Forces act at joints, so that the outermost joints share P and show neither P
-nor the end.  The beam away from the end feels only the resultant force and moment of the outermost m joints,
-
-    Σ F_i = P + q x,    Σ F_i (d − d_i) = P x + q x²/2.
-
-With q from the joints further in,
-
-    P² = (Σ F_i)² − 2 q Σ F_i (d − d_i),    x = 2 Σ F_i (d − d_i)/(Σ F_i + P).
-
-On ``wrapped`` the end is right to 4e-3 links in zones of more than ten joints.  A moving place at the end of a zone is
-the end.
+Forces act at joints: the outermost force gives e to about one link.  Beyond that force the moment is smooth:
+g″ is zero at e and grows evenly.  Second differences of g at the next joints, extrapolated to zero, give e.  The spline
+spreads a force over one joint on either side; such joints do not count.  A moving place at the end of a zone is e.
 
 Clamp and contact share the force of a zone beside a weld, and a moment at an own pin is part of the contact: such a
 zone begins at the beam's end.
@@ -30,11 +19,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import sqrt
 
 import numpy as np
 
 from cprbm.chain.rows import END, ends_of
+from cprbm.contact import Geometry
 from cprbm.results.forces import NO_FORCE, pin_moments
 from cprbm.results.view import View
 from cprbm_scene import FreeEnd
@@ -45,17 +34,17 @@ from cprbm_scene.stations import contact_states
 ZONE = 3
 """Closed joints from which a contact has a length: two neighbours share the force of a point."""
 
-JOINTS = 8
-"""Outermost places that share P, m, in a zone of at least twice as many without a clamp."""
+SMEARED = 1
+"""Joints beside a force with a wrong second difference."""
 
-INNER = 3
-"""Joints further in that tell q."""
-
-APART = 10.0
-"""Distance, in links, of two places of a zone; farther places are another zone."""
+JOINTS = 5
+"""Joints for three second differences."""
 
 NEGLIGIBLE = 1e-4
 """Force of a joint, over the largest force, that errors of the discretisation leave on a flat edge."""
+
+FARTHEST = 1.5
+"""Distance, in links, of e from the outermost force; a larger one shows another law of g."""
 
 
 def contact_force(view: View, contact: str) -> float:
@@ -127,33 +116,37 @@ def contact_ends(view: View, contact: str) -> list[float]:
         return [low, high]
     length = float(geometry.curves[geometry.pairs[pair].first].arcs[-1])
     clamps = [0.0 if each.share > 0 else length for each in found if each.share]
-    clamps += pins
-    held = [*clamps, *(each.arcs[0] for each in found if each.moves)]
-    span = float(geometry.arrays.span[geometry.arrays.first[geometry.pairs[pair].first] + 1])
-    places = np.array([each.arcs[0] for each in found])
-    forces = np.array([float(np.hypot(*each.forces[0])) for each in found])
     begin, end = min([low, *clamps]), max([high, *clamps])
+    held = [*pins, *clamps, *(each.arcs[0] for each in found if each.moves)]
     return [
-        begin if begin in held else low + _inward(places - low, forces, span, even=end in clamps),
-        end if end in held else high - _inward(high - places[::-1], forces[::-1], span, even=begin in clamps),
+        begin if begin in held else _zone_end(view, geometry, pair, low, sense=-1.0),
+        end if end in held else _zone_end(view, geometry, pair, high, sense=1.0),
     ]
 
 
-def _inward(apart: Array, forces: Array, span: float, *, even: bool) -> float:
-    """Distance of the zone's end from the outermost place, into the zone.
+def _zone_end(view: View, geometry: Geometry, pair: int, outermost: float, *, sense: float) -> float:
+    """e beyond the ``outermost`` force, in the ``sense`` of growing or falling arc lengths."""
+    contacts = view.solved.state.contacts
+    assert contacts is not None
+    places = contacts.places
+    mine = (places.pair == pair) & (places.curve == geometry.pairs[pair].first) & ~places.moves & ~contacts.closed
+    arcs = geometry.arrays.arc[places.piece] + places.xi * geometry.arrays.span[places.piece]
+    span = float(geometry.arrays.span[places.piece].max())
+    beyond = np.flatnonzero(mine & (sense * (arcs - outermost) > 0.25 * span))
+    joints = beyond[np.argsort(sense * arcs[beyond])][SMEARED - 1 : SMEARED - 1 + JOINTS]
+    s, g = arcs[joints], view.solved.gaps[joints]
+    if len(joints) < JOINTS or not np.all(np.isfinite(g)):
+        return outermost
+    parting, at = _second_differences(s, g)
+    if not np.all(np.diff(parting, prepend=0.0) > 0.0):
+        return outermost
+    # s as a polynomial of g″, at zero (Lagrange)
+    weights = [np.prod([other / (other - own) for other in np.delete(parting, i)]) for i, own in enumerate(parting)]
+    end = float(np.dot(weights, at))
+    return end if abs(end - outermost) <= FARTHEST * span else outermost
 
-    Args:
-        apart: d_i, ascending.
-        forces: F_i.
-        span: length of a link.
-        even: whether a clamp holds the other end of the zone, with even forces beside.
-    """
-    count = int(np.argmax(np.append(np.diff(apart) > APART * span, True))) + 1
-    if count < ZONE:
-        return 0.0
-    m = min(JOINTS, max(1, count - INNER) if even else count // 2)
-    border = 0.5 * float(apart[m - 1] + apart[m])
-    q = float(forces[m : max(m + 1, min(m + INNER, count if even else count - m))].mean()) / span
-    force, moment = float(forces[:m].sum()), float(forces[:m] @ (border - apart[:m]))
-    square = force * force - 2.0 * q * moment
-    return border - 2.0 * moment / (force + sqrt(square)) if square > 0.0 else 0.0
+
+def _second_differences(s: Array, g: Array) -> tuple[Array, Array]:
+    """g″ (k − 2,) of a cubic through three joints each, and the places, the means of the joints."""
+    slopes = np.diff(g) / np.diff(s)
+    return np.diff(slopes) / (0.5 * (s[2:] - s[:-2])), (s[2:] + s[1:-1] + s[:-2]) / 3.0
