@@ -1,8 +1,8 @@
 """Newton's method with an active set of contact places.
 
 Every iteration moves the feet, opens pulling places, closes overlapping places, and solves the linear system of the
-closed places.  Where more than a few places have a wrong sign, the linearised problem chooses the set
-(:mod:`cprbm.equilibrium.complementary`).  The first iteration keeps the set: under new targets it is the prediction
+closed places.  Where the set returns and more than a few places have a wrong sign, the linearised problem chooses the
+set (:mod:`cprbm.equilibrium.complementary`).  The first iteration keeps the set: under new targets it is the prediction
 along the path's tangent.  A moving place is an unknown; a closed moving place stands for the fixed places within a
 piece.
 """
@@ -48,11 +48,14 @@ from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
 
-FEW_CHANGES = 4
-"""Places that change together by their signs; the linearised problem chooses where more have a wrong sign."""
-
 FREE_CHANGES = 12
-"""Iterations with any change of the set where the linearised problem cannot choose; later a single place changes."""
+"""Iterations in which all places with a wrong sign change."""
+
+RETURNS = 2
+"""Returns of a set after which not all places change together."""
+
+FEW_CHANGES = 4
+"""Places that change together after a return; the linearised problem chooses where more have a wrong sign."""
 
 ARRIVED = 1e-6
 """Largest last change of a moving place, pieces."""
@@ -134,7 +137,7 @@ def solve_set(
         springs: springs on the links' angles, of a descent.
 
     Raises:
-        NotConvergedError: no equilibrium was found, or a point of contact becomes a length.
+        NotConvergedError: no equilibrium was found, the set of closed places returns, or a point becomes a length.
     """
     z, driven = start.z.copy(), start.driven
     z[system.rows.first :][~driven] = start.target[~driven] * ~start.repeated[~driven]
@@ -145,15 +148,20 @@ def solve_set(
     settling = curves, places, closed, gaps, curvatures, room, contacts.counters
     begin = begin_iteration if geometry.law is None else partial(begin_by_law, geometry.law)
     settle_near(z, *settling, FINDING)
-    last = np.inf
+    seen: dict[bytes, int] = {}
+    last, few, returned = np.inf, 1 if geometry.joints_alone else FEW_CHANGES, False
     for iteration in range(1, iterations + 1):
-        before = closed.copy()
-        most = 0 if iteration == 1 else FEW_CHANGES
-        changes, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
-        if changes > most:
-            most = _choose_set(geometry, linear, settling, len(closed) if iteration <= FREE_CHANGES else 1)
+        before, most = closed.copy(), 0 if iteration == 1 else few if returned else len(closed)
+        wrong, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
+        if returned and wrong > most > 1:
+            most = _choose_set(geometry, linear, settling)
             _, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
         changed = bool(np.any(closed != before))
+        if changed:
+            times = seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
+            if times > 2 * RETURNS:
+                raise NotConvergedError("the set of closed places returns")
+            returned = returned or times > RETURNS or iteration >= FREE_CHANGES
         try:
             factors = factors_of(system, driven, work, bordered)
         except SingularError as singular:
@@ -176,10 +184,10 @@ def solve_set(
     raise NotConvergedError(f"{iterations} iterations did not converge")
 
 
-def _choose_set(geometry: Geometry, linear: Linear, settling: Settling, otherwise: int) -> int:
-    """Close the places that press in the linearised problem and open all others; changes that are still allowed.
+def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> int:
+    """Close the places that press in the linearised problem and open all others; number of changes still allowed.
 
-    These are none, or ``otherwise`` where the linearised problem is not convex.
+    The number is 0, or 1 where the linearised problem is not convex.
 
     Raises:
         NotConvergedError: joints close beside a moving place.
@@ -193,7 +201,7 @@ def _choose_set(geometry: Geometry, linear: Linear, settling: Settling, otherwis
     own = trial & (places.shares == 0)
     pressed = closed_forces(bordered, reduced, m.border.size, places.force[own], np.where(closed, 0.0, depth)[own])
     if pressed is None:
-        return otherwise
+        return 1
     closed[:] = False
     closed[own] = pressed
     follow_leaders(places, closed)
