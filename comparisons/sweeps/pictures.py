@@ -48,9 +48,8 @@ def fullest(solved: _Solved) -> Outcome:
 def names_of(outcome: Outcome) -> list[tuple[str, str]]:
     """Stages and names of the numbers of the last stations, without components that are round-off at all stations."""
     largest: dict[tuple[str, ...], float] = {}
-    for number in outcome.numbers:
-        for key in ((number["unit"],), (number["stage"], name_of(number))):
-            largest[key] = max(largest.get(key, 0.0), abs(number["value"]))
+    for number, key in ((n, key) for n in outcome.numbers for key in ((n["unit"],), (n["stage"], name_of(n)))):
+        largest[key] = max(largest.get(key, 0.0), abs(number["value"]))
     names = [((each["stage"], name_of(each)), each["unit"]) for each in last_numbers(outcome)]
     return [name for name, unit in names if largest[name] > ROUND_OFF * largest[unit,]]
 

@@ -173,15 +173,20 @@ def solve_set(
         size = size if moved < ARRIVED else max(size, moved)
         arrived = has_converged(size, last)
         last = size
-        if arrived and not changed:
-            room[:] = 0.0
-            settle_near(z, *settling, FINDING)
-            if geometry.law is not None:
-                geometry.law.write_gaps(z, places, gaps)
-            if not change_set(curves, places, closed, gaps, geometry.columns, len(closed)):
-                settled = replace(contacts, places=places, closed=closed)
-                return Touched(replace(start, z=z), settled, factors, gaps, curvatures, iteration)
+        if arrived and not changed and _stays(geometry, z, settling):
+            settled = replace(contacts, places=places, closed=closed)
+            return Touched(replace(start, z=z), settled, factors, gaps, curvatures, iteration)
     raise NotConvergedError(f"{iterations} iterations did not converge")
+
+
+def _stays(geometry: Geometry, z: Array, settling: Settling) -> bool:
+    """Move the feet of all places; True if the set of closed places stays as it is."""
+    curves, places, closed, gaps, _, room, _ = settling
+    room[:] = 0.0
+    settle_near(z, *settling, FINDING)
+    if geometry.law is not None:
+        geometry.law.write_gaps(z, places, gaps)
+    return not change_set(curves, places, closed, gaps, geometry.columns, len(closed))
 
 
 def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> int:
