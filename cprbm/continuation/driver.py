@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -30,7 +30,6 @@ from cprbm.continuation.closing import (
     first_change,
     kept_open,
     may_close,
-    pressing,
     pressing_names,
 )
 from cprbm.continuation.critical import CriticalPoint, contact_ends, critical_point, opened
@@ -157,17 +156,11 @@ class Driver:
         begin = self.reached
         largest = min(CAREFUL_TURN, self.settings.largest_turn) if careful else self.settings.largest_turn
 
-        known, closed = dict[tuple[float, frozenset[int]], Solved](), pressing(self.solved)
-
+        @cache  # events ask again for the states at the ends of the step and at the located share
         def solve(share: float, pairs: frozenset[int]) -> Solved:
-            if (share, pairs) not in known:
-                target = self._held(way.target(begin + share * (t - begin)))
-                # other contacts may keep a state on another branch
-                alike = [at for (at, apart), one in known.items() if apart == pairs and pressing(one) == closed]
-                near = min(alike, key=lambda at: abs(at - share), default=0.0)
-                state = known[near, pairs].state if abs(near - share) < share else kept_open(self.solved.state, pairs)
-                known[share, pairs] = self._equilibrium(replace(state, target=target))
-            return known[share, pairs]
+            target = self._held(way.target(begin + share * (t - begin)))
+            # a state between has other sides and other closed places: only the begin of the step is certified
+            return self._equilibrium(replace(kept_open(self.solved.state, pairs), target=target))
 
         try:
             solved = solve(1.0, frozenset())
