@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm.contact.candidates import Geometry, copied, fixed_places, sides_at_rest, taken
+from cprbm.contact.candidates import Geometry, copied, fixed_places, half_thicknesses, sides_at_rest, taken
 from cprbm.contact.gap import Places
 from cprbm.contact.settling import new_counters, settle
 from cprbm_scene.answer import Array, Flags, Ints
@@ -47,10 +47,13 @@ class Contacts:
 
 def touching_as_drawn(geometry: Geometry, z: Array, contacts: Contacts) -> frozenset[int]:
     """Pairs that touch in a state as drawn, at a weld on the rigid body of the foot too."""
-    near = np.ones(len(geometry.pairs), dtype=bool)
-    places = fixed_places(geometry, z, contacts.sides, near, contacts.counters, welds=True)
+    places = fixed_places(
+        geometry, z, contacts.sides, np.ones(len(geometry.pairs), dtype=bool), contacts.counters, welds=True
+    )
     gaps = replace(contacts, places=places, closed=np.zeros(len(places.pair), dtype=bool)).gaps(geometry, z)
-    return frozenset(places.pair[gaps < TOUCHING].tolist())
+    # a weld behind the end of the other beam is on neither side of the beam
+    deepest = -TOUCHING - half_thicknesses(geometry.arrays, places)
+    return frozenset(places.pair[(gaps > deepest) & (gaps < TOUCHING)].tolist())
 
 
 def open_contacts(geometry: Geometry, z: Array) -> Contacts:
