@@ -28,7 +28,7 @@ from cprbm.contact.closest import curve_point, lost_at
 from cprbm.contact.contacts import TOUCHING, Contacts, open_contacts, touching_as_drawn
 from cprbm.contact.curve import BEND, CORNER, STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
 from cprbm.contact.edges import corner_sides, is_left, left_corner
-from cprbm.contact.fixed import Sites, contact_places, matched, movable, picked
+from cprbm.contact.fixed import REACH, Sites, contact_places, matched, movable, picked
 from cprbm.contact.gap import (
     COUPLING,
     GRADIENT,
@@ -68,6 +68,7 @@ __all__ = [
     "GAPS",
     "GRADIENT",
     "LOCAL",
+    "REACH",
     "SEARCHES",
     "SHIFT",
     "STENCIL",

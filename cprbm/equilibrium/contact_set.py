@@ -17,6 +17,7 @@ import numpy as np
 
 from cprbm.contact import (
     FINDING,
+    REACH,
     Contacts,
     CurveArrays,
     Geometry,
@@ -59,9 +60,6 @@ FEW_CHANGES = 4
 
 ARRIVED = 1e-6
 """Largest last change of a moving place, pieces."""
-
-REACH = 0.1
-"""Distance of a place from a beam, over the longest beam, up to which a passage is seen."""
 
 Linear = tuple[Array, Numbers, Flags, Array, Array, Array, Work]
 Settling = tuple[CurveArrays, Places, Flags, Array, Array, Array, Ints]
