@@ -113,51 +113,6 @@ def factor_chains(beams: Beams, blocks: Blocks, pivot: Array, ratio: Array) -> i
 
 
 @compiled
-def solve_chain(
-    beams: Beams, beam: int, blocks: Blocks, pivot: Array, ratio: Array, x: Array
-) -> None:  # pragma: no cover
-    """Solve A x = b in place; ``x`` holds the unknowns of a chain."""
-    m, start = beams.links[beam], beams.first_link[beam]
-    C, K = blocks.coupling, blocks.compliance
-    nx, ny = x[5 * m], x[5 * m + 1]
-    # the force n_j takes the place of p_{j+1} until the positions are known
-    for j in range(m - 1, -1, -1):
-        i = 5 * j
-        x[i + 5], x[i + 6] = nx, ny
-        c = C[start + j]
-        x[i + 4] -= c[1, 0] * nx + c[1, 1] * ny
-        if j > 0:
-            x[i - 1] -= c[0, 0] * nx + c[0, 1] * ny
-        if j < m - 1:
-            x[i + 9] -= c[2, 0] * nx + c[2, 1] * ny
-        nx += x[i]
-        ny += x[i + 1]
-    for j in range(1, m):
-        x[5 * j + 4] -= ratio[start + j] * x[5 * j - 1]
-    x[5 * m - 1] *= pivot[start + m - 1]
-    for j in range(m - 2, -1, -1):
-        x[5 * j + 4] = x[5 * j + 4] * pivot[start + j] - ratio[start + j + 1] * x[5 * j + 9]
-    px, py = nx / beams.springs[beam, 0], ny / beams.springs[beam, 1]
-    x[0], x[1] = px, py
-    bx, by = 0.0, 0.0
-    for j in range(m):
-        i = 5 * j
-        nx, ny = x[i + 5], x[i + 6]
-        c, k = C[start + j], K[start + j]
-        px += x[i + 2] - k[1, 0, 0] * nx - k[1, 0, 1] * ny - c[1, 0] * x[i + 4]
-        py += x[i + 3] - k[1, 1, 0] * nx - k[1, 1, 1] * ny - c[1, 1] * x[i + 4]
-        if j > 0:
-            px -= k[0, 0, 0] * bx + k[0, 0, 1] * by + c[0, 0] * x[i - 1]
-            py -= k[0, 1, 0] * bx + k[0, 1, 1] * by + c[0, 1] * x[i - 1]
-        if j < m - 1:
-            fx, fy = x[i + 10], x[i + 11]
-            px -= k[2, 0, 0] * fx + k[2, 0, 1] * fy + c[2, 0] * x[i + 9]
-            py -= k[2, 1, 0] * fx + k[2, 1, 1] * fy + c[2, 1] * x[i + 9]
-        x[i + 2], x[i + 3], x[i + 5], x[i + 6] = nx, ny, px, py
-        bx, by = nx, ny
-
-
-@compiled
 def _sum_forces(coupling: Array, m: int, x: Array) -> Array:  # pragma: no cover
     """Resultants (2, columns) at the first node; the force n_j takes the place of p_{j+1}, θ loses the forces' part."""
     force, count = x[5 * m : 5 * m + 2].copy(), x.shape[1]
@@ -219,7 +174,7 @@ def solve_columns(
 ) -> None:  # pragma: no cover
     """Solve A X = B in place; ``x`` (unknowns, columns) belongs to a chain.
 
-    The steps are those of :func:`solve_chain`, with all columns in the inner loops, which the processor does at once.
+    All columns are in the inner loops, which the processor does at once.
     """
     m, start = beams.links[beam], beams.first_link[beam]
     end = start + m
@@ -370,7 +325,7 @@ def reduce_load(
     """Solve all chains for a load in place, and subtract B times the solution from the border's load."""
     for beam in range(beams.first.size):
         first, size = beams.first[beam], 2 + PER_LINK * beams.links[beam]
-        solve_chain(beams, beam, blocks, pivot, ratio, load[first : first + size])
+        solve_columns(beams, beam, blocks, pivot, ratio, load[first : first + size].reshape((-1, 1)))
     for t in range(border.entry_beam.size):
         beam, r = border.entry_beam[t], border.entry_row[t]
         if r < 0 or driven[r]:

@@ -1,7 +1,7 @@
 """The linear system of a Newton iteration: chains, rows and closed places, compiled.
 
-A call assembles the gradient and the Hessian and eliminates the chains.  LAPACK factors the border after Bunch and
-Kaufman (a block of two has a single negative eigenvalue); a second call restores the chains' part of the solution.
+A call assembles the gradient and the Hessian and eliminates the chains.  LAPACK factors the border,
+:mod:`cprbm.equilibrium.factors`; a second call restores the chains' part of the solution.
 """
 
 from __future__ import annotations
@@ -111,47 +111,6 @@ def restored(beams: Beams, border: Border, reached: Reached, solution: Array, lo
     restore(beams, reached, solution, load)
     for i in range(border.first, load.size):
         load[i] = solution[i - border.first]
-
-
-@compiled
-def solve_factored(factored: Array, order: Ints, x: Array) -> None:  # pragma: no cover
-    """Solve the border's system in place, from LAPACK's factors U D Uᵀ after Bunch and Kaufman (dsytrf, dsytrs)."""
-    k = order.size - 1
-    while k >= 0:
-        last, pair = k, order[k] < 0
-        k -= 1 if pair else 0
-        at = abs(order[last]) - 1
-        x[k], x[at] = x[at], x[k]
-        for i in range(k):
-            x[i] -= factored[i, last] * x[last] + (factored[i, k] * x[k] if pair else 0.0)
-        if pair:
-            beside = factored[k, last]
-            a, b, u, v = factored[k, k] / beside, factored[last, last] / beside, x[k] / beside, x[last] / beside
-            x[k], x[last] = (b * u - v) / (a * b - 1.0), (a * v - u) / (a * b - 1.0)
-        else:
-            x[k] /= factored[k, k]
-        k -= 1
-    k = 0
-    while k < order.size:
-        last = k + 1 if order[k] < 0 else k
-        for i in range(k):
-            x[k] -= factored[i, k] * x[i]
-            if last > k:
-                x[last] -= factored[i, last] * x[i]
-        at = abs(order[k]) - 1
-        x[k], x[at] = x[at], x[k]
-        k = last + 1
-
-
-@compiled
-def solve_system(
-    m: Numbers, work: Work, driven: Flags, bordered: Bordered, factored: Array, order: Ints, values: Array, load: Array
-) -> Array:  # pragma: no cover
-    """Solve the whole system in place; the border's solution. ``values`` (at most forces,) load the rows of forces."""
-    within = reduced_load(m, work, driven, bordered, values, load)
-    solve_factored(factored, order, within)
-    restored(m.beams, m.border, bordered.reached, within, load)
-    return within
 
 
 @compiled
