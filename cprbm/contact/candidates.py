@@ -66,18 +66,16 @@ class Geometry:
         return bool(on_edge(self.arrays, self.possible).any())
 
 
-def contact_geometry(m: Mechanism) -> Geometry | None:
-    """Geometry of a mechanism's contacts, None without contacts.
+def contact_geometry(m: Mechanism) -> Geometry:
+    """Geometry of a mechanism's contacts.
 
     Adds the nodes of rigid curves and the rows of beams pinned on their edge to the mechanism.
     """
-    if not m.scene.contacts:
-        return None
     curves, pairs = contact_pairs(m)
     arrays = curve_arrays(curves)
     ends = _ends(m, curves)
     possible, node = _possible(arrays, ends, pairs)
-    columns = np.array([(pair.first, pair.second) for pair in pairs], dtype=np.int64)
+    columns = np.array([(pair.first, pair.second) for pair in pairs], dtype=np.int64).reshape(-1, 2)
     return Geometry(curves, pairs, arrays, ends, possible, node, columns)
 
 
@@ -133,8 +131,8 @@ def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:
 
     Parallel beams lie left and right of each other, antiparallel beams both left or both right.
     """
-    sides = np.array([(pair.side, pair.side) for pair in geometry.pairs], dtype=float)
-    unknown = np.array([pair.side == 0 and not pair.itself for pair in geometry.pairs])
+    sides = np.array([(pair.side, pair.side) for pair in geometry.pairs], dtype=float).reshape(-1, 2)
+    unknown = np.array([pair.side == 0 and not pair.itself for pair in geometry.pairs], dtype=bool)
     if not unknown.any():
         return sides
     places = fixed_places(geometry, z, np.ones(sides.shape), unknown, counters)
@@ -172,7 +170,7 @@ def _ends(m: Mechanism, curves: list[Curve]) -> Ends:
             if not isinstance(joint, FreeEnd):
                 body[k, side] = number[m.scene.body_of(joint.point)]
                 welded[k, side] = isinstance(joint, WeldedEnd)
-    return Ends(body, welded, np.array([not curve.beam for curve in curves]))
+    return Ends(body, welded, np.array([not curve.beam for curve in curves], dtype=bool))
 
 
 def _bodies_at_rest(scene: Scene) -> list[str]:

@@ -96,7 +96,7 @@ def contact_ends(trail: list[Reached], beyond: float) -> CriticalPoint | None:
     """
     last, width = trail[-1], beyond - trail[-1].t
     geometry, earlier = last.solved.system.geometry, _earlier(trail, width)
-    if geometry is None or earlier is None:
+    if earlier is None:
         return None
     slips = [Pressed(pair) for pair in sorted(pressing(last.solved))]
     ends = [(each, each.force, Loss.CONTACT) for each in may_lift(last.solved)]
@@ -118,8 +118,6 @@ def _vanishes(value: Callable[[Solved], float], earlier: Reached, last: Reached)
 def _to_end(solved: Solved, pair: int) -> float:
     """Least distance of the feet of a pair's closed places from an end of the beam that they lie on; inf without."""
     geometry, contacts = solved.system.geometry, solved.state.contacts
-    if geometry is None or contacts is None:
-        return np.inf
     places, arrays = taken(contacts.places, contacts.pressing(pair)), geometry.arrays
     arcs = arrays.arc[places.foot] + places.eta * arrays.span[places.foot]
     last = arrays.last[places.other]

@@ -233,7 +233,7 @@ class Driver:
             name = rows[change.row].name.rpartition(".")[0]
         else:
             state = kept_open(before.state, frozenset() if change.closes else change.pairs)
-            name = "" if geometry is None else geometry.pairs[change.first].name
+            name = geometry.pairs[change.first].name
         try:
             after = self._equilibrium(state)
         except NotConvergedError as failure:

@@ -66,7 +66,7 @@ def _landed(system: System, first: Solved, row: int, iterations: int) -> Solved:
     m, name = system.mechanism, system.mechanism.rows[row].name.removeprefix("landing.")
     stage = m.scene.stages[0]
     load = m.row(stage.steps)
-    every = frozenset(range(0 if system.geometry is None else len(system.geometry.pairs)))
+    every = frozenset(range(len(system.geometry.pairs)))
 
     def moved(s: float, pairs: frozenset[int]) -> Solved:
         target = first.state.target.copy()
@@ -81,8 +81,6 @@ def _landed(system: System, first: Solved, row: int, iterations: int) -> Solved:
 
     def gap(s: float) -> float:
         solved = moved(sense * s, every)
-        assert system.geometry is not None
-        assert solved.state.contacts is not None
         return min(least_gap(system.geometry, solved.state.z, solved.state.contacts, pair) for pair in every) + CLOSED
 
     far = next((way for way in SHORTEST * 2.0 ** np.arange(DOUBLINGS) if gap(way) < 0.0), None)

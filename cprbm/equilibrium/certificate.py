@@ -75,10 +75,9 @@ def certify(
     turned, bend, strain, moment = sizes(state.z, system.numbers, system.lean)
     scale = max(moment, SMALLEST_LOAD)
     stiffest = float(system.joints.stiffness.max())
-    contacts = state.contacts
+    contacts, law = state.contacts, system.geometry.law
     shortest = float(system.metric.min())
-    pressed = contacts is not None and contacts.closed.any()
-    turns = turned + ((PLACES + 1.0 / shortest) / shortest if pressed else 0.0)
+    turns = turned + ((PLACES + 1.0 / shortest) / shortest if contacts.closed.any() else 0.0)
     floor = 4.0 * EPSILON * (stiffest * turns + sqrt(len(system.metric)) * scale) / scale
     unbalanced, apart = residuals(solved.gradient, system.equations)
     residual = unbalanced / scale
@@ -100,8 +99,8 @@ def certify(
         (float(solved.lost), 0.0, Ending.NOT_A_MINIMUM, "the energy falls in {:.0f} independent directions"),
     )
     failures = [(ending, text.format(found, most)) for found, most, ending, text in checks if not found <= most]
-    if system.geometry is not None and system.geometry.law is not None and contacts is not None:
-        invalid = system.geometry.law.invalid(state.z, contacts.places, contacts.closed)
+    if law is not None:
+        invalid = law.invalid(state.z, contacts.places, contacts.closed)
         failures += [(Ending.LEFT_BOUNDARY, invalid)] if invalid else []
     certificate = Certificate(
         residual=residual,
@@ -129,7 +128,7 @@ def _resultants(solved: Solved) -> tuple[float, float]:
     """Resultant force and moment of the forces of all rows on nodes and bodies."""
     system, z, contacts = solved.system, solved.state.z, solved.state.contacts
     acting = np.zeros(system.size)
-    if system.geometry is not None and system.geometry.law is not None and contacts is not None:
+    if system.geometry.law is not None:
         # a law along an axis leaves a moment
         acting += contact_terms(system.geometry, z, contacts.places, contacts.closed)[1]
     return resultants(z, system.numbers, system.arms, acting)

@@ -45,8 +45,6 @@ def contact_measures(solved: Solved) -> ContactMeasures:
     with a shared force overlap by the sum of both gaps.
     """
     geometry, contacts = solved.system.geometry, solved.state.contacts
-    if geometry is None or contacts is None or not len(contacts.closed):
-        return ContactMeasures(0.0, 0.0, 0.0)
     places, closed = contacts.places, contacts.closed
     beside, depth = beside_points(geometry.arrays, places, closed)
     gaps, leaders = solved.gaps.copy(), np.arange(len(closed)) + places.shares

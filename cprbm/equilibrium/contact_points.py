@@ -51,19 +51,15 @@ ROUNDS = 12
 """Solves under the same targets."""
 
 
-def touched_equilibrium(
-    system: System,
-    geometry: Geometry,
-    start: State,
-    contacts: Contacts,
-    iterations: int,
-    springs: Springs | None = None,
-) -> Touched:
+def touched_equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Touched:
     """Equilibrium near a state under the state's targets, with settled places of contact.
 
     Raises:
         NotConvergedError: no equilibrium was found, the places do not settle, or a beam passed through itself.
     """
+    geometry, contacts = system.geometry, start.contacts
+    if not geometry.pairs:
+        return solve_set(system, start, iterations, springs)
     corners = corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters)
     kept = contacts.closed | contacts.places.moves
     places, closed = taken(contacts.places, kept), contacts.closed[kept]
@@ -73,7 +69,7 @@ def touched_equilibrium(
     old = contacts.places if not contacts.kept_open else _of_all_pairs(geometry, before, contacts)
     for _ in range(ROUNDS):
         try:
-            solved = solve_set(system, geometry, start, contacts, iterations, springs)
+            solved = solve_set(system, replace(start, contacts=contacts), iterations, springs)
         except NotConvergedError:
             moves = contacts.places.moves & ~on_edge(geometry.arrays, contacts.places)
             if not moves.any():

@@ -34,7 +34,7 @@ from cprbm.contact import (
 )
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.complementary import closed_forces
-from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_of, new_work, pulls, solved_border
+from cprbm.equilibrium.factors import SingularError, Springs, factors_of, new_work, pulls, solved_border
 from cprbm.equilibrium.iteration import (
     begin_by_law,
     begin_iteration,
@@ -67,14 +67,17 @@ Settling = tuple[CurveArrays, Places, Flags, Array, Array, Array, Ints]
 
 @dataclass(frozen=True, eq=False)
 class Touched:
-    """An equilibrium with contacts: state, contacts, factors, gaps and curvatures of the places, iterations."""
+    """An equilibrium: state, gaps and curvatures of the places, number of iterations."""
 
     state: State
-    contacts: Contacts
-    factors: Factors
     gaps: Array
     curvatures: Array
     iterations: int
+
+    @property
+    def contacts(self) -> Contacts:
+        """Places and closed set of the state."""
+        return self.state.contacts
 
 
 def near_contacts(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
@@ -117,27 +120,19 @@ def passed_through(
     return bool(np.any(np.einsum("ij,ij->i", first[seen], second[number[seen]]) < 0.0))
 
 
-def solve_set(
-    system: System,
-    geometry: Geometry,
-    start: State,
-    contacts: Contacts,
-    iterations: int,
-    springs: Springs | None = None,
-) -> Touched:
+def solve_set(system: System, start: State, iterations: int, springs: Springs | None = None) -> Touched:
     """Equilibrium near a state under the state's targets, and the set of closed places.
 
     Args:
-        system, geometry: the mechanism and its contacts.
-        start: state with targets.
-        contacts: places at the start; not changed.
+        system: the mechanism.
+        start: state with targets; not changed.
         iterations: largest number of Newton iterations.
         springs: springs on the links' angles, of a descent.
 
     Raises:
         NotConvergedError: no equilibrium was found, the set of closed places returns, or a point becomes a length.
     """
-    z, driven = start.z.copy(), start.driven
+    geometry, contacts, z, driven = system.geometry, start.contacts, start.z.copy(), start.driven
     z[system.rows.first :][~driven] = start.target[~driven] * ~start.repeated[~driven]
     m, work, curves = system.numbers, new_work(system), geometry.arrays
     places, closed = copied(contacts.places), contacts.closed.copy()
@@ -173,7 +168,7 @@ def solve_set(
         last = size
         if arrived and not changed and _stays(geometry, z, settling):
             settled = replace(contacts, places=places, closed=closed)
-            return Touched(replace(start, z=z), settled, factors, gaps, curvatures, iteration)
+            return Touched(replace(start, z=z, contacts=settled), gaps, curvatures, iteration)
     raise NotConvergedError(f"{iterations} iterations did not converge")
 
 

@@ -1,19 +1,17 @@
-"""Newton's method for an equilibrium with fixed rows, and a solved equilibrium.
+"""A solved equilibrium, and the end of Newton's method.
 
-The first iteration starts from the last state under new targets and so makes the prediction along the path's tangent.
-Later iterations converge quadratically; at the level of round-off the last correction stays small.
+The iterations converge quadratically; at the level of round-off the last correction stays small.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from cprbm.chain import row_values
-from cprbm.equilibrium.factors import Factors, SingularError, Springs, factorise
-from cprbm.equilibrium.linear import correction
+from cprbm.equilibrium.factors import Factors
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array
 
@@ -47,7 +45,7 @@ class Solved:
     factors: Factors
     gradient: Array
     iterations: int
-    contact_values: Array = field(default_factory=lambda: np.zeros(0))
+    contact_values: Array
 
     @property
     def lost(self) -> int:
@@ -57,8 +55,7 @@ class Solved:
     @cached_property
     def gaps(self) -> Array:
         """Gaps of all places of contact."""
-        geometry, contacts = self.system.geometry, self.state.contacts
-        return np.zeros(0) if geometry is None or contacts is None else contacts.gaps(geometry, self.state.z)
+        return self.state.contacts.gaps(self.system.geometry, self.state.z)
 
     def response(self, load: Array) -> Array:
         """Change (size,) of the unknowns under a ``load`` (size,), the closed places kept closed."""
@@ -68,39 +65,6 @@ class Solved:
     def values(self) -> Array:
         """f of all rows."""
         return np.asarray(row_values(self.state.z, self.system.rows))
-
-
-def newton(system: System, start: State, iterations: int, springs: Springs | None) -> Solved:
-    """Equilibrium near a state under the state's targets, without contacts.
-
-    Args:
-        system: the mechanism.
-        start: state with targets.
-        iterations: largest number of Newton iterations.
-        springs: springs on the links' angles, of a descent.
-
-    Raises:
-        NotConvergedError: no equilibrium was found.
-    """
-    z = start.z.copy()
-    forced = ~start.driven
-    z[system.rows.first :][forced] = start.target[forced] * ~start.repeated[forced]
-    state, last = replace(start, z=z), np.inf
-    try:
-        for iteration in range(1, iterations + 1):
-            factors, gradient = factorise(system, state, springs)
-            change = -factors.solve(gradient)
-            size, share = correction(change, system.motions, system.turns)
-            if not np.isfinite(size):
-                raise NotConvergedError("the correction is not finite")
-            change[system.rows.first :][forced] = 0.0
-            z += share * change
-            if has_converged(size, last):
-                return Solved(system, state, *factorise(system, state, springs), iteration)
-            last = size
-    except SingularError as singular:
-        raise NotConvergedError("the system is singular") from singular
-    raise NotConvergedError(f"{iterations} iterations did not converge")
 
 
 def has_converged(size: float, last: float) -> bool:

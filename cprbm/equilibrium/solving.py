@@ -1,4 +1,4 @@
-"""Equilibria with and without contacts, and repeated rows.
+"""Equilibria, and repeated rows.
 
 The active set decides about contacts (:mod:`cprbm.equilibrium.contact_points`).  A solved equilibrium has the factors
 and the gradient of the final state, the closed places included.
@@ -13,8 +13,7 @@ import numpy as np
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.contact_points import touched_equilibrium
 from cprbm.equilibrium.factors import SingularError, Springs, factorise
-from cprbm.equilibrium.linear import NO_COLUMNS
-from cprbm.equilibrium.newton import NotConvergedError, Solved, newton
+from cprbm.equilibrium.newton import NotConvergedError, Solved
 from cprbm.equilibrium.rank import repeated_rows
 from cprbm.equilibrium.system import State, System
 
@@ -53,10 +52,8 @@ def _near(system: System, start: State, iterations: int, springs: Springs | None
     Raises:
         NotConvergedError: no equilibrium was found.
     """
-    if system.geometry is None or start.contacts is None:
-        return newton(system, start, iterations, springs)
-    touched = touched_equilibrium(system, system.geometry, start, start.contacts, iterations, springs)
-    return at_state(system, replace(touched.state, contacts=touched.contacts), springs, touched.iterations)
+    touched = touched_equilibrium(system, start, iterations, springs)
+    return at_state(system, touched.state, springs, touched.iterations)
 
 
 def at_state(system: System, state: State, springs: Springs | None = None, iterations: int = 0) -> Solved:
@@ -65,9 +62,7 @@ def at_state(system: System, state: State, springs: Springs | None = None, itera
     Raises:
         NotConvergedError: the Hessian is singular.
     """
-    columns, pressing, contacts = NO_COLUMNS, np.zeros(system.size), state.contacts
-    if system.geometry is not None and contacts is not None:
-        columns, pressing = contact_terms(system.geometry, state.z, contacts.places, contacts.closed)
+    columns, pressing = contact_terms(system.geometry, state.z, state.contacts.places, state.contacts.closed)
     try:
         factors, gradient = factorise(system, state, springs, columns)
     except SingularError as singular:

@@ -36,7 +36,7 @@ class System:
         hidden: flexibility (rows, rows) of loads at places of beams without the chain's share.
         lean: shear compliance β of the links, for the odd moment of their elements.
         lengthening: whether links have an axial compliance.
-        geometry: curves and pairs of the contacts, None without contacts.
+        geometry: curves and pairs of the contacts.
     """
 
     mechanism: Mechanism
@@ -55,7 +55,7 @@ class System:
     hidden: Array
     lean: Array
     lengthening: bool
-    geometry: Geometry | None = None
+    geometry: Geometry
 
     @property
     def size(self) -> int:
@@ -95,14 +95,14 @@ class State:
     driven: Flags
     target: Array
     repeated: Flags
-    contacts: Contacts | None = None
+    contacts: Contacts
 
     def multipliers(self, system: System) -> Array:
         """μ of all rows."""
         return self.z[system.rows.first :]
 
 
-def system_of(mechanism: Mechanism, geometry: Geometry | None = None) -> System:
+def system_of(mechanism: Mechanism, geometry: Geometry) -> System:
     """Number a mechanism with all rows, those of the contacts included."""
     links, joints = link_arrays(mechanism)
     rows = row_arrays(mechanism)
@@ -151,8 +151,7 @@ def rest_state(system: System) -> State:
     rows = system.mechanism.rows
     z = np.concatenate([system.mechanism.rest, np.zeros(len(rows))])
     driven = np.array([row.driven for row in rows], dtype=bool)
-    contacts = None if system.geometry is None else open_contacts(system.geometry, z)
-    return State(z, driven, np.zeros(len(rows)), np.zeros(len(rows), dtype=bool), contacts)
+    return State(z, driven, np.zeros(len(rows)), np.zeros(len(rows), dtype=bool), open_contacts(system.geometry, z))
 
 
 def _beams(m: Mechanism) -> Beams:

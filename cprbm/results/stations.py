@@ -74,7 +74,7 @@ class Run:
         add_rows(mechanism)
         mechanism.rows.extend(landing_rows(mechanism))
         geometry = contact_geometry(mechanism)
-        if self.settings.formulation == "paper" and geometry is not None:
+        if self.settings.formulation == "paper" and geometry.pairs:
             refuse_contacts(self.scene)
             every, geometry = geometry, paper_geometry(mechanism, geometry, self.settings.degree)
             self.inspection = Inspection(mechanism, every)

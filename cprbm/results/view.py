@@ -212,8 +212,6 @@ class View:
 
     def _closed_places(self) -> Iterator[tuple[str, Pressed]]:
         geometry, contacts, z = self.solved.system.geometry, self.solved.state.contacts, self.z
-        if geometry is None or contacts is None:
-            return
         arrays, places, law = geometry.arrays, contacts.places, geometry.law
         by_law = None if law is None else law.measures(places)
         weights = np.empty((4, 2, STENCIL))
