@@ -56,7 +56,7 @@ from cprbm.contact.settling import (
     separations,
     settle,
     settle_near,
-    sweeps_any_circle,
+    sweeps_any_point,
 )
 
 __all__ = [
@@ -117,7 +117,7 @@ __all__ = [
     "settle",
     "settle_near",
     "sides_at_rest",
-    "sweeps_any_circle",
+    "sweeps_any_point",
     "taken",
     "touching_as_drawn",
 ]

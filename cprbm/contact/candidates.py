@@ -61,6 +61,22 @@ class Geometry:
         return Sites(self.possible, self.node, self.columns, self.ends, sharing)
 
     @cached_property
+    def points(self) -> Ints:
+        """Points that no beam sweeps over: circles, corners, and ends of other beams.
+
+        The rows (points, 4) are curve, beam, piece, and 1 for the piece's end.
+        """
+        first, last, found = self.arrays.first, self.arrays.last, list[tuple[int, ...]]()
+        for pair in self.pairs:
+            if self.ends.rigid[pair.second]:
+                circle = [pair.second] if self.arrays.is_point[pair.second] else []
+                found += [(k, pair.first, first[k], 0) for k in circle + [corner.curve for corner in pair.corners]]
+            elif not pair.itself:
+                for k, beam in ((pair.first, pair.second), (pair.second, pair.first)):
+                    found += [(k, beam, first[k], 0), (k, beam, last[k], 1)]
+        return np.array(found, dtype=np.int64).reshape(-1, 4)
+
+    @cached_property
     def has_corners(self) -> bool:
         """True if corners of rigid curves are places."""
         return bool(on_edge(self.arrays, self.possible).any())

@@ -50,7 +50,7 @@ class CriticalPoint:
         t, width: fraction of the way, and the width of its bracket.
         loss, what: how stability is lost, and of which stop or contact.
         last: the last minimum.
-        mode: smallest curvature there, and the mode in which stability is lost.
+        curvature: smallest curvature there.
         start: the state from which the energy falls: the last minimum, or the state after an opening.
         left: smallest curvature once a stop or contact holds no more; of a fold or a bifurcation the curvature itself.
     """
@@ -61,7 +61,7 @@ class CriticalPoint:
     what: str
     last: Solved
     start: Solved
-    mode: Mode
+    curvature: float
     left: float
 
     @property
@@ -80,9 +80,8 @@ class CriticalPoint:
 
 def opened(before: Solved, after: Solved, t: float, loss: Loss, what: str, width: float = 0.0) -> CriticalPoint:
     """Critical point at an opening stop or contact, with the states before and after."""
-    mode = softest(after)
-    kept = softest(before).curvature
-    return CriticalPoint(t, width, loss, what, before, after, Mode(kept, mode.change), mode.curvature)
+    kept, left = softest(before).curvature, softest(after).curvature
+    return CriticalPoint(t, width, loss, what, before, after, kept, left)
 
 
 def contact_ends(trail: list[Reached], beyond: float) -> CriticalPoint | None:
@@ -150,7 +149,7 @@ def critical_point(trail: list[Reached], beyond: float, change: Array) -> Critic
     if not zero - last.t <= NEAR * width:
         return None
     loss = Loss.FOLD if fold else Loss.BIFURCATION
-    return CriticalPoint(zero, width, loss, "", last.solved, last.solved, mode, mode.curvature)
+    return CriticalPoint(zero, width, loss, "", last.solved, last.solved, mode.curvature, mode.curvature)
 
 
 def _along(solved: Solved, mode: Mode, change: Array) -> float:

@@ -280,8 +280,8 @@ class Driver:
         if longer > 0.0:
             straight = f"beam '{beam}' is straight between its ends, and cannot become longer by bending"
             raise StepError(Ending.STEP_TOO_SMALL, straight)
-        mode = softest(solved)
-        return CriticalPoint(self.reached, 0.0, Loss.BIFURCATION, "", solved, solved, mode, mode.curvature)
+        kept = softest(solved).curvature
+        return CriticalPoint(self.reached, 0.0, Loss.BIFURCATION, "", solved, solved, kept, kept)
 
     def _leave(self, way: Way, point: CriticalPoint, beyond: Beyond) -> list[Reached]:
         """Go down from a critical point to a minimum, if the stage goes on; the trail from there on.
@@ -297,7 +297,7 @@ class Driver:
         for ahead in AHEAD:
             t = min(1.0, furthest + ahead * max(0.0, 1.0 - furthest))
             target = self._held(way.target(t))
-            descent = partial(descend, self.system, point.start, point.mode, target, self.acting)
+            descent = partial(descend, self.system, point.start, point.curvature, target, self.acting)
             landed = self._landed(descent, point, beside=beyond is None)
             if landed is not None:
                 self.passed.append(passed(landed))

@@ -29,7 +29,7 @@ from cprbm.contact import (
     on_edge,
     separations,
     settle_near,
-    sweeps_any_circle,
+    sweeps_any_point,
     taken,
 )
 from cprbm.equilibrium.columns import contact_terms
@@ -101,16 +101,14 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
 def passed_through(
     geometry: Geometry, before: Array, old: Places, after: Array, places: Callable[[], Places], counters: Ints
 ) -> bool:
-    """True if a beam went through itself or over a circle: the vector from a foot or a centre to a place turned round.
+    """True if a beam went through itself or over a circle, a corner or an end: the vector to a place turned round.
 
     ``places`` returns the places after the step.
-    The gaps of a beam to itself and to a circle have no sign: only the way between two states shows a passage.
+    The gaps of a beam to itself and to a point have no sign: only the way between two states shows a passage.
     """
-    if geometry.arrays.is_point.any() and sweeps_any_circle(before, after, geometry.arrays, geometry.columns, counters):
+    if len(geometry.points) and sweeps_any_point(before, after, geometry.arrays, geometry.points, counters):
         return True
-    # joints of lines slide past the end of a line at no distance; the end's own place has a side
-    thick = geometry.arrays.thickness[old.piece] + geometry.arrays.thickness[old.foot] > 0.0
-    unsigned = ((old.curve == old.other) | ((old.side == 0.0) & thick)) & ~old.moves
+    unsigned = (old.curve == old.other) & ~old.moves
     if not unsigned.any():
         return False
     new = places()

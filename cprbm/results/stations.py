@@ -169,7 +169,7 @@ class Run:
                 uncertainty=each.width,
                 loss=point.loss,
                 what=point.what,
-                curvature=point.mode.curvature,
+                curvature=point.curvature,
                 left=point.left,
                 energy=potential(system, point.last.state) * unit,
                 after=None if landed is None else potential(system, landed.state) * unit,
