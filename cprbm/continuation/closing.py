@@ -7,6 +7,7 @@ g        least gap of an open pair of curves
 F        sum of the contact forces of a closed pair
 =======  ====================================================================================
 
+The gap of a pair may be least between two joints; a moving place without a force finds the minimum.
 The first closing is located on states with the pair kept open, by values and slopes of g along the tangent:
 g = −CLOSED there, so that the active set closes the pair in the least gap.  An opening is the zero of F, continued by
 −g where the pair is open.
@@ -20,12 +21,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.contact import TOUCHING, taken, touching_as_drawn
+from cprbm.contact import TOUCHING, Contacts, Geometry, taken, touching_as_drawn
 from cprbm.continuation.limits import located, located_by_slopes
 from cprbm.continuation.path import tangent
-from cprbm.equilibrium.contact_gaps import least_gap
-from cprbm.equilibrium.newton import NotConvergedError, Solved
-from cprbm.equilibrium.solving import at_state
+from cprbm.equilibrium.contact_set import NotConvergedError, with_fixed_places
+from cprbm.equilibrium.neighbours import least_between
+from cprbm.equilibrium.solving import Solved, at_state
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
 
@@ -50,6 +51,18 @@ class ContactChange(NamedTuple):
     pairs: frozenset[int]
     closes: bool
     first: int
+
+
+def least_gap(geometry: Geometry, z: Array, contacts: Contacts, pair: int) -> float:
+    """Least gap of an open pair, between joints too; inf if the curves are far apart."""
+    full = with_fixed_places(geometry, z, replace(contacts, kept_open=frozenset()))
+    gaps = full.gaps(geometry, z)
+    mine = gaps[full.places.pair == pair]
+    least = float(mine.min(initial=np.inf))
+    if geometry.joints_alone:
+        return least
+    known = full.places, full.closed, gaps, pair, contacts.counters
+    return min(least, least_between(z, geometry.arrays, geometry.sites, *known))
 
 
 def pressing(solved: Solved) -> frozenset[int]:

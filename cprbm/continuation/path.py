@@ -19,7 +19,7 @@ import numpy as np
 
 from cprbm.chain import add_row_gradient, row_values, strain_energy
 from cprbm.contact import lost_at
-from cprbm.equilibrium.newton import Solved
+from cprbm.equilibrium.solving import Solved
 from cprbm.equilibrium.system import State, System, hidden_forces
 from cprbm_scene.answer import Array
 

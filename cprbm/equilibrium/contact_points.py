@@ -33,6 +33,7 @@ from cprbm.contact import (
     taken,
 )
 from cprbm.equilibrium.contact_set import (
+    NotConvergedError,
     Touched,
     arc_of,
     near_contacts,
@@ -43,7 +44,6 @@ from cprbm.equilibrium.contact_set import (
 from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.iteration import OVERLAP, beside_points
 from cprbm.equilibrium.neighbours import ISOLATED, as_point, given_up, short_runs
-from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
 

@@ -24,6 +24,7 @@ from cprbm.contact import (
     Places,
     contact_places,
     copied,
+    joined,
     matched,
     near_pairs,
     on_edge,
@@ -45,9 +46,17 @@ from cprbm.equilibrium.iteration import (
 )
 from cprbm.equilibrium.linear import Numbers, Work, reduced_system
 from cprbm.equilibrium.neighbours import ISOLATED
-from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
+
+CLOSE = 1e-9
+"""Correction of angles (rad) and positions (longest beam) whose square is below round-off."""
+
+ROUNDED = 1e-6
+"""Largest correction that round-off leaves on the finest meshes."""
+
+SHRINKING = 0.25
+"""Ratio of corrections above which an iteration below ``ROUNDED`` no longer converges: round-off is reached."""
 
 FREE_CHANGES = 12
 """Iterations in which all places with a wrong sign change."""
@@ -63,6 +72,14 @@ ARRIVED = 1e-6
 
 Linear = tuple[Array, Numbers, Flags, Array, Array, Array, Work]
 Settling = tuple[CurveArrays, Places, Flags, Array, Array, Array, Ints]
+
+
+class NotConvergedError(Exception):
+    """Newton's method found no equilibrium; ``locked`` names the contradicted row."""
+
+    def __init__(self, reason: str, locked: str = "") -> None:
+        super().__init__(reason)
+        self.locked = locked
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,8 +111,8 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     kept_open[list(contacts.kept_open)] = True
     apart = taken(old, np.zeros(0, dtype=np.int64)) if contacts.apart is None else contacts.apart
     sides = contacts.sides, contacts.corner_sides, kept_open, old, contacts.closed, apart
-    places, closed = contact_places(z, geometry.arrays, geometry.sites, *sides, contacts.counters)
-    return replace(contacts, places=places, closed=closed)
+    places, moving, closed = contact_places(z, geometry.arrays, geometry.sites, *sides, contacts.counters)
+    return replace(contacts, places=joined(places, taken(old, moving)), closed=closed)
 
 
 def passed_through(
@@ -168,6 +185,11 @@ def solve_set(system: System, start: State, iterations: int, springs: Springs | 
             settled = replace(contacts, places=places, closed=closed)
             return Touched(replace(start, z=z, contacts=settled), gaps, curvatures, iteration)
     raise NotConvergedError(f"{iterations} iterations did not converge")
+
+
+def has_converged(size: float, last: float) -> bool:
+    """Whether a correction of this size after the ``last`` is as small as it gets."""
+    return size < CLOSE or SHRINKING * last < size < ROUNDED
 
 
 def _stays(geometry: Geometry, z: Array, settling: Settling) -> bool:

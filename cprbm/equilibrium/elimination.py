@@ -26,7 +26,7 @@ rest is the number of independent directions with falling energy.
 
 from __future__ import annotations
 
-from math import cos, isfinite, sin
+from math import cos, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -214,19 +214,15 @@ def border_block(z: Array, rows: RowArrays, driven: Flags, border: Border, G: Ar
 def reached_chains(beams: Beams, border: Border, columns: Columns) -> Reached:  # pragma: no cover
     """Chains that the columns of rows and closed places reach, X zero."""
     count, entries = beams.first.size, columns.entry_index.size
-    entry_beam, entry_slot = np.full(entries, -1), np.full(entries, -1)
-    slot = np.full((count, columns.diagonal.size), -1)
-    beam = reach = 0
+    entry_beam, entry_slot = np.searchsorted(beams.first, columns.entry_index, "right") - 1, np.full(entries, -1)
+    slot, reach = np.full((count, columns.diagonal.size), -1), 0
     for t in range(entries):
-        i, c = columns.entry_index[t], columns.entry_column[t]
-        if i < border.first:
-            while i < beams.first[beam]:
-                beam -= 1
-            while beam + 1 < count and beams.first[beam + 1] <= i:
-                beam += 1
-            entry_beam[t] = beam
+        beam, c = entry_beam[t], columns.entry_column[t]
+        if columns.entry_index[t] < border.first:
             reach += slot[beam, c] < 0
             slot[beam, c] = 0
+        else:
+            entry_beam[t] = -1
     begin, offset = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
     column = np.empty(border.column.size + reach, np.int64)
     for beam in range(count):
@@ -293,17 +289,3 @@ def eliminate(
             local = columns.entry_index[t] - beams.first[beam]
             _subtract_product(reached, beam, reached.entry_slot[t], local, columns.entry_value[t], G)
     return negative, reached
-
-
-@compiled
-def negative_pivots(factored: Array, order: Ints) -> int:  # pragma: no cover
-    """Number of negative eigenvalues of LAPACK's factors after Bunch and Kaufman; −1 if a pivot is not finite."""
-    negative, doubles = 0, 0
-    for i in range(order.size):
-        if not isfinite(factored[i, i]):
-            return -1
-        if order[i] < 0:
-            doubles += 1
-        elif factored[i, i] < 0.0:
-            negative += 1
-    return negative + doubles // 2

@@ -13,7 +13,6 @@ from scipy.linalg.lapack import dsytrf, dsytrs
 
 from cprbm.chain import empty_blocks
 from cprbm.contact import Columns
-from cprbm.equilibrium.elimination import negative_pivots
 from cprbm.equilibrium.linear import NO_COLUMNS, Bordered, Work, linearise, reduced_load, restored
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
@@ -119,8 +118,9 @@ def factors_of(system: System, driven: Flags, work: Work, bordered: Bordered) ->
         SingularError: no number is left to divide by.
     """
     factored, order = factored_border(bordered.border)
-    of_border, columns = negative_pivots(factored, order), bordered.columns
-    if of_border < 0:
-        raise SingularError("the border has a pivot of zero")
+    pivots, blocks, columns = factored.diagonal(), order < 0, bordered.columns
+    if not np.isfinite(pivots).all():
+        raise SingularError("the border has a pivot without a limit")
+    of_border = int(np.count_nonzero(~blocks & (pivots < 0.0))) + int(np.count_nonzero(blocks)) // 2
     equalities = int(np.count_nonzero(driven)) + len(columns.values) + columns.negative
     return Factors(system, driven, work, bordered, factored, order, bordered.negative + of_border - equalities)

@@ -6,19 +6,56 @@ and the gradient of the final state, the closed places included.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from cprbm.chain import row_values
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.contact_points import touched_equilibrium
-from cprbm.equilibrium.factors import SingularError, Springs, factorise
-from cprbm.equilibrium.newton import NotConvergedError, Solved
+from cprbm.equilibrium.contact_set import NotConvergedError
+from cprbm.equilibrium.factors import Factors, SingularError, Springs, factorise
 from cprbm.equilibrium.rank import repeated_rows
 from cprbm.equilibrium.system import State, System
+from cprbm_scene.answer import Array
 
 REPEATED = 1e-9
 """Largest violation of a row that repeats others, in units of length or rad."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """An equilibrium, the Hessian's factors and the gradient there, and the number of Newton iterations.
+
+    The gradient belongs to the unknowns; ``contact_values`` are the values of the closed places' rows.
+    """
+
+    system: System
+    state: State
+    factors: Factors
+    gradient: Array
+    iterations: int
+    contact_values: Array
+
+    @property
+    def lost(self) -> int:
+        """Number of independent directions with falling energy."""
+        return self.factors.lost
+
+    @cached_property
+    def gaps(self) -> Array:
+        """Gaps of all places of contact."""
+        return self.state.contacts.gaps(self.system.geometry, self.state.z)
+
+    def response(self, load: Array) -> Array:
+        """Change (size,) of the unknowns under a ``load`` (size,), the closed places kept closed."""
+        return self.factors.solve(load)
+
+    @cached_property
+    def values(self) -> Array:
+        """f of all rows."""
+        return np.asarray(row_values(self.state.z, self.system.rows))
 
 
 def equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Solved:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm.equilibrium.newton import Solved
+from cprbm.equilibrium.solving import Solved
 from cprbm_scene.answer import Array
 
 ACCURACY = 1e-6

@@ -17,7 +17,6 @@ from cprbm.chain.mechanism import PER_LINK
 from cprbm.contact import Contacts, Geometry, open_contacts
 from cprbm.equilibrium.elimination import Beams, Border
 from cprbm.equilibrium.linear import Numbers
-from cprbm.equilibrium.measures import Arms
 from cprbm_scene.answer import Array, Flags, Ints
 
 
@@ -77,14 +76,14 @@ class System:
         return found
 
     @cached_property
-    def arms(self) -> Arms:
-        """Nodes, carried nodes and bodies, on which forces act."""
+    def arms(self) -> tuple[Ints, Array]:
+        """Points on which forces act: index of the displacement along x (points,), place as drawn (points, 2)."""
         m, nodes = self.mechanism, np.concatenate([self.nodes[:, 0], self.carried])
         index = np.concatenate([nodes, list(m.bodies.values())]).astype(np.int64)
         origin = np.zeros((len(index), 2))
         for k, name in enumerate(m.bodies):
             origin[len(nodes) + k] = m.reference(name)
-        return Arms(index, origin)
+        return index, origin
 
 
 @dataclass(frozen=True, eq=False)

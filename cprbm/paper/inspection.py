@@ -20,7 +20,7 @@ from cprbm.chain import Mechanism
 from cprbm.chain.rows import ends_of
 from cprbm.contact import Geometry, fixed_places, near_pairs, new_counters, settle, sides_at_rest
 from cprbm.equilibrium.columns import contact_terms
-from cprbm.equilibrium.newton import Solved
+from cprbm.equilibrium.solving import Solved
 from cprbm.paper.contacts import FittedLaw, beyond_ends
 from cprbm.paper.fit import Boundary, fitted
 from cprbm_scene.answer import Array

@@ -8,9 +8,8 @@ from dataclasses import dataclass, field, replace
 
 from cprbm.chain import add_rows, mechanism_of
 from cprbm.contact import contact_geometry
-from cprbm.continuation.assembly import assembled
+from cprbm.continuation.assembly import assembled, landing_rows
 from cprbm.continuation.driver import ContactEvent, Driver, Passed, StepError
-from cprbm.continuation.landing import landing_rows
 from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.system import System, system_of

@@ -24,8 +24,8 @@ import numpy as np
 from cprbm.chain import BeamChain, Mechanism, hidden_angles
 from cprbm.contact import STENCIL, gap_frame
 from cprbm.continuation.path import potential
-from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.sharing import shared_multipliers
+from cprbm.equilibrium.solving import Solved
 from cprbm.equilibrium.system import hidden_forces
 from cprbm_scene import Scene
 from cprbm_scene.answer import Array

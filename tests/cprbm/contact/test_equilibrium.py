@@ -13,8 +13,8 @@ from scipy.optimize import brentq
 from cprbm.contact import new_counters, open_contacts, settle, taken
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.contact_points import touched_equilibrium
+from cprbm.equilibrium.contact_set import NotConvergedError
 from cprbm.equilibrium.factors import factorise
-from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.solving import at_state
 from cprbm.equilibrium.system import rest_state, system_of
 from cprbm_scene import read
