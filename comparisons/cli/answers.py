@@ -27,9 +27,9 @@ def solve_scene(
         SceneError: the solver does not support the scene.
     """
     from comparisons.cli import output
-    from comparisons.pairing import exact_answer, solid_answer, solvers_of
+    from comparisons.pairing import Solvers, exact_answer, solid_answer, solvers_of
 
-    solvers = solvers_of(planted, exact=True)  # a named solver has no rule on its size
+    solvers = solvers_of(planted or Solvers(exact=exact_answer))  # a named solver has no rule on its size
     if tol is not None and solver != "exact":
         from comparisons.tolerances.search import solve_within
 
