@@ -71,7 +71,7 @@ def annotations(record):
 
 
 def silent_on(record):
-    """Numbers of a record without a name in the docstring and without a docstring of the field; arrays without shapes."""
+    """Numbers of a record without a name in its docstring or a docstring of the field; arrays without shapes."""
     text = inspect.getdoc(record) or ""
     text += " ".join(name for name, field in getattr(record, "model_fields", {}).items() if field.description)
     numbers = [name for name, annotation in annotations(record).items() if NUMERIC.search(annotation)]
