@@ -54,12 +54,12 @@ def test_points_and_edges_move_with_their_bodies(linkage, station):
     for name, place in linkage.bodies["rocker"].points.items():
         x, y = np.array(place) - first
         assert view.points[name] == pytest.approx((first[0] + 0.01 + y, first[1] - x))
-    edge = next(each for each in view.obstacles if each.name == "edge")
-    for place, drawn in zip(edge.outline, EDGE["points"], strict=True):
+    edge = next(each for each in view.of("edge") if each.name == "edge")
+    for place, drawn in zip(edge.points, EDGE["points"], strict=True):
         x, y = np.array(drawn) - first
         assert place == pytest.approx((first[0] + 0.01 + y, first[1] - x))
-    plane = next(each for each in view.obstacles if each.name == "plane")
-    assert plane.outline[:, 0] == pytest.approx([0.3, 0.3])
+    plane = next(each for each in view.of("edge") if each.name == "plane")
+    assert plane.points[:, 0] == pytest.approx([0.3, 0.3])
 
 
 def test_ends_of_beams_say_where_points_of_bodies_without_a_motion_are(linkage, station):
@@ -140,8 +140,8 @@ def test_a_mechanism_that_draws_itself_together_is_shown_as_large_as_it_is(hinge
     """A window of the beams alone where the mechanism at rest is more than twice as large."""
     answer = right.cprbm(hinge, Choices())
     view = view_of(hinge, answer.stations[-1])
-    low, high = figures._extent(hinge, [view])
+    low, high = figures.extent(hinge, [view])
     assert np.max(high - low) > 0.05
     small = {name: replace(strip, line=0.02 * strip.line) for name, strip in view.strips.items()}
-    low, high = figures._extent(hinge, [replace(view, strips=small)])
+    low, high = figures.extent(hinge, [view._replace(strips=small)])
     assert np.max(high - low) < 0.003

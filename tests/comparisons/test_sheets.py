@@ -12,7 +12,7 @@ from comparisons.contact_model import contact_model
 from comparisons.pairing import Solvers, paired
 from comparisons.present.answer_tables import answer_tables
 from comparisons.present.case_tables import case_sections
-from comparisons.present.difference_tables import paper_table
+from comparisons.present.row_tables import paper_table
 from comparisons.present.table import screen_text
 from cprbm_scene import Ending
 from tests.tables import tables_of

@@ -10,7 +10,7 @@ import comparisons
 import cprbm
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.present.contact_forces import contact_csv
+from comparisons.present.csv_table import contact_csv
 
 
 def test_contact_forces_sum_up_to_the_resultant_of_the_probe(wrapped):

@@ -117,14 +117,14 @@ def test_contact_forces_sum_to_the_probe(hinge):
     scene, answer = hinge
     view = views_of(scene, answer)[-1]
     (stated,) = answer.stations[-1].values["contact.force"]
-    assert [push.on for push in view.pushes] == ["beam1", "beam2"]
-    for push in view.pushes:
+    assert [push.on for push in view.arrows_of("push")] == ["beam1", "beam2"]
+    for push in view.arrows_of("push"):
         assert math.hypot(*push.resultant) == pytest.approx(stated, rel=1e-9)
     both = force_block(view).values["contact_force"]
     assert np.abs(both.sum(axis=0)).max() < 1e-9 * stated
     assert force_block(views_of(scene, answer)[0]) is None  # nothing touches yet
     # both press at the edges, which are in one place
-    first, second = (push.middle for push in view.pushes)
+    first, second = (push.middle for push in view.arrows_of("push"))
     assert math.dist(first, second) < 0.01 * scene.beams["beam1"].thickness
 
 
@@ -220,7 +220,7 @@ def test_where_nothing_draws_the_line_that_helps_is_told(tmp_path, monkeypatch, 
     def cannot(*_):
         raise space.DrawingError("VTK ended as it began to draw")
 
-    monkeypatch.setattr(space, "pictures", cannot)
+    monkeypatch.setattr(space, "apart", cannot)
     assert run(["view", "tapered", "-n", "10", "--out", str(tmp_path / "t.3d.png")]) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1
@@ -265,7 +265,7 @@ BELOW = [
 
 @pytest.mark.parametrize("contact", BELOW, ids=lambda contact: f"{contact.kind}")
 def test_what_is_rigid_lies_behind_its_edge(contact):
-    outline, solid, goes_round = picture._outline(contact, 3.0, 0.11)
+    outline, solid, goes_round = picture.outline_of(contact, 3.0, 0.11)
     assert not goes_round
     assert outline[:, 1] == pytest.approx(0.0, abs=1e-15)
     assert solid[:, 1] == pytest.approx(-0.11, rel=1e-12)
@@ -275,7 +275,7 @@ def test_a_function_of_y_is_rigid_on_its_own_side():
     contact = FunctionContact(
         kind="beam-function", axis="y", coefficients=(0.3, 0.0), range=(0.0, 0.9), side="above", **RIGID
     )  # fmt: skip
-    outline, solid, _ = picture._outline(contact, 3.0, 0.11)
+    outline, solid, _ = picture.outline_of(contact, 3.0, 0.11)
     assert outline[:, 0] == pytest.approx(0.3)
     assert solid[:, 0] == pytest.approx(0.19)  # the beam lies where x is larger
 
@@ -288,7 +288,7 @@ def test_a_body_carries_its_points_and_edges():
     place = picture.carried(scene, station, "BD", np.array([[x + 0.7, y]]))[0]
     assert place == pytest.approx([x + 0.02, y - 0.07 + 0.7])
     contact = CircleContact(kind="beam-circle", center=(0.5, 0.4), radius=0.13, **RIGID)
-    outline, solid, goes_round = picture._outline(contact, 1.0, 0.1)
+    outline, solid, goes_round = picture.outline_of(contact, 1.0, 0.1)
     assert goes_round
     assert np.hypot(*(outline - solid).T) == pytest.approx(0.13)
 
