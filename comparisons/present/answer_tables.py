@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby
 
 from comparisons.case import Comparison
 from comparisons.display_units import display_units, distance_text, load_column, load_text, with_unit
@@ -99,25 +100,28 @@ def critical_table(compared: Comparison) -> Table:
 
 def branch_table(compared: Comparison) -> Table:
     """Words by branch; without rows where no branch ends."""
-    scene, between = compared.scene, dict[str, dict[str, None]]()
-    for row in compared.rows:
-        if row.branch is None:
-            between.setdefault(row.stage, {})[load_text(scene, *row.where)] = None
+    scene = compared.scene
+
+    def span(stage: str, first: float, last: float) -> str:
+        return " to ".join(load_text(scene, stage, value) for value in dict.fromkeys((first, last)))
+
     branches = compared.verdict.branches if compared.criticals or len(compared.verdict.branches) > 1 else ()
     rows = [
         (
             f"{each.stage}, branch {each.number}",
-            " to ".join(load_text(scene, each.stage, value) for value in (each.first, each.last)),
+            span(each.stage, each.first, each.last),
             str(each.stations - each.near),
             str(each.near),
             "takes no part" if each.word is None else each.word.value,
         )
         for each in branches
     ]
-    rows += [
-        (f"{stage}, {Place.BETWEEN.value}", ", ".join(loads), str(len(loads)), "–", "takes no part")
-        for stage, loads in between.items()
-    ]
+    stations = dict.fromkeys((row.stage, row.branch is None, row.station) for row in compared.rows)
+    for (stage, between), found in groupby(stations, key=lambda at: at[:2]):
+        loads = [load for *_, load in found]
+        if between:
+            name = f"{stage}, {Place.BETWEEN.value}"
+            rows.append((name, span(stage, loads[0], loads[-1]), str(len(loads)), "–", "takes no part"))
     return Table(
         "Branch by branch",
         ("branch", "stations", "compared", "between events", "word"),

@@ -13,7 +13,7 @@ from comparisons.display_units import at_station
 from comparisons.formats import component_names, components, number, percent
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.present import offset
-from comparisons.present.columns import NOTHING, Column, Table, table_of
+from comparisons.present.columns import NOTHING, Column, Table, follow, table_of
 from comparisons.present.row_tables import Judged, judged_rows, row_units, share
 from comparisons.present.table import brief_lines
 from comparisons.sentences import pressure, theory_sentence
@@ -94,7 +94,7 @@ def summary(finished: Sequence[Comparison | OffsetComparison]) -> Table:
     columns = [
         Column[Comparison | OffsetComparison]("case", name_of),
         Column("word", "verdict.word.value"),
-        Column("reason", "verdict.reason.value"),
+        Column("reason", lambda compared: follow(compared, "verdict.reason.value") or ""),
         Column("rows agreeing", _agreeing),
         Column("largest difference over stated", lambda compared: max(_pressures(compared), default=None),
                lambda value: number(value, 2)),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import cycle
+from itertools import cycle, groupby
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ from comparisons.present.case_tables import by_drive
 from comparisons.present.columns import Figure
 from comparisons.present.csv_table import pressing
 from comparisons.present.row_tables import Judged
-from comparisons.quantities import UNITS, load_unit, norm
+from comparisons.quantities import UNITS, load_unit
 from comparisons.reactions import ENERGY, MESH_ALLOWANCE, multiplier, reaction_probe
 from comparisons.stages import begins_at
 from comparisons.stations import station_of
@@ -29,10 +29,14 @@ from cprbm_scene.statement import DisplacementDrive, Force, Probe, Quantity, Rot
 Look = Mapping[str, Any]
 """Matplotlib's keywords of a line."""
 
+Line = tuple[Array, Array, Look]
+"""Abscissae (k,), ordinates (k,) and look."""
+
 FEA: Look = {"color": RED, "linewidth": 1.8, "label": "FEA"}
 CPRBM: Look = {"color": BLUE, "linestyle": "none", "marker": ".", "markersize": 5.0, "label": "CPRBM"}
 _BAND = "#eef2f7"
 _WIDTH, _HEIGHT = 5.2, 2.5  # inches: a figure, and a panel
+_MARKERS = 30  # most markers of a branch
 
 
 class Panel(NamedTuple):
@@ -40,13 +44,13 @@ class Panel(NamedTuple):
 
     Attributes:
         label: of the ordinate.
-        lines: abscissae, ordinates and look of every line.
+        lines: all lines.
         title: of the axes.
         band: half of the height of a tinted band round zero; 0 without a band.
     """
 
     label: str
-    lines: Sequence[tuple[Sequence[float] | Array, Sequence[float] | Array, Look]]
+    lines: Sequence[Line]
     title: str = ""
     band: float = 0.0
 
@@ -56,18 +60,25 @@ Values = Callable[[StationAnswer], Array]
 
 
 def panels_figure(
-    name: str, caption: str, abscissa: str, panels: Sequence[Panel], marks: Sequence[tuple[float, str, str]] = ()
+    name: str,
+    caption: str,
+    abscissa: str,
+    panels: Sequence[Panel],
+    marks: Sequence[tuple[float, str, str]] = (),
+    *,
+    shared: bool = True,
 ) -> Figure:
     """Figure of panels above each other.
 
     Args:
         name, caption: of the figure.
-        abscissa: label of the common axis.
+        abscissa: label of the abscissa.
         panels: from above to below.
         marks: abscissa, colour and text of dotted lines across all panels.
+        shared: whether all panels have the same range of abscissae.
     """
     with canvas(_WIDTH, 0.8 + _HEIGHT * len(panels)) as drawing:
-        plots = drawing.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+        plots = drawing.subplots(len(panels), 1, sharex=shared, squeeze=False)[:, 0]
         for axes, panel in zip(plots, panels, strict=True):
             axes.axhspan(-panel.band, panel.band, color=_BAND, linewidth=0.0, zorder=0)
             axes.axhline(0.0, color=GREY, linewidth=0.5)
@@ -163,7 +174,7 @@ def _curve(
 
 def _paths(
     scene: Scene, stages: Sequence[Stage], answer: Answer, of: Values, scales: tuple[float, float], look: Look
-) -> Iterator[tuple[Array, Array, Look]]:
+) -> Iterator[Line]:
     """A line for every branch of every stage, and a dashed line for every jump; only the first has a label."""
     before: StationAnswer | None = None
     for stage in stages:
@@ -175,8 +186,9 @@ def _paths(
                 jump = {**look, "linestyle": "--", "marker": "", "linewidth": 1.0, "label": None}
                 yield *_points([before, mine[0]], of, scales), jump
             marker = {"marker": look["marker"] or (">" if up else "<")} if "marker" in look else {}
+            few = {"markevery": -(-len(mine) // _MARKERS)}  # more markers would hide the line
             filled = {"markerfacecolor": look["color"] if up else "white", "markersize": 4.0, "markeredgewidth": 0.7}
-            yield *_points(mine, of, scales), {**look, **filled, **marker}
+            yield *_points(mine, of, scales), {**look, **filled, **few, **marker}
             look, before = {**look, "label": None}, mine[-1]
 
 
@@ -200,7 +212,7 @@ def reaction_figures(compared: Comparison) -> Iterator[Figure]:
             "from_fea": {**FEA, "linestyle": "none", "marker": "x"},
             "difference": {**CPRBM, "label": "work–energy"},
         }
-        lines: dict[str, list[tuple[Array, Array, Look]]] = {name: [] for name in looks}
+        lines: dict[str, list[Line]] = {name: [] for name in looks}
         for branch in dict.fromkeys((each.stage, each.branch) for each in found):
             mine = [each for each in found if (each.stage, each.branch) == branch]
             for name, look in looks.items():
@@ -222,26 +234,37 @@ def reaction_figures(compared: Comparison) -> Iterator[Figure]:
         yield panels_figure(f"reaction-{drive}", caption, f"{drive}, {step_unit}", panels)
 
 
+def _along_beams(
+    scene: Scene, name: str, caption: str, quantity: tuple[str, str], lines: Mapping[str, Sequence[Line]]
+) -> Figure:
+    """Figure of a quantity along beams.
+
+    Args:
+        scene, name, caption: of the figure.
+        quantity: title and SI unit.
+        lines: arc lengths, m, values, SI, and looks, by title of the panel.
+    """
+    title, si = quantity
+    factor, unit_name = display_unit(scene, si, max(np.abs(y).max() for panel in lines.values() for _, y, _ in panel))
+    metre, length_unit = display_unit(scene, "m", longest(scene))
+    panels = [
+        Panel(f"{title}, {unit_name}", [(s / metre, y / factor, look) for s, y, look in panel], beam)
+        for beam, panel in lines.items()
+    ]
+    return panels_figure(name, caption, f"initial arc length, {length_unit}", panels, shared=False)
+
+
 def stress_figures(scene: Scene, station: Sequence[Judged]) -> Iterator[Figure]:
     """Bending stress along the beams at a station, in the manner of the paper's Fig. 10."""
     rows = [judged.row for judged in station if judged.row.probe.quantity == "bending_stress"]
+    lines = {row.probe.of: [(np.asarray(row.arc_length), y, look) for y, look in ((row.fea, FEA), (row.cprbm, CPRBM))]
+             for row in rows}  # fmt: skip
     if rows:
-        factor, unit_name = display_unit(scene, "Pa", max(norm("bending_stress", row.fea) for row in rows))
-        metre, length_unit = display_unit(scene, "m", longest(scene))
-        panels = [
-            Panel(
-                f"bending stress, {unit_name}",
-                [(np.asarray(row.arc_length) / metre, values / factor, look)
-                 for values, look in ((row.fea, FEA), (row.cprbm, CPRBM))],
-                row.probe.of,
-            )
-            for row in rows
-        ]  # fmt: skip
         caption = (
             f"Bending stress along the beams at {at_station(scene, *rows[0].where)}, positive where the load turns "
             "the tangent counter-clockwise along the beam."
         )
-        yield panels_figure("stress", caption, f"initial arc length, {length_unit}", panels)
+        yield _along_beams(scene, "stress", caption, ("bending stress", "Pa"), lines)
 
 
 def contact_figures(compared: Comparison) -> Iterator[Figure]:
@@ -250,29 +273,17 @@ def contact_figures(compared: Comparison) -> Iterator[Figure]:
     A solver states forces at places: a zone is a row of point forces.  The CPRBM has a force per link in contact, the
     finite elements a force per quadrature point.  Sums along the beam compare, single forces do not.
     """
-    scene, looks = compared.scene, (FEA, {**CPRBM, "linestyle": ":", "marker": "o", "markerfacecolor": "none"})
-    last = compared.rows[-1].where
-    forces = [
-        [*pressing(scene, station_of(answer, *last))] for answer in (compared.runs.reference, compared.runs.cprbm[0])
-    ]
-    beams = sorted({(each.source, each.target) for mine in forces for each in mine})
-    if beams:
-        factor, unit_name = display_unit(scene, "N", max(np.hypot(*each.force) for mine in forces for each in mine))
-        metre, length_unit = display_unit(scene, "m", longest(scene))
-        panels = []
-        for pair in beams:
-            lines = []
-            for found, look in zip(forces, looks, strict=True):
-                mine = sorted(
-                    (float(at.s), float(np.hypot(*at.force))) for at in found if (at.source, at.target) == pair
-                )
-                if mine:
-                    s, sizes = np.array(mine).T
-                    sums = np.cumsum([0.0, *sizes]) / factor
-                    lines.append((np.append(s[:1], s) / metre, sums, {**look, "drawstyle": "steps-post"}))
-            panels.append(Panel(f"sum of forces, {unit_name}", lines, "{} on {}".format(*pair)))
+    scene, last, lines = compared.scene, compared.rows[-1].where, dict[str, list[Line]]()
+    dotted = {**CPRBM, "linestyle": ":", "marker": "o"}
+    for answer, look in ((compared.runs.reference, FEA), (compared.runs.cprbm[0], dotted)):
+        forces = sorted(pressing(scene, station_of(answer, *last)), key=lambda at: (at.source, at.target, float(at.s)))
+        for pair, found in groupby(forces, key=lambda at: f"{at.source} on {at.target}"):
+            s, sizes = np.array([(float(at.s), np.hypot(*at.force)) for at in found]).T
+            step = {**look, "drawstyle": "steps-post", "markerfacecolor": "none"}
+            lines.setdefault(pair, []).append((np.append(s[:1], s), np.cumsum([0.0, *sizes]), step))
+    if lines:
         caption = (
             f"Contact forces along the beams at {at_station(scene, *last)}, summed up from the start of the beam. A "
             "step is a force at a point, a slope is a zone; where the sum is constant, nothing presses."
         )
-        yield panels_figure("contact-forces", caption, f"initial arc length, {length_unit}", panels)
+        yield _along_beams(scene, "contact-forces", caption, ("sum of forces", "N"), dict(sorted(lines.items())))
