@@ -16,8 +16,7 @@ from comparisons.present.canvas import BLUE, GREY, LINES, RED, canvas, finished
 from comparisons.present.case_tables import by_drive
 from comparisons.present.columns import Figure
 from comparisons.present.csv_table import pressing
-from comparisons.present.row_tables import Judged
-from comparisons.quantities import UNITS, load_unit
+from comparisons.quantities import UNITS, arc_lengths, load_unit
 from comparisons.reactions import ENERGY, MESH_ALLOWANCE, multiplier, reaction_probe
 from comparisons.stages import begins_at
 from comparisons.stations import station_of
@@ -254,15 +253,19 @@ def _along_beams(
     return panels_figure(name, caption, f"initial arc length, {length_unit}", panels, shared=False)
 
 
-def stress_figures(scene: Scene, station: Sequence[Judged]) -> Iterator[Figure]:
-    """Bending stress along the beams at a station, in the manner of the paper's Fig. 10."""
-    rows = [judged.row for judged in station if judged.row.probe.quantity == "bending_stress"]
-    lines = {row.probe.of: [(np.asarray(row.arc_length), y, look) for y, look in ((row.fea, FEA), (row.cprbm, CPRBM))]
-             for row in rows}  # fmt: skip
-    if rows:
+def stress_figures(scene: Scene, fea: StationAnswer, cprbm: StationAnswer) -> Iterator[Figure]:
+    """Bending stress along the beams at a station of both answers, in the manner of the paper's Fig. 10."""
+    lines = {
+        probe.of: [
+            (arc_lengths(scene, probe), at.values[probe.name], look) for at, look in ((fea, FEA), (cprbm, CPRBM))
+        ]
+        for probe in scene.probes_in(fea.stage)
+        if probe.quantity == "bending_stress" and fea.values[probe.name].size == cprbm.values[probe.name].size > 0
+    }
+    if lines:
         caption = (
-            f"Bending stress along the beams at {at_station(scene, *rows[0].where)}, positive where the load turns "
-            "the tangent counter-clockwise along the beam."
+            f"Bending stress along the beams at {at_station(scene, fea.stage, fea.value)}, positive where the load "
+            "turns the tangent counter-clockwise along the beam."
         )
         yield _along_beams(scene, "stress", caption, ("bending stress", "Pa"), lines)
 

@@ -66,7 +66,7 @@ def comparison_figures(compared: Comparison) -> tuple[Figure, ...]:
         *(shapes(scene, answers, where) for where in ([names[-1:], names] if len(names) > 1 else [names])),
         *curve_figures(scene, runs.reference, runs.cprbm[0]),
         *reaction_figures(compared),
-        *stress_figures(scene, stations[-1]),
+        *stress_figures(scene, *(station_of(answer, *names[-1]) for answer in answers.values())),
         *contact_figures(compared),
     )
 

@@ -26,7 +26,7 @@ from comparisons.present.columns import Figure, Section, Table
 from comparisons.present.csv_table import contact_csv
 from comparisons.present.figures import comparison_figures
 from comparisons.present.stepper import HEADERS, SHADES, Stepper, stepper
-from comparisons.present.table import STYLES, html_cells, word_columns
+from comparisons.present.table import STYLES, html_cells
 from comparisons.writing import write
 from cprbm_scene import Question
 
@@ -197,7 +197,6 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
     )
     environment.filters |= {
         "cells": html_cells,
-        "words": word_columns,
         "embedded": _embedded,
         # a name may break behind points and underscores; the type of an escaped text marks the escape
         "breaking": lambda name: type(name)(re.sub(r"(?<=\w[._])(?=[^\W\d])", "<wbr>", name)),

@@ -131,22 +131,13 @@ def html_cells(table: Table) -> list[list[Cell]]:
     return [list(row) for row in zip(*columns, strict=True)]
 
 
-def word_columns(table: Table) -> list[bool]:
-    """Whether a column has words, by column: no text begins with a number, or a text is a sentence."""
-    return [_has_words([row[place] for row in table.rows]) for place in range(len(table.headers))]
-
-
 def with_minus(text: str) -> str:
     """Text with true minus signs, as wide as a plus."""
     return re.sub(r"(?<![\w.])-(?=\d)", "−", text)
 
 
-def _has_words(texts: list[str]) -> bool:
-    return not any(map(_NUMERIC.match, texts)) or max(map(len, texts)) > _SENTENCE
-
-
 def _aligned(texts: list[str]) -> list[Cell]:
-    if _has_words(texts):
+    if not any(map(_NUMERIC.match, texts)) or max(map(len, texts)) > _SENTENCE:
         return [Cell(text, words=True) for text in texts]
     found = [(text, match[1], match[2]) if (match := _NUMBER.fullmatch(text)) else (text, "", "") for text in texts]
     whole = not all(before or text in _OTHERS for text, before, _ in found)

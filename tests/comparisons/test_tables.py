@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.present.columns import Column, Table, columns_of, table_of
-from comparisons.present.table import html_cells, screen_text, word_columns
+from comparisons.present.table import html_cells, screen_text
 
 COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 TABLE = Table(
@@ -112,7 +112,7 @@ def test_numbers_on_a_page_align_at_their_points_and_words_stay_whole():
     rows = html_cells(table)
     assert [row[1][:3] for row in rows] == [("0", ".72 %", 8), ("0", ".0017 %", 8), ("–", "", 0), ("7", ".9e-13 %", 8)]
     assert [row[4][:3] for row in rows] == [("−40", "", 3), ("7", "", 3), ("open", "", 0), ("1", ".25", 3)]
-    assert word_columns(table) == [True, False, False, True, False]
+    assert [cell.words for cell in rows[0]] == [True, False, False, True, False]
     assert [row[2].before for row in rows] == ["(−1.2, 3)", "−4.5", "max 5", "open"]
     assert [row[3].text for row in rows] == ["met", "not met", "–", "met"]
     assert all(row[2].room == row[3].room == 0 for row in rows)
