@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import cycle, groupby
+from itertools import cycle, groupby, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ from comparisons.present.case_tables import by_drive
 from comparisons.present.columns import Figure
 from comparisons.present.csv_table import pressing
 from comparisons.quantities import UNITS, arc_lengths, load_unit
-from comparisons.reactions import ENERGY, MESH_ALLOWANCE, multiplier, reaction_probe
+from comparisons.reactions import ENERGY, MESH_ALLOWANCE, WorkEnergyReaction, multiplier, reaction_probe
 from comparisons.stages import begins_at
 from comparisons.stations import station_of
 from cprbm_scene import Answer, Scene, Stage, StationAnswer
@@ -204,26 +204,20 @@ def reaction_figures(compared: Comparison) -> Iterator[Figure]:
         factor, unit_name = display_unit(scene, found[0].unit, max(abs(each.multiplier) for each in found))
         si = load_unit(scene, next(stage for stage in scene.stages if stage.name == found[0].stage))
         step, step_unit = axis_unit(scene, si, max(abs(each.station) for each in found))
-        looks: dict[str, Look] = {
-            "fea": {**FEA, "linestyle": "none", "marker": "x"},
-            "multiplier": {**CPRBM, "linestyle": "-", "marker": "", "label": "CPRBM, multiplier"},
-            "work_energy": {**CPRBM, "marker": "o", "markerfacecolor": "none", "label": "CPRBM, work–energy"},
-            "from_fea": {**FEA, "linestyle": "none", "marker": "x"},
-            "difference": {**CPRBM, "label": "work–energy"},
-        }
-        lines: dict[str, list[Line]] = {name: [] for name in looks}
-        for branch in dict.fromkeys((each.stage, each.branch) for each in found):
-            mine = [each for each in found if (each.stage, each.branch) == branch]
-            for name, look in looks.items():
-                scale = {"from_fea": -100.0, "difference": 100.0}.get(name, 1.0 / factor)
-                y = scale * np.array([getattr(each, name) for each in mine], dtype=float)
-                label = {"label": None} if lines[name] else {}
-                lines[name].append((np.array([each.station for each in mine]) / step, y, {**look, **label}))
+        crosses = {**FEA, "linestyle": "none", "marker": "x"}
+        rings = {**CPRBM, "marker": "o", "markerfacecolor": "none", "label": "CPRBM, work–energy"}
+        solid = {**CPRBM, "linestyle": "-", "marker": "", "label": "CPRBM, multiplier"}
+        forces = {"fea": crosses, "multiplier": solid, "work_energy": rings}
         band = 100.0 * MESH_ALLOWANCE
         title = "moment" if si == "rad" else "force"
         panels = [
-            Panel(f"reaction {title}, {unit_name}", [*lines["fea"], *lines["multiplier"], *lines["work_energy"]]),
-            Panel("relative difference, %", [*lines["from_fea"], *lines["difference"]], band=band),
+            Panel(f"reaction {title}, {unit_name}", _reaction_lines(found, step, factor, forces)),
+            Panel(
+                "relative difference, %",
+                _reaction_lines(found, step, -0.01, {"from_fea": crosses})
+                + _reaction_lines(found, step, 0.01, {"difference": {**CPRBM, "label": "work–energy"}}),
+                band=band,
+            ),
         ]
         caption = (
             f"Reaction at the drive {drive}. Below: relative differences from the CPRBM's multiplier. The band of "
@@ -231,6 +225,17 @@ def reaction_figures(compared: Comparison) -> Iterator[Figure]:
             "Stations beside an event have no work–energy reaction."
         )
         yield panels_figure(f"reaction-{drive}", caption, f"{drive}, {step_unit}", panels)
+
+
+def _reaction_lines(
+    found: Sequence[WorkEnergyReaction], step: float, factor: float, looks: Mapping[str, Look]
+) -> list[Line]:
+    """Lines of numbers of reactions by name, over the units of the axes, with gaps between branches."""
+    pairs = enumerate(pairwise(found), 1)
+    gaps = [place for place, (one, other) in pairs if (one.stage, one.branch) != (other.stage, other.branch)]
+    x = np.insert(np.array([at.station for at in found]) / step, gaps, np.nan)
+    values = {name: np.array([getattr(at, name) for at in found], dtype=float) / factor for name in looks}
+    return [(x, np.insert(values[name], gaps, np.nan), look) for name, look in looks.items()]
 
 
 def _along_beams(

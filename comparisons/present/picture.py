@@ -14,7 +14,6 @@ from cprbm_scene import Answer, FreeEnd, PinnedEnd, Scene, StationAnswer
 from cprbm_scene.answer import Array
 from cprbm_scene.freedoms import unit
 from cprbm_scene.statement import (
-    BeamForce,
     BeamMoment,
     CircleContact,
     DisplacementDrive,
@@ -23,6 +22,7 @@ from cprbm_scene.statement import (
     FixedBody,
     Force,
     LineContact,
+    Load,
     Moment,
     RigidContact,
     SelfContact,
@@ -296,25 +296,22 @@ def _loads(scene: Scene, station: StationAnswer, strips: Mapping[str, Strip]) ->
     before = scene.stages[: [stage.name for stage in scene.stages].index(station.stage)]
     values = {stage.steps: stage.stations[-1] for stage in before} | {scene.stages[len(before)].steps: station.value}
     for name, load in scene.loads.items():
-        value, on, zero = values.get(name, 0.0), getattr(load, "beam", ""), np.zeros((1, 2))
-        if value == 0.0:
-            continue
-        match load:
-            case Moment():
-                corners = np.array([*scene.bodies[load.body].points.values()])
-                middle = carried(scene, station, load.body, corners).mean(axis=0)
-                yield Arrow("load", name, load.body, middle[None], zero, value)
-            case BeamMoment():
-                yield Arrow("load", name, on, strips[on].places(np.array([load.at])), zero, value)
-            case Force():
-                on = scene.body_of(load.point)
-                place = carried(scene, station, on, np.array([scene.place_of(load.point)]))
-                yield Arrow("load", name, on, place, value * np.array([unit(load.direction)]))
-            case BeamForce():
-                place = strips[on].places(np.array([load.at]))
-                yield Arrow("load", name, on, place, value * np.array([unit(load.direction)]))
-            case DistributedLoad():
-                start, end = load.along
-                share = value * (end - start) * float(strips[on].s[-1]) / _LOADED * np.array([unit(load.direction)])
-                places = strips[on].places(np.linspace(start, end, _LOADED))
-                yield from (Arrow("load", name, on, place[None], share) for place in places)
+        value, (on, places) = values.get(name, 0.0), _loaded(scene, station, load, strips)
+        way = None if isinstance(load, Moment | BeamMoment) else np.array(unit(load.direction))
+        force = np.zeros(2) if way is None else value * way
+        if isinstance(load, DistributedLoad):
+            force *= (load.along[1] - load.along[0]) * float(strips[on].s[-1]) / len(places)
+        if value != 0.0:
+            yield from (Arrow("load", name, on, at[None], force[None], value if way is None else 0.0) for at in places)
+
+
+def _loaded(scene: Scene, station: StationAnswer, load: Load, strips: Mapping[str, Strip]) -> tuple[str, Array]:
+    """Body or beam, and places (k, 2), m, of a load: of a moment on a body the middle of the points."""
+    if isinstance(load, Moment):
+        corners = np.array([*scene.bodies[load.body].points.values()])
+        return load.body, carried(scene, station, load.body, corners).mean(axis=0)[None]
+    if isinstance(load, Force):
+        on = scene.body_of(load.point)
+        return on, carried(scene, station, on, np.array([scene.place_of(load.point)]))
+    u = np.linspace(*load.along, _LOADED) if isinstance(load, DistributedLoad) else np.array([load.at])
+    return load.beam, strips[load.beam].places(u)
