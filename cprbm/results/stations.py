@@ -171,7 +171,7 @@ class Run:
                 curvature=point.curvature,
                 left=point.left,
                 energy=potential(system, point.last.state) * unit,
-                after=None if landed is None else potential(system, landed.state) * unit,
+                after=None if each.after is None else each.after * unit,
             )
             if landed is not None and stage.beyond is None:
                 self.gone_over.append(GoneOver(critical, turned(point.last, landed)))
