@@ -26,7 +26,7 @@ from comparisons.formats import number, vector
 from comparisons.geometry import length, points
 from comparisons.present.columns import NOTHING
 from comparisons.present.figures import colour_unit, view_title
-from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, view_of
+from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, names_by_place, view_of
 from comparisons.present.row_tables import Judged, judged_rows, row_units, share
 from comparisons.present.strips import Strip
 from comparisons.present.table import with_minus
@@ -104,13 +104,14 @@ def stepper(compared: Comparison) -> Stepper | None:
     rows = {(at.row.probe.name, *at.row.where): at for at in judged_rows(compared)}
     units = row_units(scene, compared.rows)
     of_probe = {row.probe.name: units[row.unit][1] for row in compared.rows}
-    labels = _labels(views[-1], place)
+    labels = names_by_place(views[-1].points, 1.0 / scale)
+    leaders = [text.partition(", ")[0] for text in labels]
     stations, moving = [], dict[str, str]()
     for view in views:
         where = view.station.stage, view.station.value
         moving = dict(_moving(view, reached[where], bounds, place))
         cells = tuple(_cells(rows.get((name, *where)), units) for name in names)
-        spots = tuple("{:g} {:g}".format(*np.round(place(view.points[point]))) for point in labels.values())
+        spots = tuple("{:g} {:g}".format(*np.round(place(view.points[point]))) for point in leaders)
         stations.append((view_title(scene, view), tuple(moving.values()), spots, cells))
     rest = (points(beam.curve, np.linspace(0.0, length(beam.curve), 121)) for beam in beams.values())
     factor, unit = colour_unit(scene, "bending_stress", bounds.most)
@@ -158,14 +159,6 @@ def _shades(strip: Strip, bounds: Bounds, place: Placing) -> Iterator[tuple[int,
 def _scale(place: Placing) -> float:
     """Size of a metre in the picture."""
     return float(np.diff(place(np.array([[0.0, 0.0], [1.0, 0.0]]))[:, 0])[0])
-
-
-def _labels(view: View, place: Placing) -> dict[str, str]:
-    """A point by the text beside it; points in one place share a text."""
-    found: dict[tuple[float, ...], list[str]] = {}
-    for name, at in view.points.items():
-        found.setdefault(tuple(np.round(place(at)).tolist()), []).append(name)
-    return {", ".join(names): names[0] for names in found.values()}
 
 
 def _cells(judged: Judged | None, units: Mapping[str, tuple[float, str]]) -> tuple[str, ...]:
