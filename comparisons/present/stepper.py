@@ -30,6 +30,7 @@ from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, na
 from comparisons.present.row_tables import Judged, judged_rows, row_units, share
 from comparisons.present.strips import Strip
 from comparisons.present.table import with_minus
+from comparisons.verdict.completeness import complete_stations
 from comparisons.verdict.rows import ROUND_OFF
 from cprbm_scene import StationAnswer
 from cprbm_scene.answer import Array
@@ -86,11 +87,12 @@ class Stepper:
 def stepper(compared: Comparison) -> Stepper | None:
     """The common stations of both answers; None without a common station."""
     scene, beams = compared.scene, compared.scene.beams
-    reached = {(at.stage, at.value): at for at in compared.runs.cprbm[0].stations}
-    common = [at for at in compared.runs.reference.stations if (at.stage, at.value) in reached]
+    both = (compared.runs.cprbm[0], compared.runs.reference)
+    cprbm, fea = (complete_stations(scene, answer) for answer in both)
+    common = [where for where in fea if where in cprbm]
     if not common:
         return None
-    views = [view_of(scene, station) for station in common]
+    views = [view_of(scene, fea[where]) for where in common]
     bounds = bounds_of(scene, views, "bending_stress")
     margin = _MARGIN * bounds.size
     corner = np.array([bounds.low[0] - margin, bounds.high[1] + margin])
@@ -107,9 +109,8 @@ def stepper(compared: Comparison) -> Stepper | None:
     labels = names_by_place(views[-1].points, 1.0 / scale)
     leaders = [text.partition(", ")[0] for text in labels]
     stations, moving = [], dict[str, str]()
-    for view in views:
-        where = view.station.stage, view.station.value
-        moving = dict(_moving(view, reached[where], bounds, place))
+    for where, view in zip(common, views, strict=True):
+        moving = dict(_moving(view, cprbm[where], bounds, place))
         cells = tuple(_cells(rows.get((name, *where)), units) for name in names)
         spots = tuple("{:g} {:g}".format(*np.round(place(view.points[point]))) for point in leaders)
         stations.append((view_title(scene, view), tuple(moving.values()), spots, cells))
