@@ -147,19 +147,15 @@ def _moving(view: View, cprbm: StationAnswer, bounds: Bounds, place: Placing) ->
 
 def _shades(strip: Strip, bounds: Bounds, place: Placing) -> Iterator[tuple[int, str]]:
     """Areas of a beam by number of the colour."""
-    half = np.maximum(0.5 * strip.thickness, 0.5 * _THINNEST / _scale(place))[:, None] * strip.normal
-    edges = place(strip.line + half), place(strip.line - half)
-    shares = strip.bending_stress / (bounds.most or 1.0)
-    colours = np.rint((1.0 + shares) * (SHADES - 1) / 2.0).astype(int)
+    middle = place(strip.line)
+    across = place(strip.layer(1.0)) - middle
+    across *= np.maximum(0.5 * _THINNEST / np.hypot(*across.T), 1.0)[:, None]
+    edges = middle + across, middle - across
+    colours = np.rint((1.0 + strip.bending_stress / (bounds.most or 1.0)) * (SHADES - 1) / 2.0).astype(int)
     for colour, found in groupby(range(len(colours) - 1), key=lambda piece: colours[piece]):
         pieces = list(found)
         run = slice(pieces[0], pieces[-1] + 2)
         yield int(colour), line(np.concatenate([edges[0][run], edges[1][run][::-1]]), closed=True)
-
-
-def _scale(place: Placing) -> float:
-    """Size of a metre in the picture."""
-    return float(np.diff(place(np.array([[0.0, 0.0], [1.0, 0.0]]))[:, 0])[0])
 
 
 def _cells(judged: Judged | None, units: Mapping[str, tuple[float, str]]) -> tuple[str, ...]:
