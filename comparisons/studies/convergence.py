@@ -12,13 +12,13 @@ from comparisons.display_units import at_station
 from comparisons.pairing import Solvers
 from comparisons.present.canvas import GREY, LINES, canvas, common_legend, finished, logarithmic
 from comparisons.present.columns import Figure, Section
+from comparisons.stations import at_shown
 from comparisons.store import AnswerMemory
 from comparisons.studies import budget_section as budgets
 from comparisons.studies import offset_convergence
 from comparisons.studies.budget import account_of
 from comparisons.studies.convergence_tables import convergence_tables, document, sentences_of, shown_size
 from comparisons.studies.families import Convergence, Family, converged
-from comparisons.thinning import at_shown
 from cprbm_scene import OffsetQuestion, Question
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.quantities import load_unit
-from comparisons.stages import span_of
+from comparisons.stations import span_of
 from comparisons.studies.families import Series
 from comparisons.verdict.completeness import ends_at_critical
 from comparisons.verdict.events import mechanism

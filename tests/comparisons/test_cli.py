@@ -17,6 +17,7 @@ import pytest
 from comparisons import cases
 from comparisons.cli.main import commands, run
 from comparisons.pairing import Solvers
+from comparisons.present import page
 from cprbm_scene import Ending
 from tests.verdict.jumping import FORWARD, Jumping
 from tests.verdict.made_up import THEORY, MadeUp
@@ -67,6 +68,14 @@ def test_compare_ends_with_3_if_nothing_is_worse_than_undecided(right, capsys):
     assert capsys.readouterr().out.startswith("hinge: UNDECIDED")
 
 
+@pytest.mark.parametrize("command", ["solve", "compare"])
+def test_an_implausible_load_is_noted_before_the_answer(command, right, tmp_path, capsys):
+    soft = tmp_path / "soft.toml"
+    soft.write_text(HINGE.read_text(encoding="utf-8").replace("2.3e9", "2.1e3"), encoding="utf-8")
+    run([command, str(soft), "--quiet"], right)
+    assert capsys.readouterr().err.startswith(f"Note: {soft}: loads.M: M L/(E I) is ")
+
+
 def test_solve_ends_with_0_or_1(right, capsys):
     assert run(["solve", "hinge"], right) == 0
     assert "B.displacement" in capsys.readouterr().out
@@ -109,6 +118,7 @@ def test_out_writes_a_report_whatever_the_verdict(right, tmp_path, capsys):
 
 def test_all_writes_the_report_where_it_stands(right, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(page, "figures_of", lambda compared: ())  # pictures of all cases take most of the time
     # a made-up contact that has just closed at a stage's only station has ten times the error of its load
     better = Solvers(cprbm=MadeUp("cprbm", 4e-4), fea=right.fea)
     assert run(["compare", "all", "--quiet"], better) == 0
