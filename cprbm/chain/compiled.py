@@ -1,8 +1,8 @@
 """Compilation of kernels by Numba.
 
 The machine code is stored beside the module or in the user's cache.  Where neither can be written, every process
-compiles anew.  A kernel contains the kernels of other modules that it calls, whereas Numba looks at a kernel's own
-module alone: here a change of any module with kernels makes all stored machine code out of date.  With the environment
+compiles anew.  A kernel contains called kernels of other modules, but Numba looks at the kernel's own module
+alone: here a change of any module with kernels makes all stored machine code out of date.  With the environment
 variable ``NUMBA_DISABLE_JIT=1`` the same functions are interpreted.  An installation without stored machine code
 compiles at the first solve, and says so once.
 """
