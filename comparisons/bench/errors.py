@@ -10,10 +10,9 @@ e           largest |v − v*| / scale over the probes of a measure
 U           the same of the reference's own uncertainty; zero where it is exact
 ==========  ==============================================================================================
 
-The reference is the exact answer where there is one, or else the limit by Richardson's extrapolation of the CPRBM in
-``auto``, from N = 160, 320 and 640, with the uncertainty of
-:mod:`comparisons.verdict.uncertainty`.  An error that is not
-clearly larger than U says nothing.
+The reference is the exact answer where there is one.  Otherwise the reference is the limit by Richardson's
+extrapolation of the CPRBM in ``auto`` from N = 160, 320 and 640, with the uncertainty of
+:mod:`comparisons.verdict.uncertainty`.  An error that is not clearly larger than U says nothing.
 """
 
 from __future__ import annotations
@@ -50,23 +49,21 @@ NOTHING = Reference("nothing: no reference is known")
 
 def reference(scene: Scene, solvers: Solvers) -> Reference:
     """The reference of a scene of :func:`comparisons.bench.question.asked`."""
-    if solvers.exact is not None:
-        exact = solvers.exact(scene, Choices(kinematics="bending"))
-        if exact.completed and exact.stations:
-            values = exact.stations[-1].values
-            return Reference("the exact answer", values, frozendict({name: 0.0 * v for name, v in values.items()}))
+    exact = None if solvers.exact is None else solvers.exact(scene, Choices(kinematics="bending"))
+    if exact is not None and exact.completed and exact.stations:
+        values = exact.stations[-1].values
+        return Reference("the exact answer", values, frozendict({name: 0.0 * v for name, v in values.items()}))
     try:
         answers = [solvers.cprbm(scene, Choices(links=n)) for n in FINE]
     except SceneError:
         return NOTHING
     if not all(answer.completed for answer in answers):
         return NOTHING
-    found = {probe.name: [answer.stations[-1].values[probe.name] for answer in answers] for probe in scene.probes}
-    limits = {
-        name: limit(FINE, np.array(values))
-        for name, values in found.items()
-        if len({value.shape for value in values}) == 1 and values[0].size
-    }
+    limits = {}
+    for probe in scene.probes:
+        found = [answer.stations[-1].values[probe.name] for answer in answers]
+        if found[0].size and len({value.shape for value in found}) == 1:
+            limits[probe.name] = limit(FINE, found)
     return Reference(
         f"the CPRBM's limit (auto, N = {', '.join(map(str, FINE))})",
         frozendict({name: each.value for name, each in limits.items()}),
@@ -76,8 +73,8 @@ def reference(scene: Scene, solvers: Solvers) -> Reference:
 
 def errors(scene: Scene, known: Reference, values: Mapping[str, Array]) -> Mapping[Measure, float]:
     """e of each measure with a probe of known value and reference."""
-    pairs = {name: (values[name], true) for name, true in known.values.items() if name in values}
-    return _worst(scene, known, {name: v - true for name, (v, true) in pairs.items() if v.shape == true.shape})
+    alike = {name for name, true in known.values.items() if name in values and values[name].shape == true.shape}
+    return _worst(scene, known, {name: values[name] - known.values[name] for name in alike})
 
 
 def uncertainties(scene: Scene, known: Reference) -> Mapping[Measure, float]:
@@ -87,12 +84,11 @@ def uncertainties(scene: Scene, known: Reference) -> Mapping[Measure, float]:
 
 def _worst(scene: Scene, known: Reference, apart: Mapping[str, Array]) -> Mapping[Measure, float]:
     sizes = {name: float(np.linalg.norm(true)) for name, true in known.values.items()}
-    largest = {probe.quantity: 0.0 for probe in scene.probes}
-    for probe in scene.probes:
-        largest[probe.quantity] = max(largest[probe.quantity], sizes.get(probe.name, 0.0))
-    found: dict[Measure | None, list[float]] = {}
+    found: dict[Measure | None, float] = {}
     for probe in (each for each in scene.probes if each.name in apart):
+        alike = max(sizes.get(each.name, 0.0) for each in scene.probes if each.quantity == probe.quantity)
         natural = natural_value(scene, probe.quantity, scene.stages[-1], contact=probe.of)
-        scale = max(sizes[probe.name], SMALL * largest[probe.quantity], NATURAL_SHARE * natural)
-        found.setdefault(measure_of(scene, probe), []).append(float(np.linalg.norm(apart[probe.name])) / scale)
-    return frozendict({measure: max(found[measure]) for measure in MEASURES if measure in found})
+        scale = max(sizes[probe.name], SMALL * alike, NATURAL_SHARE * natural)
+        measure = measure_of(scene, probe)
+        found[measure] = max(float(np.linalg.norm(apart[probe.name])) / scale, found.get(measure, 0.0))
+    return frozendict({measure: found[measure] for measure in MEASURES if measure in found})

@@ -1,13 +1,13 @@
-"""What a benchmark asks: the last load at once, and the numbers of the error.
+"""Question of a benchmark: the last loads at once, and the probes of the errors.
 
-With every station and every probe a time would be that of stresses, places of contact and closing loads as well, none
-of which a peer can give.  So a scene keeps the last station of each of its stages, and of its probes:
+A time with all stations and probes would include stresses, places of contact and closing loads, which no peer gives.
+Therefore a scene keeps the last station of every stage, and these probes:
 
 ========  =============================================================================================
 measure   probes
 ========  =============================================================================================
 places    displacements of points and rotations of bodies
-forces    resultants of contacts; the force of a drive at its point, the moment of one that turns a body
+forces    resultants of contacts; the force of a drive at its point, the moment of a drive that turns a body
 ========  =============================================================================================
 """
 
@@ -15,12 +15,17 @@ from __future__ import annotations
 
 from typing import Literal
 
-from comparisons.studies.last_loads import at_last_loads
 from cprbm_scene import Scene
 from cprbm_scene.statement import DisplacementDrive, Probe
 
 Measure = Literal["places", "forces"]
 MEASURES: tuple[Measure, ...] = ("places", "forces")
+
+
+def at_last_loads(scene: Scene) -> Scene:
+    """The scene with the last station of every stage only."""
+    stages = tuple(stage.model_copy(update={"stations": stage.stations[-1:]}) for stage in scene.stages)
+    return scene.model_copy(update={"stages": stages})
 
 
 def asked(scene: Scene) -> Scene:
@@ -30,9 +35,9 @@ def asked(scene: Scene) -> Scene:
 
 
 def measure_of(scene: Scene, probe: Probe) -> Measure | None:
-    """The measure that a probe counts for, or None."""
-    driven = {drive.point if isinstance(drive, DisplacementDrive) else drive.body for drive in scene.drives.values()}
+    """The measure of a probe; None of a probe without a measure."""
     if probe.quantity in ("displacement", "rotation"):
         return "places"
+    driven = {drive.point if isinstance(drive, DisplacementDrive) else drive.body for drive in scene.drives.values()}
     at_drive = probe.quantity in ("reaction", "reaction_moment") and probe.of in driven
     return "forces" if at_drive or probe.quantity == "force" else None

@@ -15,7 +15,7 @@ from comparisons.cli.section_output import SectionOutput, run_steps
 
 if TYPE_CHECKING:
     from comparisons.bench.contenders import Contender
-    from comparisons.bench.running import Clock, Job, Session
+    from comparisons.bench.running import Clock
 
 NOT_COMPLETED = 1
 OURS = ("auto", "paper", "fea")
@@ -165,20 +165,15 @@ def command(
         whole,
         clock,
     )
-    session = running.Session(scene, plan, taking, provenance.machine(), running.CLOCKS[clock], absent=absent)
     output.room_for(json_file, out)
     with output.current(shown=not quiet) as say:
         say("reference of the errors")
         known = errors.reference(question.asked(opened), solvers)
+    session = running.Session(scene, plan, taking, provenance.machine(), running.CLOCKS[clock], known, absent)
     show = SectionOutput(json_file, None if out is None else own_folder(out, scene.name), quiet)
-
-    def run(session: Session, job: Job) -> Session:
-        session.do(job)
-        return session
-
     jobs = output.progress(session.jobs(), shown=not quiet)
-    done = run_steps(session, jobs, run, lambda found: bench_section(found.done(known)), show).done(known)
-    failed = [row for row in done.timings if row.contender.name in OURS and not row.outcome.completed]
+    run_steps(session, jobs, running.Session.do, bench_section, show)
+    failed = [row for row in session.rows() if row.contender.name in OURS and not row.outcome.completed]
     for row in failed:
         who = f"{row.contender.label} at N = {sized(row.count)}"
         click.echo(f"cprbm: {scene.name}: {who}: {row.outcome.why}", err=True)

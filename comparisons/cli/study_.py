@@ -82,15 +82,13 @@ def table1(
 ) -> int:
     """Time both solvers at the paper's discretisations, beside the paper's Table 1."""
     from comparisons import provenance
+    from comparisons.bench.running import Session
     from comparisons.cli import output
     from comparisons.pairing import solvers_of
     from comparisons.studies import table1 as study
-    from comparisons.studies.table1_result import result_of
 
     output.room_for(json_file, out)
-    solvers = solvers_of(planted)
-    show = SectionOutput(json_file, out, quiet)
-    runs = output.progress(study.runs(repeat), shown=not quiet)
-    begun = study.begun(solvers, provenance.machine())
-    found = run_steps(begun, runs, lambda found, run: study.solved(found, run, solvers, at_most), result_of, show)
-    return 1 if found.unfinished else 0
+    session = study.session(solvers_of(planted), provenance.machine(), repeat, at_most)
+    jobs = output.progress(session.jobs(), shown=not quiet)
+    run_steps(session, jobs, Session.do, study.result_of, SectionOutput(json_file, out, quiet))
+    return 0 if study.result_of(session).complete else 1

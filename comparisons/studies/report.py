@@ -18,7 +18,7 @@ from comparisons.offset_verdict import OffsetComparison, compared_offset
 from comparisons.pairing import Solvers, paired
 from comparisons.present.columns import Figure, Section
 from comparisons.present.page import figures_of
-from comparisons.studies import table1, table1_result
+from comparisons.studies import table1
 from comparisons.studies.convergence import convergence_section
 from comparisons.verdict.runs import Runs
 from cprbm_scene import OffsetQuestion, Question, Scene, SceneError
@@ -125,10 +125,10 @@ def _run_times(scene: Scene, timed: Solvers, knowing: Solvers) -> Section:
     scene = asked(scene)
     plan = Plan(frozendict(dict.fromkeys(OURS, SIZES)), repeat=REPEAT, at_most=AT_MOST, clock="cpu")
     taking = contenders(timed, Choices(kinematics=plan.kinematics))
-    session = Session(scene, plan, taking, provenance.machine(), CLOCKS[plan.clock])
+    session = Session(scene, plan, taking, provenance.machine(), CLOCKS[plan.clock], reference(scene, knowing))
     for job in session.jobs():
         session.do(job)
-    return bench_section(session.done(reference(scene, knowing)))
+    return bench_section(session)
 
 
 def table_section(timed: Solvers, made_on: Mapping[str, str | int]) -> Section:
@@ -138,7 +138,7 @@ def table_section(timed: Solvers, made_on: Mapping[str, str | int]) -> Section:
         timed: solvers without kept answers.
         made_on: the machine and the versions.
     """
-    found = table1.begun(timed, made_on)
-    for cell in table1.runs(REPEAT):
-        found = table1.solved(found, cell, timed, AT_MOST)
-    return table1_result.result_of(found)
+    session = table1.session(timed, made_on, REPEAT, AT_MOST)
+    for job in session.jobs():
+        session.do(job)
+    return table1.result_of(session)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from comparisons import cases
+from comparisons.bench.question import at_last_loads
 from comparisons.choices import Choices
 from comparisons.store import AnswerMemory
 from comparisons.studies.budget import Account, Budget, account_of
-from comparisons.studies.last_loads import at_last_loads
 from tests.fea_reference.cantilever import LENGTH, POISSON, WIDTH, YOUNG, cantilever, force
 from tests.references import hinge as reference
 from tests.references.small import cantilever_deflection, rectangle_second_moment, timoshenko_cantilever_deflection
