@@ -30,8 +30,7 @@ from typing import Literal
 import numpy as np
 
 from comparisons.bench.contenders import Clocked, Contender, Outcome, mean
-from comparisons.bench.errors import NOTHING, Reference, errors
-from comparisons.bench.question import Measure
+from comparisons.bench.measures import NOTHING, Measure, Reference, errors
 from comparisons.choices import Count, Kinematics
 from cprbm_scene import Scene, SceneError
 from cprbm_scene.frozendict import frozendict

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from comparisons.bench.contenders import Contender
-from comparisons.bench.question import MEASURES, Measure
+from comparisons.bench.measures import MEASURES, Measure
 from comparisons.bench.running import Session, Timing, trend
 from comparisons.bench.tables import document, sized, tables_of
 from comparisons.present.canvas import canvas, common_legend, finished, logarithmic

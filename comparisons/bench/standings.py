@@ -11,7 +11,7 @@ import math
 from collections.abc import Sequence
 
 from comparisons.bench.contenders import Clocked
-from comparisons.bench.question import MEASURES, Measure
+from comparisons.bench.measures import MEASURES, Measure
 from comparisons.bench.running import Session, trend
 from comparisons.plain import Plain, plain
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from comparisons.bench.contenders import OURS, Clocked
-from comparisons.bench.errors import uncertainties
+from comparisons.bench.measures import uncertainties
 from comparisons.bench.running import FIT_FROM, NO_WORSE, Session, Timing
 from comparisons.bench.standings import CLOCKED, ratio_key, ratios, standings, trends
 from comparisons.choices import Count

@@ -128,7 +128,7 @@ def command(
     Exit code 1 means an incomplete run of a solver of this project.
     """
     from comparisons import cases, provenance
-    from comparisons.bench import contenders, errors, question, running
+    from comparisons.bench import contenders, measures, running
     from comparisons.bench.section import bench_section
     from comparisons.bench.tables import sized
     from comparisons.choices import Choices, check
@@ -144,7 +144,7 @@ def command(
     named = tuple(one if isinstance(one, int) else frozendict(one) for one in links) or (sizes or ())
     for one in named:
         check(Choices(links=one), opened)
-    scene = opened if whole else question.asked(opened)
+    scene = opened if whole else measures.asked(opened)
     solvers = solvers_of(planted)
     every = (
         *contenders.contenders(solvers, Choices(kinematics=kinematics)),
@@ -168,7 +168,7 @@ def command(
     output.room_for(json_file, out)
     with output.current(shown=not quiet) as say:
         say("reference of the errors")
-        known = errors.reference(question.asked(opened), solvers)
+        known = measures.reference(measures.asked(opened), solvers)
     session = running.Session(scene, plan, taking, provenance.machine(), running.CLOCKS[clock], known, absent)
     show = SectionOutput(json_file, None if out is None else own_folder(out, scene.name), quiet)
     jobs = output.progress(session.jobs(), shown=not quiet)

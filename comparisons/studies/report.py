@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from comparisons import cases, provenance
 from comparisons.bench.contenders import OURS, contenders
-from comparisons.bench.errors import reference
-from comparisons.bench.question import asked
+from comparisons.bench.measures import asked, reference
 from comparisons.bench.running import CLOCKS, Plan, Session
 from comparisons.bench.section import bench_section
 from comparisons.case import Comparison, compare

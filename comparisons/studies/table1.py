@@ -14,7 +14,7 @@ from typing import Literal
 
 from comparisons import cases
 from comparisons.bench.contenders import Contender, Run, outcome_of
-from comparisons.bench.question import at_last_loads
+from comparisons.bench.measures import at_last_loads
 from comparisons.bench.running import CLOCKS, Plan, Session, Timing
 from comparisons.choices import Choices, Count
 from comparisons.formats import number

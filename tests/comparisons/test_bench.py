@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from comparisons import cases, geometry, provenance
-from comparisons.bench import errors, question, section, tables
+from comparisons.bench import measures, section, tables
 from comparisons.bench.contenders import Contender, Outcome, Run, contenders
 from comparisons.bench.running import Plan, Session, sizes_of, trend
 from comparisons.bench.standings import TARGETS, ratios, reached, standings
@@ -78,7 +78,7 @@ class Clock:
         return session
 
 
-KNOWN = errors.Reference(
+KNOWN = measures.Reference(
     "made up",
     frozendict({"B.displacement": np.array([1.0, 0.0]), "contact.force": np.array([2.0])}),
     frozendict({"B.displacement": np.array([0.0, 0.0]), "contact.force": np.array([1e-7])}),
@@ -91,7 +91,7 @@ def power(exponent, setup=0.0, iterations=lambda n: 5, error=lambda n: 1.6 / n**
 
 @pytest.fixture
 def bent(hinge):
-    return question.asked(hinge)
+    return measures.asked(hinge)
 
 
 def test_the_exponent_is_that_of_the_law_set_up_included(bent):
@@ -279,22 +279,22 @@ def test_an_error_is_the_worst_of_its_measure_over_the_probe_or_a_thousandth_of_
     known = replace(
         KNOWN, values=frozendict({"B.displacement": np.array([1.0, 0.0]), "D.displacement": np.array([0.0, 0.0])})
     )
-    assert errors.errors(bent, known, off) == {"places": pytest.approx(1e-2)}
-    assert errors.errors(bent, known, {}) == {}
-    assert errors.uncertainties(bent, KNOWN) == {"places": 0.0, "forces": pytest.approx(5e-8)}
+    assert measures.errors(bent, known, off) == {"places": pytest.approx(1e-2)}
+    assert measures.errors(bent, known, {}) == {}
+    assert measures.uncertainties(bent, KNOWN) == {"places": 0.0, "forces": pytest.approx(5e-8)}
 
 
 def test_the_reference_is_exact_or_extrapolated(bent):
     """The made-up error is C/N²: the limit is the law without it."""
     right = MadeUp("cprbm", 2e-3)
-    limited = errors.reference(bent, Solvers(cprbm=right, fea=right))
+    limited = measures.reference(bent, Solvers(cprbm=right, fea=right))
     truth = MadeUp("exact", 0.0)(bent, Choices(kinematics="bending")).stations[-1].values
     assert "limit" in limited.by
     np.testing.assert_allclose(limited.values["BD.rotation"], truth["BD.rotation"], rtol=1e-9)
-    exact = errors.reference(bent, Solvers(cprbm=right, fea=right, exact=MadeUp("exact", 0.0)))
+    exact = measures.reference(bent, Solvers(cprbm=right, fea=right, exact=MadeUp("exact", 0.0)))
     assert exact.by == "the exact answer"
     np.testing.assert_array_equal(exact.values["B.displacement"], truth["B.displacement"])
-    ended = errors.reference(
+    ended = measures.reference(
         bent,
         Solvers(cprbm=lambda scene, choices: replace(right(scene, choices), ending=Ending.NOT_CERTIFIED), fea=right),
     )
@@ -306,11 +306,11 @@ def test_an_error_of_what_vanishes_altogether_is_told_by_the_size_of_the_mechani
     longest = max(geometry.length(beam.curve) for beam in bent.beams.values())
     # 1e-4 of the longest beam is the least
     off = {"B.displacement": np.array([0.0, 3e-13 * longest])}
-    assert errors.errors(bent, known, off) == {"places": pytest.approx(3e-9)}
+    assert measures.errors(bent, known, off) == {"places": pytest.approx(3e-9)}
 
 
 def test_a_question_keeps_the_last_loads_and_what_errors_are_told_by():
-    asked = question.asked(cases.opened("gripper-driven"))
+    asked = measures.asked(cases.opened("gripper-driven"))
     assert [len(stage.stations) for stage in asked.stages] == [1]
     assert {probe.name for probe in asked.probes} >= {"A.reaction", "circle.force", "contact.force"}
     assert not {"C.reaction", "contact.closing_load", "beam1.bending_stress"} & {probe.name for probe in asked.probes}

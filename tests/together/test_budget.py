@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from comparisons import cases
-from comparisons.bench.question import at_last_loads
+from comparisons.bench.measures import at_last_loads
 from comparisons.choices import Choices
 from comparisons.store import AnswerMemory
 from comparisons.studies.budget import Account, Budget, account_of

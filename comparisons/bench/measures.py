@@ -1,4 +1,16 @@
-"""Errors of answers in the theory of bending: a number for every measure.
+"""Question of a benchmark, and errors of answers: the last loads at once, and a number for every measure.
+
+A time with all stations and probes would include stresses, places of contact and closing loads, which no peer gives.
+Therefore a scene keeps the last station of every stage, and the probes of two measures:
+
+========  =============================================================================================
+measure   probes
+========  =============================================================================================
+places    displacements of points and rotations of bodies
+forces    resultants of contacts; the force of a drive at its point, the moment of a drive that turns a body
+========  =============================================================================================
+
+Errors are taken in the theory of bending.
 
 ==========  ==============================================================================================
 symbol      meaning
@@ -19,10 +31,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
-from comparisons.bench.question import MEASURES, Measure, measure_of
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers
 from comparisons.verdict.scales import NATURAL_SHARE, natural_value
@@ -30,9 +42,34 @@ from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Scene, SceneError
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
+from cprbm_scene.statement import DisplacementDrive, Probe
+
+Measure = Literal["places", "forces"]
+MEASURES: tuple[Measure, ...] = ("places", "forces")
 
 FINE = (160, 320, 640)
 SMALL = 1e-3
+
+
+def at_last_loads(scene: Scene) -> Scene:
+    """The scene with the last station of every stage only."""
+    stages = tuple(stage.model_copy(update={"stations": stage.stations[-1:]}) for stage in scene.stages)
+    return scene.model_copy(update={"stages": stages})
+
+
+def asked(scene: Scene) -> Scene:
+    """The scene with its last loads and the probes of both measures, and without claims."""
+    probes = tuple(probe for probe in scene.probes if measure_of(scene, probe) is not None)
+    return at_last_loads(scene).model_copy(update={"probes": probes, "claims": ()})
+
+
+def measure_of(scene: Scene, probe: Probe) -> Measure | None:
+    """The measure of a probe; None of a probe without a measure."""
+    if probe.quantity in ("displacement", "rotation"):
+        return "places"
+    driven = {drive.point if isinstance(drive, DisplacementDrive) else drive.body for drive in scene.drives.values()}
+    at_drive = probe.quantity in ("reaction", "reaction_moment") and probe.of in driven
+    return "forces" if at_drive or probe.quantity == "force" else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +85,7 @@ NOTHING = Reference("nothing: no reference is known")
 
 
 def reference(scene: Scene, solvers: Solvers) -> Reference:
-    """The reference of a scene of :func:`comparisons.bench.question.asked`."""
+    """The reference of a scene of :func:`asked`."""
     exact = None if solvers.exact is None else solvers.exact(scene, Choices(kinematics="bending"))
     if exact is not None and exact.completed and exact.stations:
         values = exact.stations[-1].values
