@@ -50,7 +50,6 @@ def calibration(
     from comparisons.pairing import solvers_of, workers_for
     from comparisons.store import run_into
     from comparisons.studies import calibration as study
-    from comparisons.studies.calibration_result import result_of
     from comparisons.verdict.words import Word
 
     output.room_for(json_file, out)
@@ -60,8 +59,8 @@ def calibration(
         found = run_steps(
             study.Calibration(),
             pieces,
-            lambda found, piece: study.with_piece(found, piece, run.solvers, run.crew),
-            result_of,
+            lambda found, scene: study.with_case(found, scene, run.solvers, run.crew),
+            study.result_of,
             show,
         )
     return 1 if any(trial.verdict.word is Word.DIFFER or not trial.verdict.completed for trial in found.trials) else 0

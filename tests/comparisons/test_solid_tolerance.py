@@ -12,8 +12,7 @@ from comparisons.cli.main import run
 from comparisons.crew import ALONE
 from comparisons.pairing import Solvers, solid_answer
 from comparisons.solid_limits import solid_limit
-from comparisons.tolerances.result import LARGEST
-from comparisons.tolerances.search import runs_within, solve_within
+from comparisons.tolerances.search import LARGEST, runs_within, solve_within
 from comparisons.verdict.rows import rows_of
 from comparisons.verdict.runs import Runs
 from cprbm_scene import Ending
