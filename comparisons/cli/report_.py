@@ -61,16 +61,16 @@ def command(
     from comparisons.cli import output
     from comparisons.cli.questions import read_questions
     from comparisons.pairing import begin, solvers_of, workers_for
+    from comparisons.present.page import put_page, report_page
     from comparisons.store import run_into
-    from comparisons.studies import report_folder as put
-    from comparisons.studies.report import Parts, gathered, has_table, table_section
+    from comparisons.studies import report as put
     from cprbm_scene import OffsetQuestion
 
     wanted = read_questions(arguments or ("all",))
     choices = choices_for(*wanted)
     out = out or Path("full-report")
     output.room_for(json_file, out)
-    parts = Parts(choices, () if "convergence" in without else sizes, times="times" not in without)
+    parts = put.Parts(choices, () if "convergence" in without else sizes, times="times" not in without)
     made_on = provenance.page_origin()
     made_of = f"{parts!r}, exact={exact}"  # chapters with other parts are written anew
     chapters: dict[str, Chapter] = {}
@@ -78,7 +78,7 @@ def command(
         there = put.kept(out, question, made_of)
         if there is not None:
             chapters[question.name] = there
-    with_table = parts.times and has_table(wanted)
+    with_table = parts.times and put.has_table(wanted)
     there_too = put.kept_table(out, made_on) if with_table else None
     further: tuple[Section, ...] = () if there_too is None else (there_too,)
     missing = [question for question in wanted if question.name not in chapters]
@@ -98,14 +98,14 @@ def command(
 
         pending = begun(0)
         for place, question in enumerate(output.progress(missing, shown=not quiet)):
-            found = gathered(question, pending, parts, run.solvers, solvers, run.crew)
+            found = put.gathered(question, pending, parts, run.solvers, solvers, run.crew)
             # solve the next case during the drawings, but not during the measurement of run times
             pending = begun(place + 1)
             chapters[question.name] = put.added(out, question, made_of, found)
-            put.put_report(out, so_far(), further, made_on)
+            put_page(out, report_page(so_far(), further, made_on))
         if with_table and not further:
-            further = (put.added_table(out, table_section(solvers, made_on), made_on),)
-    put.put_report(out, so_far(), further, made_on)
+            further = (put.added_table(out, put.table_section(solvers, made_on), made_on),)
+    put_page(out, report_page(so_far(), further, made_on))
     if json_file is not None:
         output.json(json_file, put.document(out, so_far(), made_on))
     if str(json_file) != "-":
