@@ -20,8 +20,7 @@ def command(quiet: bool) -> int:  # noqa: FBT001 - click passes a keyword
     import platform
 
     from comparisons.executor import obstacle
-    from comparisons.starting.present import looked_for
-    from comparisons.starting.system import WHAT_DRAWS, line_for
+    from comparisons.starting.present import WHAT_DRAWS, line_for, looked_for
 
     if not quiet:
         click.echo(f"Python {platform.python_version()}")

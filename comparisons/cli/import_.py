@@ -52,7 +52,7 @@ def command(
     try:
         drawn = read_drawing(drawing, unit)
     except ImportError as error:
-        from comparisons.starting.system import line_for
+        from comparisons.starting.present import line_for
 
         line = line_for("gmsh", str(error))
         if not line:

@@ -79,7 +79,7 @@ def command(
         for file, content in files(scene, seen, path, kind, quantity):
             write(file, content)
     except DrawingError as trouble:
-        from comparisons.starting.system import WHAT_DRAWS
+        from comparisons.starting.present import WHAT_DRAWS
 
         raise click.ClickException(
             f"VTK cannot draw in space here ({trouble}). On Debian and Ubuntu install its libraries with: {WHAT_DRAWS}"

@@ -7,6 +7,7 @@ import shlex
 import subprocess
 import sys
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import jsonschema
@@ -123,7 +124,8 @@ def test_a_library_that_wants_one_of_the_system_is_told_with_what_installs_it(tm
     broken = 'raise OSError("libGLU.so.1: cannot open shared object file")\n'
     (tmp_path / "gmsh_of_a_bare_machine.py").write_text(broken, encoding="utf-8")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    library = present.Library("gmsh", "gmsh_of_a_bare_machine", "meshes", "", "solid")
+    gmsh = next(library for library in present.LIBRARIES if library.name == "gmsh")
+    library = replace(gmsh, module="gmsh_of_a_bare_machine")
     monkeypatch.setattr(present, "LIBRARIES", (library,))
     monkeypatch.setattr(present, "version", lambda name: "4.0")
     assert run(["doctor"]) == 0
