@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 from comparisons import cases
@@ -18,7 +19,7 @@ from comparisons.bench.measures import at_last_loads
 from comparisons.bench.running import CLOCKS, Plan, Session, Timing
 from comparisons.choices import Choices, Count
 from comparisons.formats import number
-from comparisons.pairing import Solvers, prepared
+from comparisons.pairing import Solvers
 from comparisons.plain import plain
 from comparisons.present.canvas import BLUE, RED, canvas, finished
 from comparisons.present.columns import Figure, Section, Table
@@ -107,7 +108,7 @@ def _contender(cell: Cell, solvers: Solvers) -> Contender:
     """A cell as a method on the scene of the cell."""
     solver, asked = (solvers.cprbm if cell.method == "cprbm" else solvers.fea), question(cell)
     choices = Choices(links=cell.size, elements=cell.size, formulation=cell.formulation)
-    run = Run(lambda: prepared(solver, asked, choices), outcome_of)
+    run = Run(lambda: partial(solver, asked, choices), outcome_of)
     return Contender(cell.name, cell.method, cell.formulation, cell.label, lambda scene, count, at_most: run)
 
 

@@ -212,9 +212,8 @@ def test_the_usual_sizes_end_where_a_method_does():
     assert sizes_of(auto, (5120, 40, 40)) == (40, 5120)
 
 
-@pytest.mark.parametrize(
-    ("points", "target", "seconds"),
-    [
+def test_when_an_error_is_reached():
+    for points, target, seconds in (
         ([(1e-1, 1.0), (1e-3, 4.0)], 1e-2, 2.0),  # half-way in both logarithms
         ([(1e-1, 1.0), (1e-3, 4.0)], 1e-1, 1.0),
         ([(1e-3, 7.0), (1e-5, 9.0)], 1e-2, 7.0),  # none is before
@@ -222,10 +221,8 @@ def test_the_usual_sizes_end_where_a_method_does():
         ([(1e-1, 1.0), (1e-3, 2.0), (1e-1, 3.0), (1e-3, 4.0)], 1e-2, 12.0**0.5),  # the first was an accident
         ([(1e-3, 1.0), (1e-1, 2.0)], 1e-2, None),
         ([], 1e-2, None),
-    ],
-)
-def test_when_an_error_is_reached(points, target, seconds):
-    assert reached(points, target) == (None if seconds is None else pytest.approx(seconds, rel=1e-12))
+    ):
+        assert reached(points, target) == (None if seconds is None else pytest.approx(seconds, rel=1e-12)), points
 
 
 def test_who_is_fastest_and_by_how_much(bent):
@@ -440,9 +437,8 @@ def test_an_interrupted_bench_keeps_what_was_finished(right, capsys, tmp_path):
     assert [one["n"] for one in data["left_out"]] == [80]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
+def test_a_wrong_option_is_named(right, capsys):
+    for arguments, said in (
         (["--sizes", "40,many"], "'many'"),
         (["--sizes", ""], "''"),
         (["--repeat", "0"], "'0'"),
@@ -453,8 +449,6 @@ def test_an_interrupted_bench_keeps_what_was_finished(right, capsys, tmp_path):
         (["-n", "beam1=many"], "'many'"),
         (["-n", "beam1=30"], "beam1=30"),
         (["-n", "40", "--sizes", "40"], "--sizes and -n"),
-    ],
-)
-def test_a_wrong_option_is_named(right, capsys, arguments, said):
-    assert run(["bench", "hinge", *arguments], right) == 2
-    assert said in capsys.readouterr().err
+    ):
+        assert run(["bench", "hinge", *arguments], right) == 2, arguments
+        assert said in capsys.readouterr().err

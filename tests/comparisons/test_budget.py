@@ -1,6 +1,7 @@
 """Error budgets of made-up answers whose parts are known, and what is told of them."""
 
 import json
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from comparisons.plain import text_of
 from comparisons.store import AnswerMemory
 from comparisons.studies.budget import Budget, account_of
 from comparisons.studies.budget_section import LOOKS, budget_figures, budget_table, data_of, sentences_of
+from comparisons.studies.curved_beam import inner_edge_factor
 from cprbm_scene import Ending, Stage
 from tests.verdict.made_up import MadeUp
 
@@ -251,3 +253,40 @@ def test_converge_shows_the_budget_and_writes_its_figure(right, tmp_path, capsys
     assert "Error budget at load 0.67 N·m with 40 links and 80 elements per beam" in capsys.readouterr().out
     assert (tmp_path / "hinge" / "budget.svg").read_bytes().startswith(b"<?xml")
     assert "Error budget" in (tmp_path / "index.html").read_text(encoding="utf-8")
+
+
+# -- The curved beam's inner edge
+
+
+def test_the_inner_edge_factor_is_the_quotient_of_the_two_stresses():
+    """σ_i = M (r_n − r_i)/(A e r_i) and 6 M/(w t²), with R = M = w = 1."""
+    for t in (0.02, 0.08, 0.1999, 0.2001, 0.5, 1.0, 1.9):
+        r_i, r_o = 1.0 - 0.5 * t, 1.0 + 0.5 * t
+        r_n = t / math.log(r_o / r_i)
+        curved = (r_n - r_i) / (t * (1.0 - r_n) * r_i)
+        # where the beam is slender, 1 − r_n loses digits here
+        assert inner_edge_factor(np.array([t]))[0] == pytest.approx(curved / (6.0 / t**2), rel=1e-13 / t**2), t
+
+
+def test_the_inner_edge_factor_is_of_sections_that_stay_plane():
+    """Winkler's assumption and no more: ε = a + b/r without a force, its moment about R = 1 being 1, by quadrature."""
+    points, weights = np.polynomial.legendre.leggauss(40)
+    for bentness in (0.08, 1.0):
+        r = 1.0 + 0.5 * bentness * points
+        dA = 0.5 * bentness * weights
+        force = [np.sum(dA), np.sum(dA / r)]
+        moment = [np.sum(dA * (r - 1.0)), np.sum(dA * (r - 1.0) / r)]
+        a, b = np.linalg.solve([force, moment], [0.0, 1.0])
+        inner = abs(a + b / (1.0 - 0.5 * bentness))
+        assert inner_edge_factor(np.array([bentness]))[0] == pytest.approx(inner / (6.0 / bentness**2), rel=1e-9)
+
+
+def test_the_inner_edge_factor_of_a_slender_beam_and_beyond_the_centre():
+    """K = 1 + x/3 + O(x²), and 1 for a straight beam."""
+    for bentness in (1e-7, 1e-4, 1e-2):
+        found = inner_edge_factor(np.array([bentness]))[0] - 1.0
+        assert found == pytest.approx(bentness / 3.0, rel=bentness, abs=1e-15)
+    assert inner_edge_factor(np.zeros(2)).tolist() == [1.0, 1.0]
+    for bentness in (-0.1, 2.0, math.nan):
+        with pytest.raises(ValueError, match="less than 2"):
+            inner_edge_factor(np.array([0.1, bentness]))

@@ -204,10 +204,10 @@ def test_the_command_ends_with_1_where_a_run_is_not_whole(right, capsys):
     assert "at N = 10 gave no complete answer" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("sizes", ["40", "40,20", "20,20", "ten,20", "", "0,10"])
-def test_sizes_that_are_no_family_are_refused(right, capsys, sizes):
-    assert run(["converge", "hinge", "--sizes", sizes], right) == 2
-    assert "allowed" in capsys.readouterr().err
+def test_sizes_that_are_no_family_are_refused(right, capsys):
+    for sizes in ("40", "40,20", "20,20", "ten,20", "", "0,10"):
+        assert run(["converge", "hinge", "--sizes", sizes], right) == 2, sizes
+        assert "allowed" in capsys.readouterr().err
 
 
 def test_an_interruption_keeps_what_was_finished(right, capsys, tmp_path):
