@@ -30,6 +30,9 @@ BOX_TESTS, SEARCHES, GAPS = range(3)
 FINDING = 40
 """Iterations of a moving place on a frozen state."""
 
+ON_LINE = 1e-9
+"""Distance of a point from a neutral line, over the longest beam, below which the point lies on the line: round-off."""
+
 LONGEST_STEP = 0.7
 """Change of a place in one iteration, pieces: less than a piece, so that a minimum is not jumped over."""
 
@@ -232,35 +235,41 @@ def separations(z: Array, curves: CurveArrays, places: Places) -> Array:  # prag
 
 
 @compiled
-def sweeps_any_circle(
-    before: Array, after: Array, curves: CurveArrays, pairs: Ints, counters: Ints
+def sweeps_any_point(
+    before: Array, after: Array, curves: CurveArrays, points: Ints, counters: Ints
 ) -> bool:  # pragma: no cover
-    """True if a beam sweeps over the centre of a circle of the ``pairs`` (pairs, 2) in a step."""
+    """True if a beam sweeps over one of the ``points`` of :class:`cprbm.contact.candidates.Geometry` in a step."""
     old, new = curve_boxes(before, curves), curve_boxes(after, curves)
-    for k in range(len(pairs)):
-        a, b = pairs[k]
-        if curves.is_point[b]:
-            counters[BOX_TESTS] += 1
-            met = True
-            for i in range(2):
-                for c, d in ((a, b), (b, a)):
-                    met = met and min(old[c, i], new[c, i]) < max(old[d, i + 2], new[d, i + 2])
-            if met and _sweeps_over(before, after, curves, a, b):
-                return True
+    for k in range(len(points)):
+        a, b, piece, at_end = points[k]
+        counters[BOX_TESTS] += 1
+        met = True
+        for i in range(2):
+            for c, d in ((a, b), (b, a)):
+                met = met and min(old[c, i], new[c, i]) < max(old[d, i + 2], new[d, i + 2])
+        if met and _sweeps_over(before, after, curves, b, piece, float(at_end)):
+            return True
     return False
 
 
 @compiled
-def _sweeps_over(before: Array, after: Array, curves: CurveArrays, beam: int, circle: int) -> bool:  # pragma: no cover
-    """True if the part of a beam next to a circle lies on the other side of the centre after a step."""
-    weights, centre = np.empty((2, STENCIL)), curves.first[circle]
+def _sweeps_over(
+    before: Array, after: Array, curves: CurveArrays, beam: int, point: int, at: float
+) -> bool:  # pragma: no cover
+    """True if the part of a beam next to a point of a piece lies on the other side of the point after a step.
+
+    A point on the beam's neutral line has no side: a common joint, and a line that touches.
+    """
+    weights = np.empty((2, STENCIL))
     for z in (before, after):
-        cx, cy = curve_point(z, curves, centre, 0.0, 0, weights)
-        piece, xi, _ = closest_chord(z, curves, beam, cx, cy, weights)
+        cx, cy = curve_point(z, curves, point, at, 0, weights)
+        piece, xi, distance = closest_chord(z, curves, beam, cx, cy, weights)
+        if distance < ON_LINE or curves.thickness[piece] + curves.thickness[point] == 0.0:
+            continue
         ax, ay = curve_point(before, curves, piece, xi, 0, weights)
-        bx, by = curve_point(before, curves, centre, 0.0, 0, weights)
+        bx, by = curve_point(before, curves, point, at, 0, weights)
         cx, cy = curve_point(after, curves, piece, xi, 0, weights)
-        dx, dy = curve_point(after, curves, centre, 0.0, 0, weights)
+        dx, dy = curve_point(after, curves, point, at, 0, weights)
         if (ax - bx) * (cx - dx) + (ay - by) * (cy - dy) < 0.0:
             return True
     return False

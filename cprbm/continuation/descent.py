@@ -4,15 +4,18 @@
 symbol   meaning
 =======  ====================================================================================
 α        strength of springs from the links to the last state, energy α/2 Σ L (θ − θ_k)²
-κ, φ     smallest curvature, mode
+κ        smallest curvature
+m        faint moments 1 + s/ℓ per length, s along the beams in the scene's order
+u        leaning: response to m against the springs
 =======  ====================================================================================
 
-Each step minimises Π plus the energy of the springs, so that Π falls from step to step.  The descent begins with the
-mode φ, in either sense, and follows the lower of both.  With α = 2|κ| the distance from the saddle doubles in a step.
-The springs soften while steps are short, stiffen where a step fails, and vanish near the minimum.
+Each step minimises Π plus the energy of the springs, so that Π falls from step to step.  The descent begins with u, in
+either sense, and follows the lower of both.  With α = 2|κ| the softest mode has the largest part in u, and the distance
+from the saddle doubles in a step.  The springs soften while steps are short, stiffen where a step fails, and vanish
+near the minimum.
 
-Where both senses lead equally low, as at a symmetric bifurcation, the sense with ∫ (1 + s/ℓ) φ ds > 0 counts, with s
-along the beams in the scene's order: neither the mesh nor the order of assembly decides.
+Where both senses lead equally low, as at a symmetric bifurcation, the sense of m counts.  Several modes may soften at
+a single load: u has all of them in fixed parts.  Neither the mesh nor the order of assembly decides.
 """
 
 from __future__ import annotations
@@ -23,9 +26,10 @@ import numpy as np
 
 from cprbm.continuation.limits import with_stops
 from cprbm.continuation.path import potential
+from cprbm.equilibrium.contact_set import NotConvergedError
 from cprbm.equilibrium.factors import Springs
-from cprbm.equilibrium.newton import NotConvergedError, Solved
-from cprbm.equilibrium.stability import Mode, softest
+from cprbm.equilibrium.solving import Solved, at_state
+from cprbm.equilibrium.stability import softest
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
 
@@ -56,14 +60,14 @@ SAME = 1e-6
 """Relative difference of two energies' decreases that counts as none."""
 
 
-def descend(system: System, saddle: Solved, mode: Mode, target: Array, acting: Flags, iterations: int) -> Solved:
-    """The minimum under ``target``, by decrease of the energy from a state at or beyond a critical point.
+def descend(system: System, saddle: Solved, curvature: float, target: Array, acting: Flags, iterations: int) -> Solved:
+    """The minimum under ``target``, by decrease of the energy from a state with a smallest ``curvature`` near zero.
 
     Raises:
         NotConvergedError: the descent does not end.
     """
     start = replace(saddle.state, target=target)
-    state, strength = _kicked(system, start, mode, acting, iterations)
+    state, strength = _kicked(system, start, curvature, acting, iterations)
     energy, last, kicks = potential(system, state), 0.0, 0
     stiffest = STIFFEST * strength
     for _ in range(STEPS):
@@ -82,7 +86,7 @@ def descend(system: System, saddle: Solved, mode: Mode, target: Array, acting: F
                 return found
             if found is not None and near and kicks < KICKS:
                 kicks += 1
-                state, strength = _kicked(system, found.state, softest(found), acting, iterations)
+                state, strength = _kicked(system, found.state, softest(found).curvature, acting, iterations)
                 energy, last = potential(system, state), 0.0
                 continue
             if moved < STILL:
@@ -92,20 +96,21 @@ def descend(system: System, saddle: Solved, mode: Mode, target: Array, acting: F
     raise NotConvergedError("the descent does not end in a minimum")
 
 
-def _kicked(system: System, start: State, mode: Mode, acting: Flags, iterations: int) -> tuple[State, float]:
-    """The lower of the states after a first step in either sense of the mode, and the springs' strength.
+def _kicked(system: System, start: State, curvature: float, acting: Flags, iterations: int) -> tuple[State, float]:
+    """The lower of the states after a first step in either sense of the leaning, and the springs' strength.
 
     Raises:
         NotConvergedError: no step works.
     """
-    strength = 2.0 * abs(mode.curvature) + 1e-6
-    change = mode.change.copy()
-    change[system.rows.first :] = 0.0
-    favoured = 1.0 if _first_moment(system, change) >= 0.0 else -1.0
+    strength, leaning = 2.0 * abs(curvature) + 1e-6, np.zeros(system.size)
+    leaning[system.angles] = system.metric * (1.0 + np.cumsum(system.metric))
     for _ in range(20):
-        steps = []
-        for sense in (favoured, -favoured):
-            kicked = replace(start, z=start.z + sense * KICK * change)
+        steps, held = [], at_state(system, start, Springs(strength, start.z[system.angles]))
+        change = held.response(leaning)
+        change[system.rows.first :] = 0.0
+        change *= KICK / np.abs(change[system.angles]).max()
+        for sense in (1.0, -1.0) if not held.lost else ():
+            kicked = replace(start, z=start.z + sense * change)
             step = _step(system, kicked, strength, acting, iterations)
             if step is not None and _moved(system, kicked, step.state) <= LONGEST:
                 steps.append(step.state)
@@ -129,9 +134,3 @@ def _step(system: System, state: State, strength: float, acting: Flags, iteratio
 def _moved(system: System, before: State, after: State) -> float:
     """Largest turn of a link between two states."""
     return float(np.abs(after.z - before.z)[system.angles].max())
-
-
-def _first_moment(system: System, change: Array) -> float:
-    """Integral of (1 + s/ℓ) φ over the beams."""
-    arcs = np.cumsum(system.metric)
-    return float((system.metric * (1.0 + arcs)) @ change[system.angles])

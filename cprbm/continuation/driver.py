@@ -32,15 +32,22 @@ from cprbm.continuation.closing import (
     may_close,
     pressing_names,
 )
-from cprbm.continuation.critical import CriticalPoint, contact_ends, critical_point, opened
+from cprbm.continuation.critical import (
+    ASKED,
+    CriticalPoint,
+    contact_ends,
+    critical_point,
+    locked_beam,
+    opened,
+    taut_value,
+)
 from cprbm.continuation.descent import descend
 from cprbm.continuation.jumps import jumped
 from cprbm.continuation.limits import StopChange, changed, first_event
-from cprbm.continuation.locking import ASKED, locked_beam, taut_value
 from cprbm.continuation.path import Reached, Way, turned
 from cprbm.equilibrium.certificate import certify
-from cprbm.equilibrium.newton import NotConvergedError, Solved
-from cprbm.equilibrium.solving import equilibrium
+from cprbm.equilibrium.contact_set import NotConvergedError
+from cprbm.equilibrium.solving import Solved, equilibrium
 from cprbm.equilibrium.stability import softest
 from cprbm.equilibrium.system import State, System
 from cprbm.settings import Settings
@@ -233,7 +240,7 @@ class Driver:
             name = rows[change.row].name.rpartition(".")[0]
         else:
             state = kept_open(before.state, frozenset() if change.closes else change.pairs)
-            name = "" if geometry is None else geometry.pairs[change.first].name
+            name = geometry.pairs[change.first].name
         try:
             after = self._equilibrium(state)
         except NotConvergedError as failure:
@@ -280,8 +287,8 @@ class Driver:
         if longer > 0.0:
             straight = f"beam '{beam}' is straight between its ends, and cannot become longer by bending"
             raise StepError(Ending.STEP_TOO_SMALL, straight)
-        mode = softest(solved)
-        return CriticalPoint(self.reached, 0.0, Loss.BIFURCATION, "", solved, solved, mode, mode.curvature)
+        kept = softest(solved).curvature
+        return CriticalPoint(self.reached, 0.0, Loss.BIFURCATION, "", solved, solved, kept, kept)
 
     def _leave(self, way: Way, point: CriticalPoint, beyond: Beyond) -> list[Reached]:
         """Go down from a critical point to a minimum, if the stage goes on; the trail from there on.
@@ -297,7 +304,7 @@ class Driver:
         for ahead in AHEAD:
             t = min(1.0, furthest + ahead * max(0.0, 1.0 - furthest))
             target = self._held(way.target(t))
-            descent = partial(descend, self.system, point.start, point.mode, target, self.acting)
+            descent = partial(descend, self.system, point.start, point.curvature, target, self.acting)
             landed = self._landed(descent, point, beside=beyond is None)
             if landed is not None:
                 self.passed.append(passed(landed))

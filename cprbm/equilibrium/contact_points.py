@@ -33,6 +33,7 @@ from cprbm.contact import (
     taken,
 )
 from cprbm.equilibrium.contact_set import (
+    NotConvergedError,
     Touched,
     arc_of,
     near_contacts,
@@ -43,7 +44,6 @@ from cprbm.equilibrium.contact_set import (
 from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.iteration import OVERLAP, beside_points
 from cprbm.equilibrium.neighbours import ISOLATED, as_point, given_up, short_runs
-from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
 
@@ -51,19 +51,15 @@ ROUNDS = 12
 """Solves under the same targets."""
 
 
-def touched_equilibrium(
-    system: System,
-    geometry: Geometry,
-    start: State,
-    contacts: Contacts,
-    iterations: int,
-    springs: Springs | None = None,
-) -> Touched:
+def touched_equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Touched:
     """Equilibrium near a state under the state's targets, with settled places of contact.
 
     Raises:
         NotConvergedError: no equilibrium was found, the places do not settle, or a beam passed through itself.
     """
+    geometry, contacts = system.geometry, start.contacts
+    if not geometry.pairs:
+        return solve_set(system, start, iterations, springs)
     corners = corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters)
     kept = contacts.closed | contacts.places.moves
     places, closed = taken(contacts.places, kept), contacts.closed[kept]
@@ -73,7 +69,7 @@ def touched_equilibrium(
     old = contacts.places if not contacts.kept_open else _of_all_pairs(geometry, before, contacts)
     for _ in range(ROUNDS):
         try:
-            solved = solve_set(system, geometry, start, contacts, iterations, springs)
+            solved = solve_set(system, replace(start, contacts=contacts), iterations, springs)
         except NotConvergedError:
             moves = contacts.places.moves & ~on_edge(geometry.arrays, contacts.places)
             if not moves.any():
@@ -90,7 +86,7 @@ def touched_equilibrium(
             new = _come_near(geometry, solved)
             every = partial(_of_all_pairs, geometry, solved.state.z, solved.contacts)
             if passed_through(geometry, before, old, solved.state.z, every, contacts.counters):
-                raise NotConvergedError("a beam passed through itself or over a circle")
+                raise NotConvergedError("a beam passed through itself or over a point")
             if new is None:
                 return solved
             revised = new

@@ -11,9 +11,8 @@ import pytest
 from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.cli.main import run
+from comparisons.cli.main import commands, run
 from comparisons.cli.options import tolerance
-from comparisons.cli.solve_ import command
 from comparisons.crew import ALONE
 from comparisons.pairing import Solvers, solid_answer, solvers_of
 from comparisons.solid_limits import solid_limit
@@ -107,9 +106,9 @@ def test_ends_of_a_zone_that_would_change_places_are_kept(hinge, right):
 
 
 def test_a_tolerance_is_a_percentage_or_a_fraction():
-    context = click.Context(command)
+    solve = commands.commands["solve"]
     for text in ("0.1%", " 0.1 % ", "0.001", "1e-3"):
-        assert tolerance(context, command.params[0], text) == pytest.approx(1e-3), text
+        assert tolerance(click.Context(solve), solve.params[0], text) == pytest.approx(1e-3), text
 
 
 def test_solve_says_in_json_how_n_was_found(right, capsys):

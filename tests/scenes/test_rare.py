@@ -11,7 +11,6 @@ EXPECTED = expectations()
 
 ZONE = "the step to a wide zone is refused as a jump"
 OPEN = {
-    "arch-over-an-end": "with 91 links a step leads over the end of the other beam without a contact",
     "zone-off-the-clamp-long": "the end of a zone lies between two joints and is 5e-5 m off",
     "bypassed-fold": "the set of closed places returns, and no step leads to the fold",
     "pressed-flat-lets-go": "the branch ends as no minimum in place of the opening",
