@@ -15,7 +15,7 @@ from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
 from comparisons.crew import ALONE, Crew
 from comparisons.formats import number, percent
-from comparisons.pairing import Solvers, exact_if_covered, paired
+from comparisons.pairing import Solvers, exact_answer, exact_if_covered, paired
 from comparisons.plain import Plain
 from comparisons.present.canvas import GREY, canvas, finished
 from comparisons.present.columns import Figure, Section, Table
@@ -74,7 +74,7 @@ def with_case(
     Raises:
         SceneError: a solver refuses the question.
     """
-    whole = (solvers.exact or exact_if_covered)(scene, Choices(theory="bending"))
+    whole = exact_if_covered(scene, Choices(theory="bending"), solvers.exact or exact_answer)
     exact = complete_part(scene, whole)
     known, asked = len(exact.stations), sum(len(stage.stations) for stage in scene.stages)
     why = None if known == asked else whole.sentence or whole.ending.value

@@ -19,8 +19,7 @@ import numpy as np
 
 from comparisons.choices import Kinematics
 from comparisons.quantities import COMPONENTS, OPEN_AT_ZERO, arc_lengths, load_unit, unit_of
-from comparisons.stations import span_of
-from comparisons.stations import station_of
+from comparisons.stations import span_of, station_of
 from comparisons.verdict.completeness import ends_at_critical
 from comparisons.verdict.events import mechanism
 from comparisons.verdict.point_forces import away_from_point_forces

@@ -129,7 +129,7 @@ def _led(draft: Draft, number: int, turn: float) -> tuple[Estimate, list[Action]
 
 
 _ORDER = (
-    "name", "materials", "bodies", "pins", "beams", "assembly", "stops", "loads", "drives", "contacts",
+    "name", "theory", "materials", "bodies", "pins", "beams", "assembly", "stops", "loads", "drives", "contacts",
     "stages", "probes",
 )  # fmt: skip
 
