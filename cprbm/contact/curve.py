@@ -196,17 +196,22 @@ def _line_weights(chain: BeamChain) -> tuple[Ints, Array]:
 
 def _lost(m: Mechanism, chain: BeamChain) -> Array:
     """Lost compliance of a beam's pieces; none for the plain chain: a polygon spreads no force."""
-    inner, held, free = lost_compliance()
-    lost = np.tile(inner, (chain.links, 1))
     if not chain.corrected:
-        return np.zeros(lost.shape)
-    beam, h = m.scene.beams[chain.name], chain.borders[1] - chain.borders[0]
+        return np.zeros((chain.links, POWERS))
+    h = chain.borders[1] - chain.borders[0]
+    bending = 12.0 * h * (chain.lean + chain.half_lean / chain.link_length)
+    shares = (lost_compliance("bending"), bending), (lost_compliance("shear"), h * chain.shear)
+    return sum((_by_link(m, chain, *pieces) * share[:, None] for pieces, share in shares), np.zeros(POWERS))
+
+
+def _by_link(m: Mechanism, chain: BeamChain, inner: Array, held: Array, free: Array) -> Array:
+    """Polynomials (links, POWERS) of a beam's pieces: of inner pieces, half links at bodies and free half links."""
+    lost, beam = np.tile(inner, (chain.links, 1)), m.scene.beams[chain.name]
     lost[0] = free if isinstance(beam.start, FreeEnd) else held
     at_end = free if isinstance(beam.end, FreeEnd) else held
     backwards = np.polynomial.Polynomial(at_end)(np.polynomial.Polynomial([1.0, -1.0])).coef
     lost[-1] = np.resize(backwards, POWERS)
-    bending = 12.0 * h * (chain.lean + chain.half_lean / chain.link_length)
-    return np.asarray(lost * bending[:, None])
+    return lost
 
 
 @dataclass(eq=False)

@@ -120,17 +120,17 @@ def test_inner_lost_compliance_does_not_depend_on_the_supports(xi):
     np.add.at(weights, (curve.stencil[piece] - first) // 5, (curve.weights[piece] @ xi ** np.arange(4)).real)
     chain = simple_beam_compliance(weights, curve.arcs / h, float(count))
     exact = place**2 * (count - place) ** 2 / (3.0 * count)
-    assert np.polyval(lost_compliance()[INNER][::-1], xi) == pytest.approx(exact - chain, abs=1e-9)
+    assert np.polyval(lost_compliance("bending")[INNER][::-1], xi) == pytest.approx(exact - chain, abs=1e-9)
     # stored with h³/EI; the unit of EI is the largest EI of the upper beam
     stiffer = (2.2 / 2.1) ** 3
     assert np.polyval(curve.lost[piece][::-1], xi) == pytest.approx((exact - chain) * h**3 * stiffer, rel=1e-6)
 
 
 def test_half_links_lose_nothing_at_a_joint_and_little_at_a_free_end():
-    _, held, free = lost_compliance()
+    _, held, free = lost_compliance("bending")
     assert abs(held[0]) < 1e-5
     assert np.polyval(held[::-1], 1.0) == pytest.approx(2e-5, abs=1e-5)
-    assert np.polyval(free[::-1], 1.0) == pytest.approx(np.polyval(lost_compliance()[INNER][::-1], 0.0), rel=0.02)
+    assert np.polyval(free[::-1], 1.0) == pytest.approx(np.polyval(lost_compliance("bending")[INNER][::-1], 0.0), rel=0.02)
 
 
 def test_the_plain_chain_touches_by_its_polygon():
