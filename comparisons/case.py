@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 from comparisons import sentences as said
 from comparisons.audit import Audit, audit
-from comparisons.branch_words import BranchVerdict, branch_verdicts
 from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.tolerances.result import Tolerance
 from comparisons.verdict.completeness import complete_part, ends_at_critical
@@ -16,8 +15,8 @@ from comparisons.verdict.judge import Judged, judge_case, judge_rows
 from comparisons.verdict.rows import Row, build_rows
 from comparisons.verdict.runs import SOLVERS, Runs
 from comparisons.verdict.runs_table import RunsTable
-from comparisons.verdict.station_events import station_events
-from comparisons.verdict.words import SEVERITY, Reason, Word
+from comparisons.verdict.station_events import Place, station_events
+from comparisons.verdict.words import SEVERITY, Reason, Word, worst_of
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -26,6 +25,25 @@ Finding = tuple[Word, Reason | None, str]
 
 Auditor = Callable[[Scene, Answer], Audit]
 """Function that finds the faults of an answer to a scene."""
+
+
+@dataclass(frozen=True, slots=True)
+class BranchVerdict:
+    """Word of the rows of one branch in a stage.
+
+    Attributes:
+        stage: name; number: of critical points before; first, last: stations; stations: their number.
+        near: stations between events, which take no part.
+        word: None without a row that takes part.
+    """
+
+    stage: str
+    number: int
+    first: float
+    last: float
+    stations: int
+    near: int
+    word: Word | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,39 +121,38 @@ def _verdict(
     audits: Mapping[str, Audit],
 ) -> Verdict:
     """All findings with their sentences; the worst decides, and its sentence comes first."""
-    of_rows = judge_case(rows, judged)
-    findings: list[Finding] = [
-        (Word.DIFFER, Reason.EVENTS, said.closing_sentence(table.scene, row)) for row in closings
-    ]
-    findings += [(*row.judged, said.critical_sentence(table.scene, row)) for row in criticals]
+    scene, of_rows = table.scene, judge_case(rows, judged)
     completed = _completed(table, criticals)
+    crossings = next((found.crossings for found in audits.values() if found.crossings), ())
+    findings: list[Finding] = [
+        *((Word.DIFFER, Reason.EVENTS, said.closing_sentence(scene, row)) for row in closings),
+        *((*row.judged, said.critical_sentence(scene, row)) for row in criticals),
+        *(
+            (Word.UNDECIDED, Reason.AUDIT, said.audit_sentence(name, found.complaints))
+            for name, found in audits.items()
+            if found.complaints
+        ),
+        *((Word.UNDECIDED, Reason.UNDECLARED_CONTACT, sentence) for sentence in crossings),
+    ]
     if table.problems and not completed:
         findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table, table.problems)))
-    for name, found in audits.items():
-        if found.complaints:
-            findings.append((Word.UNDECIDED, Reason.AUDIT, said.audit_sentence(name, found.complaints)))
-    crossing = next((found.crossings for found in audits.values() if found.crossings), ())
-    findings += [(Word.UNDECIDED, Reason.UNDECLARED_CONTACT, sentence) for sentence in crossing]
     if rows or completed:
         findings.append((*of_rows, said.headline(table, rows, judged, of_rows)))
     findings.sort(key=_rank)
-    words = tuple(found for found, _ in judged)
     word, reason, _ = findings[0]
     others = [name for name in table.problems if not ends_at_critical(table.answers[name])]
-    more = [said.ended_sentence(table, others)] if completed and others else []
-    more += [*said.passed_sentences(table, rows, judged), said.calibration_sentence(table.scene, rows)]
-    more.append(said.theory_sentence(table.scene, table.runs, rows))
-    if word is Word.AGREE:
-        more.append(said.wider_limits(table.scene))
-    return Verdict(
-        word,
-        tuple(filter(None, (*(sentence for *_, sentence in findings), *more))),
-        words,
-        completed,
-        branch_verdicts(rows, words),
-        reason,
-        tuple(why for _, why in judged),
+    sentences = (
+        *(sentence for *_, sentence in findings),
+        said.ended_sentence(table, others) if completed and others else "",
+        *said.passed_sentences(table, rows, judged),
+        said.calibration_sentence(scene, rows),
+        said.theory_sentence(scene, table.runs, rows),
+        said.wider_limits(scene) if word is Word.AGREE else "",
     )
+    words = tuple(found for found, _ in judged)
+    reasons = tuple(why for _, why in judged)
+    shown = tuple(sentence for sentence in sentences if sentence)
+    return Verdict(word, shown, words, completed, _branch_verdicts(rows, words), reason, reasons)
 
 
 def _rank(finding: Finding) -> tuple[int, int]:
@@ -148,13 +165,29 @@ def _completed(table: RunsTable, criticals: Sequence[CriticalRow]) -> bool:
     """Whether both compared answers are complete, or end at critical points that agree."""
     if not _lacking(table):
         return True
-    ended = all(ends_at_critical(answer) for answer in table.pair)
-    return ended and bool(criticals) and criticals[-1].word is Word.AGREE
+    return all(map(ends_at_critical, table.pair)) and bool(criticals) and criticals[-1].word is Word.AGREE
 
 
 def _lacking(table: RunsTable) -> bool:
     """Whether a compared answer is not complete."""
     return any(name in table.problems for name in SOLVERS)
+
+
+def _branch_verdicts(rows: Sequence[Row], words: Sequence[Word | None]) -> tuple[BranchVerdict, ...]:
+    """Word of every branch, in the order of the path."""
+    found: dict[tuple[str, int], list[tuple[Row, Word | None]]] = {}
+    for row, word in zip(rows, words, strict=True):
+        if row.branch is not None:
+            found.setdefault((row.stage, row.branch), []).append((row, word))
+    verdicts = []
+    for (stage, number), mine in found.items():
+        places = {row.station: row.place for row, _ in mine}
+        near = sum(place is Place.BETWEEN for place in places.values())
+        word = worst_of(word for _, word in mine)
+        verdicts.append(
+            BranchVerdict(stage, number, next(iter(places)), next(reversed(places)), len(places), near, word)
+        )
+    return tuple(verdicts)
 
 
 def _reactions(table: RunsTable) -> tuple[WorkEnergyReaction, ...]:

@@ -1,7 +1,8 @@
-"""The numerical choices of a run, in words that belong to neither solver."""
+"""Numerical choices of a run: mesh sizes, contact formulation and beam theory."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -10,7 +11,7 @@ if TYPE_CHECKING:
 
 Kinematics = Literal["bending", "stretch", "shear"]
 KINEMATICS: tuple[Kinematics, ...] = ("bending", "stretch", "shear")
-"""The beam theories of both solvers, each with one freedom more than the one before."""
+"""Beam theories of both solvers; every theory has a freedom more than the theory before."""
 
 Count = int | dict[str, int]
 
@@ -20,15 +21,15 @@ LOOSEST = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """How finely and by which variant a scene is to be solved.
+    """Mesh sizes and variants of a solve.
 
     Attributes:
-        links: the CPRBM's links per beam: one number, or one for each beam by name.
+        links: links of the CPRBM per beam: a number for all beams, or numbers by name of the beam.
         formulation: of the CPRBM's contact.
-        elements: finite elements per beam, given in the same way.
+        elements: finite elements per beam, in the same form.
         kinematics: beam theory of the finite elements; None for ``theory``.
-        penetration: the overlap that the finite elements may leave, as a fraction of the thickness.
-        across: elements of the solid across a beam's thickness; along it has as many as the beam elements.
+        penetration: allowed overlap of the finite elements, a fraction of the thickness.
+        across: elements of the solid across a beam's thickness; along the beam the solid has ``elements``.
         theory: beam theory of both solvers; None for the scene's.
     """
 
@@ -41,45 +42,42 @@ class Choices:
     theory: Kinematics | None = None
 
     def finer(self) -> Choices:
-        """The same with twice the links, twice the elements along and across, and a sixteenth of the penetration.
+        """The choices with twice the links, twice the elements along and across, and a sixteenth of the penetration.
 
-        The error that a penalty leaves is proportional to the penetration.  Were that kept, the two runs
-        would share it and their change would not show it.  To fall as an error of second order it need only be
-        quartered, but a solver may leave less than it was allowed, and down to a quarter of that is provided for.
+        The error of a penalty is proportional to the penetration.  Two runs with one penetration share this error, and
+        their change does not show the error.  A quarter is enough for an error of second order, but a solver may leave
+        down to a quarter of the allowed penetration.
         """
+        links, elements = (_changed(count, lambda n: 2 * n) for count in (self.links, self.elements))
         return replace(
-            self,
-            links=_twice(self.links),
-            elements=_twice(self.elements),
-            penetration=self.penetration / 16.0,
-            across=2 * self.across,
+            self, links=links, elements=elements, penetration=self.penetration / 16.0, across=2 * self.across
         )
 
     def of_size(self, n: int) -> Choices:
-        """The same with N = ``n`` links and elements, and a penetration whose error falls with the elements' own error.
+        """The choices with N = ``n`` links and elements; the error of the penetration falls with the elements' error.
 
-        The penetration is the present one at N = 40 and falls with the fourth power of N up to N = 160, then with the
+        The penetration is unchanged at N = 40 and falls with the fourth power of N up to N = 160, then with the
         square: below, round-off in the positions is a share of the penetration.
         """
         share = (40.0 / min(n, 160)) ** 4 * (160.0 / max(n, 160)) ** 2
         return replace(self, links=n, elements=n, penetration=min(LOOSEST, self.penetration * share))
 
     def beside(self) -> Choices:
-        """The same with a seventh more links and elements: joints and nodes are elsewhere, and errors hardly other.
+        """The choices with a seventh more links and elements: joints and nodes are elsewhere, and errors hardly other.
 
-        The penetration falls by the power of the elements by which it does in the finer ones.
+        The penetration falls with the fourth power of the elements, as in the finer choices.
         """
-        elements = _seventh_more(self.elements)
-        more = _whole(elements) / _whole(self.elements)
-        return replace(self, links=_seventh_more(self.links), elements=elements, penetration=self.penetration / more**4)
+        links, elements = (_changed(n, lambda n: n + max(1, round(n / 7))) for n in (self.links, self.elements))
+        more = _total(elements) / _total(self.elements)
+        return replace(self, links=links, elements=elements, penetration=self.penetration / more**4)
 
     def ratios_beside(self) -> tuple[float, float]:
-        """The links here over those beside, and the elements."""
+        """The links here over the links beside, and the elements."""
         beside = self.beside()
-        return _whole(self.links) / _whole(beside.links), _whole(self.elements) / _whole(beside.elements)
+        return _total(self.links) / _total(beside.links), _total(self.elements) / _total(beside.elements)
 
     def within(self, theory: Kinematics) -> Choices:
-        """The same with a beam theory of both solvers."""
+        """The choices with a beam theory of both solvers."""
         return replace(self, kinematics=theory, theory=theory)
 
     def theory_of(self, scene: Scene) -> Kinematics:
@@ -92,34 +90,26 @@ class Choices:
 
 
 def check(choices: Choices, scene: Scene) -> None:
-    """See that the choices fit the scene.
+    """Check that the choices fit the scene.
 
     Raises:
-        SceneError: a count that names beams leaves one out or names one that is not there.
+        SceneError: a count by beams lacks a beam, or names an unknown beam.
     """
-    from cprbm_scene import Mistake, SceneError  # loaded when a scene is there, not with the options' names
+    from cprbm_scene import Mistake, SceneError  # loaded with a scene, not with the names of the options
 
-    mistakes: list[Mistake] = []
-    for key, count in (("links", choices.links), ("elements", choices.elements)):
-        if isinstance(count, int):
-            continue
-        if set(count) != set(scene.beams):
-            found = ", ".join(f"{beam}={number}" for beam, number in count.items())
-            allowed = f"one number, or one for each of the beams {', '.join(scene.beams)}"
-            mistakes.append(Mistake(key, found, allowed))
+    allowed = f"one number, or one for each of the beams {', '.join(scene.beams)}"
+    mistakes = [
+        Mistake(key, ", ".join(f"{beam}={number}" for beam, number in count.items()), allowed)
+        for key, count in (("links", choices.links), ("elements", choices.elements))
+        if not isinstance(count, int) and {*count} != {*scene.beams}
+    ]
     if mistakes:
         raise SceneError(mistakes)
 
 
-def _seventh_more(count: Count) -> Count:
-    if isinstance(count, int):
-        return count + max(1, round(count / 7))
-    return {beam: number + max(1, round(number / 7)) for beam, number in count.items()}
+def _changed(count: Count, change: Callable[[int], int]) -> Count:
+    return change(count) if isinstance(count, int) else {beam: change(number) for beam, number in count.items()}
 
 
-def _whole(count: Count) -> int:
+def _total(count: Count) -> int:
     return count if isinstance(count, int) else sum(count.values())
-
-
-def _twice(count: Count) -> Count:
-    return 2 * count if isinstance(count, int) else {beam: 2 * number for beam, number in count.items()}

@@ -1,9 +1,8 @@
-"""What a scene's source claims, beside our rows: met or not, station by station and as a whole.
+"""Claims of a scene's source beside the rows of a comparison: met or not, station by station and as a whole.
 
-A source's relative difference of a force or a moment is one of the value there, and not of the largest in the stage by
-which our rows measure it.  A claim is therefore held against the difference over the reference's own norm, as long
-as that does not vanish.  Where a claim states a value, it is held against the CPRBM's distance from that.  Claims have
-no part in the verdict.
+A source divides a difference of a force or a moment by the value at the station; a row divides by the largest value of
+the stage.  A claim is therefore compared with the difference over the reference's own norm, unless this norm vanishes.
+A claim with a value is compared with the distance of the CPRBM from this value.  Claims take no part in the verdict.
 """
 
 from __future__ import annotations
@@ -18,19 +17,19 @@ from cprbm_scene import Claim, Scene
 from cprbm_scene.statement import CRITICAL
 
 _OF_THE_VALUE = frozenset({"force", "reaction", "reaction_moment"})
-"""Quantities whose rows are measured by the stage's largest, and claims by the value itself."""
+"""Quantities with claims on the share of the value itself."""
 
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """How a claim stands over all its stations.
+    """A claim beside all its stations.
 
     Attributes:
-        claim: what is claimed.
-        worst: the row, or the critical value, with our largest difference.
-        difference: that difference, as a fraction.
-        met: stations at which the claim is met.
-        stations: all at which both sides have a value.
+        claim: the claim.
+        worst: the row, or the critical value, with the largest difference.
+        difference: the largest difference, a fraction.
+        met: stations with a smaller difference than the claimed bound.
+        stations: all stations with a value of both sides.
     """
 
     claim: Claim
@@ -46,78 +45,63 @@ class Standing:
 
 
 def claim_of(scene: Scene, row: Row) -> Claim | None:
-    """What is claimed of a row: at its own station, or else at every station of its probe; None if nothing is."""
+    """The claim about a row's station, otherwise about every station of the probe; None without a claim."""
     about = [claim for claim in scene.claims if _is_about(claim, row)]
-    own = [claim for claim in about if claim.station is not None]
-    return next(iter((*own, *about)), None)
+    return min(about, key=lambda claim: claim.station is None, default=None)
 
 
-def as_claimed(row: Row) -> Row:
-    """The row with its fractions taken as a claim takes them."""
-    own = norm(row.probe.quantity, row.fea)
-    of_the_value = row.probe.quantity in _OF_THE_VALUE and own >= VANISHING * row.scale
-    return replace(row, denominator=own) if of_the_value else row
+def claim_of_critical(scene: Scene, row: CriticalRow) -> Claim | None:
+    """The claim about the critical value of a stage, otherwise of all stages; None without a claim."""
+    about = [claim for claim in scene.claims if _is_about(claim, row)]
+    return min(about, key=lambda claim: claim.stage is None, default=None)
+
+
+def _is_about(claim: Claim, row: Row | CriticalRow) -> bool:
+    """Whether a claim is about a row; without a station the claim is about all stations of the probe."""
+    if isinstance(row, CriticalRow):
+        return claim.probe == CRITICAL and row.place == 0 and claim.in_stage(row.stage)
+    return claim.probe == row.probe.name and claim.speaks_of(row.stage, row.station)
 
 
 def claim_difference(row: Row) -> float | None:
-    """Our difference as a claim takes it, a fraction; None where there is none."""
-    return as_claimed(row).fraction(row.difference)
+    """Difference of the solvers as a source states differences, a fraction; None without a divisor."""
+    own = norm(row.probe.quantity, row.fea)
+    of_the_value = row.probe.quantity in _OF_THE_VALUE and own >= VANISHING * row.scale
+    return (replace(row, denominator=own) if of_the_value else row).fraction(row.difference)
 
 
 def claimed_difference(claim: Claim, row: Row) -> float | None:
-    """Our difference from what a claim says: from its value, or between the solvers; None where there is none."""
+    """Difference from a claimed value, otherwise between the solvers, a fraction; None without such a difference."""
     if claim.value is None:
         return claim_difference(row)
-    if row.cprbm.size != 1:
+    return abs(float(row.cprbm[0]) - claim.value) / (abs(claim.value) or row.scale) if row.cprbm.size == 1 else None
+
+
+def critical_difference(claim: Claim, row: CriticalRow) -> float | None:
+    """Difference of the CPRBM's critical value from the claimed value, otherwise from the finite elements' value."""
+    reference = row.fea.value if claim.value is None and row.fea is not None else claim.value
+    if row.cprbm is None or reference is None:
         return None
-    return abs(float(row.cprbm[0]) - claim.value) / (abs(claim.value) or row.scale)
+    return abs(row.cprbm.value - reference) / (abs(reference) or row.span)
 
 
 def claim_met(claim: Claim | None, row: Row) -> bool | None:
-    """Whether our difference stays below the claimed bound; None where either is missing."""
+    """Whether the difference stays below the claimed bound; None without a claim or a difference."""
     found = None if claim is None else claimed_difference(claim, row)
     return None if claim is None or found is None else found <= claim.bound
 
 
 def standings(scene: Scene, rows: Sequence[Row], criticals: Sequence[CriticalRow] = ()) -> tuple[Standing, ...]:
-    """Every claim that some row or critical value can be held against, in the scene's order."""
-    found = []
+    """Every claim with a row or critical value, in the scene's order."""
+    found: list[Standing] = []
+    candidates: tuple[Row | CriticalRow, ...] = (*rows, *criticals)
     for claim in scene.claims:
-        mine: list[tuple[float, Row | CriticalRow]] = []
-        if claim.probe == CRITICAL:
-            of_stages = [each for each in criticals if _is_about_critical(claim, each)]
-            mine += [(off, each) for each in of_stages if (off := critical_difference(claim, each)) is not None]
-        else:
-            mine += [
-                (off, row)
-                for row in rows
-                if _is_about(claim, row) and (off := claimed_difference(claim, row)) is not None
-            ]
+        mine = []
+        for row in candidates:
+            off = critical_difference(claim, row) if isinstance(row, CriticalRow) else claimed_difference(claim, row)
+            if _is_about(claim, row) and off is not None:
+                mine.append((off, row))
         if mine:
             off, worst = max(mine, key=lambda each: each[0])
             found.append(Standing(claim, worst, off, sum(each <= claim.bound for each, _ in mine), len(mine)))
     return tuple(found)
-
-
-def claim_of_critical(scene: Scene, found: CriticalRow) -> Claim | None:
-    """What is claimed of a critical value, in its stage or else in all; None if nothing is."""
-    about = [claim for claim in scene.claims if claim.probe == CRITICAL and _is_about_critical(claim, found)]
-    own = [claim for claim in about if claim.stage is not None]
-    return next(iter((*own, *about)), None)
-
-
-def critical_difference(claim: Claim, found: CriticalRow) -> float | None:
-    """Of the CPRBM's critical value from the claimed one, or else from the finite elements', a fraction."""
-    reference = found.fea.value if claim.value is None and found.fea is not None else claim.value
-    if found.cprbm is None or reference is None:
-        return None
-    return abs(found.cprbm.value - reference) / (abs(reference) or found.span)
-
-
-def _is_about_critical(claim: Claim, found: CriticalRow) -> bool:
-    return found.place == 0 and claim.in_stage(found.stage)
-
-
-def _is_about(claim: Claim, row: Row) -> bool:
-    """Whether a claim is about a row; without a station it is about all of its probe."""
-    return claim.probe == row.probe.name and claim.speaks_of(row.stage, row.station)

@@ -1,26 +1,22 @@
-"""What the harness itself must know of a neutral line: its length, its points and its curvature.
-
-The solvers derive their own; nothing here is handed to them.
+"""Lengths, points and curvature of neutral lines and rigid edges, from the geometry of the scene.
 
 ======  ===================================================
 symbol  meaning
 ======  ===================================================
 s       arc length from the beam's start, m
-R       radius of an arc, m
-φ       angle that an arc turns through, counter-clockwise
+u       fraction of the arc length
 ======  ===================================================
 
-Of a polynomial and a spline they are what the scene's own geometry says, :func:`cprbm_scene.curve_records.shape_of`.
+The solvers derive their own geometry and hand over none of it.
 """
 
 from __future__ import annotations
 
-import math
 from typing import TypeAlias, assert_never
 
 import numpy as np
 
-from cprbm_scene import Arc, Beam, Line, Polynomial, Scene, Spline
+from cprbm_scene import Beam, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import (
@@ -41,15 +37,7 @@ _SAMPLES = 1001  # along a beam whose thickness varies
 
 def length(curve: Curve) -> float:
     """Arc length of a curve, m."""
-    match curve:
-        case Line():
-            return math.dist(curve.start, curve.end)
-        case Arc():
-            return radius(curve) * abs(_turn(curve))
-        case Polynomial() | Spline():
-            return shape_of(curve).length
-        case _:
-            assert_never(curve)
+    return shape_of(curve).length
 
 
 def longest(scene: Scene) -> float:
@@ -57,26 +45,11 @@ def longest(scene: Scene) -> float:
     return max(length(beam.curve) for beam in scene.beams.values())
 
 
-def radius(curve: Curve) -> float:
-    """Smallest radius of curvature of a curve, m; infinite for a line."""
-    match curve:
-        case Line():
-            return math.inf
-        case Arc():
-            return math.dist(curve.start, curve.center)
-        case Polynomial() | Spline():
-            curvature = shape_of(curve).largest_curvature
-            return 1.0 / curvature if curvature > 0.0 else math.inf
-        case _:
-            assert_never(curve)
-
-
 def bentness(beam: Beam) -> float:
     """Largest thickness over radius along a beam at rest."""
     if not beam.tapered:
-        return beam.thickest / radius(beam.curve)
-    u = np.union1d(np.linspace(0.0, 1.0, _SAMPLES), beam.knots)
-    return float(np.max(bentness_on(beam, u)))
+        return beam.thickest * shape_of(beam.curve).largest_curvature
+    return float(np.max(bentness_on(beam, np.union1d(np.linspace(0.0, 1.0, _SAMPLES), beam.knots))))
 
 
 def bentness_on(beam: Beam, u: Array) -> Array:
@@ -86,19 +59,7 @@ def bentness_on(beam: Beam, u: Array) -> Array:
 
 def points(curve: Curve, s: Array) -> Array:
     """Points (n, 2) of a curve at the arc lengths ``s`` (n,), m."""
-    match curve:
-        case Line():
-            along = np.asarray(s)[:, None] / length(curve)
-            return np.asarray((1 - along) * np.array(curve.start) + along * np.array(curve.end))
-        case Arc():
-            centre = np.array(curve.center)
-            first = math.atan2(curve.start[1] - centre[1], curve.start[0] - centre[0])
-            angle = first + math.copysign(1.0, _turn(curve)) * np.asarray(s) / radius(curve)
-            return np.asarray(centre + radius(curve) * np.stack([np.cos(angle), np.sin(angle)], axis=1))
-        case Polynomial() | Spline():
-            return shape_of(curve).point(np.asarray(s) / shape_of(curve).length)
-        case _:
-            assert_never(curve)
+    return shape_of(curve).point(np.asarray(s) / length(curve))
 
 
 def edge_places(contact: RigidEdge, reach: float, count: int) -> Array:
@@ -116,7 +77,7 @@ def edge_places(contact: RigidEdge, reach: float, count: int) -> Array:
             n = np.array(contact.normal) / np.hypot(*contact.normal)
             return np.array(contact.point) + np.outer([-reach, reach], [-n[1], n[0]])
         case FunctionContact() | SplineContact() | EllipseContact():
-            return points(contact.curve, np.linspace(0.0, length(contact.curve), count))
+            return shape_of(contact.curve).point(np.linspace(0.0, 1.0, count))
         case _:
             assert_never(contact)
 
@@ -128,11 +89,3 @@ def is_free_on_the_left(contact: RigidEdge) -> bool:
     # the places above a function of x lie on the left of a graph towards larger x
     forward = (contact.range[1] > contact.range[0]) == (contact.axis == "x")
     return forward == (contact.side == "above")
-
-
-def _turn(arc: Arc) -> float:
-    """The angle φ, rad, in (−2π, 2π), that an arc turns through about its centre."""
-    first = math.atan2(arc.start[1] - arc.center[1], arc.start[0] - arc.center[0])
-    last = math.atan2(arc.end[1] - arc.center[1], arc.end[0] - arc.center[0])
-    turn = (last - first) % (2 * math.pi)
-    return turn if arc.direction == "counterclockwise" else turn - 2 * math.pi

@@ -119,32 +119,45 @@ def prepared(solver: Solver, scene: Scene, choices: Choices) -> Prepared:
 
 
 def exact_answer(scene: Scene, choices: Choices) -> Answer:
-    """The exact answer in the theory ``bending`` at the covered stations, whatever the choices."""
+    """The exact answer in the theory ``bending`` at the covered stations, whatever the choices.
+
+    Raises:
+        SceneError: the solver refuses the scene.
+    """
     import elastica_reference
 
     return elastica_reference.answer(scene, elastica_reference.Settings())
 
 
+def exact_if_covered(scene: Scene, choices: Choices) -> Answer:
+    """The exact answer beside other solvers; without stations, and with the mistakes as a sentence, if refused."""
+    answer, reason = _unless_refused(exact_answer, scene, choices)
+    return answer or Answer("exact", scene.name, frozendict(), Ending.NOT_COVERED, reason, ())
+
+
 def exact_pieces(scene: Scene) -> int:
     """Number of pieces of the exact equations: between kinks of sections, points of splines, loads and contacts."""
-    beams = scene.beams.values()
-    inner = [
-        len(beam.knots) - 2 + (len(beam.curve.points) - 2 if isinstance(beam.curve, Spline) else 0) for beam in beams
-    ]
-    loads = sum(not isinstance(load, BodyLoad) for load in scene.loads.values())
-    return len(beams) + sum(inner) + loads + len(scene.contacts)
+    pieces = (
+        len(beam.knots) - 1 + (len(beam.curve.points) - 2 if isinstance(beam.curve, Spline) else 0)
+        for beam in scene.beams.values()
+    )
+    return sum(pieces) + sum(not isinstance(load, BodyLoad) for load in scene.loads.values()) + len(scene.contacts)
 
 
 def exact_by_rule(scene: Scene, choices: Choices) -> Answer:
     """The exact answer, or none with a sentence where pieces times stations are more than ``EXACT_LIMIT``."""
     pieces, stations = exact_pieces(scene), sum(len(stage.stations) for stage in scene.stages)
     if pieces * stations <= EXACT_LIMIT:
-        return exact_answer(scene, choices)
-    sentence = (
+        return exact_if_covered(scene, choices)
+    return Answer(
+        "exact",
+        scene.name,
+        frozendict(),
+        Ending.NOT_COVERED,
         f"{pieces} pieces of beams at {stations} stations are beyond the rule for the exact reference (pieces times "
-        f"stations at most {EXACT_LIMIT}); the option --exact runs the reference all the same."
+        f"stations at most {EXACT_LIMIT}); the option --exact runs the reference all the same.",
+        (),
     )
-    return Answer("exact", scene.name, frozendict(), Ending.NOT_COVERED, sentence, ())
 
 
 def exact_or_why(answer: Answer | None = None) -> tuple[Answer | None, str]:
@@ -212,7 +225,7 @@ def solvers_of(planted: object, *, exact: bool | None = None) -> Solvers:
 
     ``exact`` says whether the exact reference is asked; with None the rule decides.
     """
-    solvers = planted if isinstance(planted, Solvers) else Solvers(exact=exact_answer if exact else exact_by_rule)
+    solvers = planted if isinstance(planted, Solvers) else Solvers(exact=exact_if_covered if exact else exact_by_rule)
     return replace(solvers, exact=None) if exact is False else solvers
 
 
@@ -321,18 +334,18 @@ def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
     if not contacts or not has_hints or ends or finest > PAPER_BESIDE_AUTO:
         return None
     # `paper` may refuse too few links for the polynomial; no requested value depends on the run
-    return _unless_refused(solvers, scene, replace(choices.within("bending"), formulation="paper"))[0]
+    return _unless_refused(solvers.cprbm, scene, replace(choices.within("bending"), formulation="paper"))[0]
 
 
 def in_other_theory(scene: Scene, choices: Choices, solvers: Solvers) -> tuple[Answer | None, str]:
     """The CPRBM in the other theory (:attr:`Runs.other_theory`), or None and the mistakes of a refusal."""
-    return _unless_refused(solvers, scene, choices.within(other_theory(choices.kinematics_of(scene))))
+    return _unless_refused(solvers.cprbm, scene, choices.within(other_theory(choices.kinematics_of(scene))))
 
 
-def _unless_refused(solvers: Solvers, scene: Scene, choices: Choices) -> tuple[Answer | None, str]:
-    """The CPRBM's answer, or None and the mistakes of a refusal."""
+def _unless_refused(solver: Solver, scene: Scene, choices: Choices) -> tuple[Answer | None, str]:
+    """The answer of a solver, or None and the mistakes of a refusal."""
     try:
-        return solvers.cprbm(scene, choices), ""
+        return solver(scene, choices), ""
     except SceneError as error:
         return None, "; ".join(map(str, error.mistakes))
 

@@ -30,37 +30,42 @@ LARGEST_RATIO = 1e5
 
 
 class Material(Record):
-    """Linear elastic, isotropic material: ``youngs_modulus`` in Pa, ``poisson_ratio`` a number."""
+    """Linear elastic, isotropic material."""
 
     youngs_modulus: Annotated[float, Field(gt=0.0), Measured(STRESS)]
+    """Young's modulus."""
     poisson_ratio: Annotated[float, Field(gt=-1.0, le=0.5), Measured(NUMBER)]
+    """Poisson's ratio."""
 
 
 PointName = Annotated[Name, Of("point")]
 
 
 class WeldedEnd(Record):
-    """End of a beam, moving and turning with the body of a ``point``."""
+    """End of a beam that moves and turns with a body."""
 
     joint: Literal["weld"]
     point: PointName
+    """Point of a body; the end lies on the point."""
 
 
 class PinnedEnd(Record):
-    """End of a beam at a body's ``point``, free to turn about the point."""
+    """End of a beam at a body's point, free to turn about the point."""
 
     joint: Literal["pin"]
     point: PointName
+    """Point of a body; the end lies on the point, or is brought there by an assembly."""
 
 
 class FreeEnd(Record):
-    """End of a beam without a joint; with a ``point``, a name of the end for loads and probes.
+    """End of a beam without a joint.
 
     A scene has a free body of this point, welded to the end, in place of a named free end.
     """
 
     joint: Literal["free"]
     point: Name | None = None
+    """New name of the end, for probes, loads and drives."""
 
     def rules(self) -> Iterator[Mistake]:
         """A name whose body is another body of the scene."""
@@ -72,13 +77,12 @@ BeamEnd = Annotated[WeldedEnd | PinnedEnd | FreeEnd, Field(discriminator="joint"
 
 
 class Profile(Record):
-    """Variable size of a beam: ``values`` (m) at fractions ``at`` of the arc length, linear between them.
-
-    The fractions ascend from 0 to 1.
-    """
+    """Thickness or width that varies along the beam."""
 
     at: Annotated[tuple[Number, ...], Field(min_length=2)]
+    """Fractions of the arc length, ascending from 0 to 1."""
     values: Annotated[tuple[PositiveLength, ...], Field(min_length=2)]
+    """Sizes at the fractions; straight lines connect them."""
 
     def rules(self) -> Iterator[Mistake]:
         """Places without ascent from 0 to 1, or more or fewer than the values; jumps of the size."""
@@ -118,36 +122,43 @@ Size = Annotated[
 
 
 class PaperBeam(Record):
-    """Elements of the formulation ``paper``, ``uniform`` along ``x`` or ``y`` instead of the arc length."""
+    """Elements of a beam in the formulation ``paper``, even along an axis instead of the arc length."""
 
     uniform: Literal["x", "y"]
+    """Axis with even steps of the elements."""
 
 
 class Imperfection(Record):
-    """Offset of a beam's neutral line along the left normal, a sine of the arc length, zero at both ends.
-
-    ``amplitude`` in m, to the left if positive; a number of ``half_waves``.
-    """
+    """Offset of a beam's neutral line along the left normal, a sine of the arc length, zero at both ends."""
 
     amplitude: Length
+    """Largest offset, to the left of the beam if positive."""
     half_waves: Annotated[int, Field(ge=1, le=MOST_HALF_WAVES)] = 1
+    """Number of half waves."""
 
 
 class Beam(Record):
     """Slender beam of rectangular section, free of stress in the shape of the ``curve``.
 
-    ``thickness`` lies in the plane of motion, ``width`` across the plane, m.  Both are a number or vary along the beam.
     An ``imperfection`` becomes a part of the curve: the beam then has the curve with the offset, as a spline.
     """
 
     curve: CurveField
+    """Neutral line without stress."""
     thickness: Size
+    """Size of the section in the plane of motion."""
     width: Size
+    """Size of the section across the plane of motion."""
     material: Annotated[Name, Of("material")]
+    """Material of the beam."""
     start: BeamEnd
+    """Joint at the start of the curve."""
     end: BeamEnd
+    """Joint at the end of the curve."""
     paper: PaperBeam | None = None
+    """Data for the formulation ``paper``."""
     imperfection: Imperfection | None = None
+    """Offset of the neutral line, without stress."""
 
     @model_validator(mode="after")
     def _with_imperfection(self) -> Beam:

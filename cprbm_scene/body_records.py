@@ -38,34 +38,36 @@ BeamName = Annotated[Name, Of("beam")]
 
 
 class FixedBody(Record):
-    """The ground: a rigid body with named points (m), at rest.
+    """The ground: a rigid body at rest.
 
     A scene has a point at an edge of the body, or at the first beam, in place of no points.
     """
 
     motion: Literal["fixed"]
     points: Named[Point] = Field(default_factory=frozendict)
+    """Points of the body by name, at their initial places."""
 
 
 class FreeBody(Record):
-    """Rigid body with two translations and a rotation; ``points`` at their initial places, m."""
+    """Rigid body with two translations and a rotation."""
 
     motion: Literal["free"]
     points: Points
+    """Points of the body by name, at their initial places."""
 
 
 class SlidingBody(Record):
-    """Rigid body on a frictionless guide of the ground: the body moves ``along`` a direction and does not turn.
-
-    With ``turns`` the body is a pin in a slot: the point ``about`` stays in the slot and the body turns about the
-    point.  A body with a single point needs no ``about``.  ``points`` at their initial places, m.
-    """
+    """Rigid body on a frictionless guide of the ground, without rotation unless ``turns`` is true."""
 
     motion: Literal["slides"]
     along: Direction
+    """Direction of the guide."""
     turns: bool = False
+    """Rotation about the point ``about``: the body is a pin in a slot."""
     about: Name | None = None
+    """Point of the body in the slot; a body with a single point needs no name."""
     points: Points
+    """Points of the body by name, at their initial places."""
 
     @property
     def pin(self) -> Name | None:
@@ -94,14 +96,13 @@ class SlidingBody(Record):
 
 
 class TurningBody(Record):
-    """Rigid body on a frictionless pivot of the ground: the body turns ``about`` a point of the body.
-
-    ``points`` at their initial places, m.
-    """
+    """Rigid body on a frictionless pivot of the ground."""
 
     motion: Literal["turns"]
     about: Name
+    """Point of the body on the pivot."""
     points: Points
+    """Points of the body by name, at their initial places."""
 
     def rules(self) -> Iterator[Mistake]:
         """A pivot outside the body's points."""
@@ -117,13 +118,14 @@ Body = Annotated[FixedBody | FreeBody | SlidingBody | TurningBody, Field(discrim
 
 
 class BodyPin(Record):
-    """Frictionless hinge between two bodies: the ``points``, from two bodies, stay together."""
+    """Frictionless hinge between two bodies."""
 
     points: Annotated[tuple[Name, Name], Of("point")]
+    """Two points at the same place, of two bodies."""
 
 
 class Stop(Record):
-    """Limits of the angle between a pinned ``beam`` and the body, rad: ``least``, ``most`` or both.
+    """Limits of the angle between a pinned beam and the body at the pin.
 
     The angle runs counter-clockwise from the line between the pin and ``towards``, another point of the same body, to
     the direction of the beam away from the pin.  As drawn the angle lies in (−π, π].  The angle is continuous and
@@ -132,10 +134,15 @@ class Stop(Record):
     """
 
     beam: BeamName
+    """Beam with a pinned end."""
     end: Literal["start", "end"]
+    """Pinned end of the beam."""
     towards: PointName
+    """Another point of the body at the pin."""
     least: Angle | None = None
+    """Least angle."""
     most: Angle | None = None
+    """Largest angle; a stop has at least one limit."""
 
     def rules(self) -> Iterator[Mistake]:
         """No limit, or limits in the wrong order."""
@@ -150,64 +157,70 @@ class Stop(Record):
 class Assembly(Record):
     """Motion of pinned ends, drawn apart from their points, to the points before the first stage.
 
-    Three parts, without other loads or drives: ``moments`` (N·m, counter-clockwise on the end of the named beam) grow
-    while the ends are free; the ends move straight to their points; the moments decrease to zero.  The moments select
-    an assembled state among several.  Contacts act throughout, stops as soon as the ends are at their points.
+    Three parts, without other loads or drives: the moments grow while the ends are free; the ends move straight to
+    their points; the moments decrease to zero.  The moments select an assembled state among several.  Contacts act
+    throughout, stops as soon as the ends are at their points.
     """
 
     moments: Annotated[Named[Annotated[float, Measured(MOMENT)]], Of("beam")] = Field(default_factory=frozendict)
+    """Moments on pinned ends by the names of beams, counter-clockwise."""
 
 
 class Moment(Record):
-    """Moment on a ``body``, counter-clockwise positive, N·m."""
+    """Moment on a body, counter-clockwise."""
 
     unit: ClassVar[Unit] = MOMENT
     kind: Literal["moment"]
     body: BodyName
+    """Body under the moment, counter-clockwise."""
 
 
 class Force(Record):
-    """Dead force at a body's ``point``, N: the ``direction`` (of any length but zero) stays as the body turns."""
+    """Dead force at a point of a body."""
 
     unit: ClassVar[Unit] = FORCE
     kind: Literal["force"]
     point: PointName
+    """Point of a body under the force."""
     direction: Direction
+    """Direction, constant while the part turns."""
 
 
 class BeamForce(Record):
-    """Dead force on a ``beam``, N, ``at`` a fraction of the arc length from the start.
-
-    The ``direction`` (of any length but zero) stays as the beam turns.
-    """
+    """Dead force at a place of a beam."""
 
     unit: ClassVar[Unit] = FORCE
     kind: Literal["beam_force"]
     beam: BeamName
+    """Beam under the load."""
     at: Share
+    """Place, a fraction of the beam's arc length."""
     direction: Direction
+    """Direction, constant while the part turns."""
 
 
 class BeamMoment(Record):
-    """Moment on a ``beam``, counter-clockwise positive, N·m, ``at`` a fraction of the arc length from the start."""
+    """Moment at a place of a beam, counter-clockwise."""
 
     unit: ClassVar[Unit] = MOMENT
     kind: Literal["beam_moment"]
     beam: BeamName
+    """Beam under the load."""
     at: Share
+    """Place, a fraction of the beam's arc length."""
 
 
 class DistributedLoad(Record):
-    """Dead load on a ``beam``, N per metre of arc length, constant ``along`` the beam between two fractions.
-
-    The ``direction`` (of any length but zero) stays as the beam turns: a weight, not a pressure.
-    """
+    """Dead load per length of a beam, constant along a part: a weight, not a pressure."""
 
     unit: ClassVar[Unit] = LINE_LOAD
     kind: Literal["distributed"]
     beam: BeamName
+    """Beam under the load."""
     direction: Direction
+    """Direction, constant while the part turns."""
     along: tuple[Share, Share] = (0.0, 1.0)
+    """Loaded part of the beam, fractions of the arc length."""
 
     def rules(self) -> Iterator[Mistake]:
         """A stretch without length."""
@@ -221,7 +234,14 @@ BodyLoad = Moment | Force
 
 
 _From = create_model(  # type: ignore[call-overload]
-    "_From", __base__=Record, **{"from": (Annotated[Name | None, Of("stage")], None)}
+    "_From",
+    __base__=Record,
+    **{
+        "from": (
+            Annotated[Name | None, Of("stage")],
+            Field(None, description="First stage of the drive: before this stage the motion is free."),
+        )
+    },
 )
 """Field with a name that Python reserves."""
 
@@ -239,26 +259,23 @@ class _Drive(_From):
 
 
 class DisplacementDrive(_Drive):
-    """Prescribed displacement of a body's ``point`` along ``direction`` (of any length but zero), m.
-
-    With ``from`` the displacement is free before the named stage, and then holds the value that it has there.
-    """
+    """Prescribed displacement of a point of a body along a direction."""
 
     unit: ClassVar[Unit] = LENGTH
     kind: Literal["displacement"]
     point: PointName
+    """Driven point of a body."""
     direction: Direction
+    """Direction of the prescribed displacement; the point is free across it."""
 
 
 class RotationDrive(_Drive):
-    """Prescribed rotation of a ``body``, counter-clockwise, rad.
-
-    With ``from`` the rotation is free before the named stage, and then holds the value that it has there.
-    """
+    """Prescribed rotation of a body, counter-clockwise."""
 
     unit: ClassVar[Unit] = ANGLE
     kind: Literal["rotation"]
     body: BodyName
+    """Body with a prescribed rotation, counter-clockwise."""
 
 
 Drive = Annotated[DisplacementDrive | RotationDrive, Field(discriminator="kind")]

@@ -32,10 +32,12 @@ BACKWARDS = 1e-3
 
 
 class Related(Record):
-    """Joints of a beam with possible contact: a range of the initial ``x`` or ``y`` (not both), m."""
+    """Joints of a beam with possible contact, by their initial places."""
 
     x: tuple[Length, Length] | None = None
+    """Range of the initial x of joints."""
     y: tuple[Length, Length] | None = None
+    """Range of the initial y of joints; a table has one of the two."""
 
     def rules(self) -> Iterator[Mistake]:
         """Ranges of both coordinates or of none, and descending ranges."""
@@ -51,9 +53,10 @@ class Related(Record):
 
 
 class PaperRigid(Record):
-    """Joints of the beam outside the rigid shape in the formulation ``paper``; without an entry all joints."""
+    """Joints of a beam outside the rigid shape, for the formulation ``paper``."""
 
     related: Named[Related] = Field(default_factory=frozendict)
+    """Joints with possible contact, by the names of beams; without an entry all joints."""
 
     def of_others(self, beams: tuple[str, ...], allowed: str) -> Iterator[Mistake]:
         """Entries for beams outside the contact."""
@@ -66,23 +69,27 @@ class PaperRigid(Record):
 
 
 class PaperContact(PaperRigid):
-    """Data for the formulation ``paper``: beam and axis of the boundary function, related joints.
+    """Boundary function g_s of two beams, for the formulation ``paper``.
 
-    ``boundary`` names the beam of the function g_s; ``axis`` is the axis of the gap: ``y`` for g_s(x) − y,
-    ``x`` for g_s(y) − x.  Without an entry in ``related`` all joints of a beam are related.
+    The gap is g_s(x) − y along the axis ``y`` and g_s(y) − x along the axis ``x``.
     """
 
     boundary: Name
+    """Beam of the fitted boundary function."""
     axis: Literal["x", "y"] = "y"
+    """Axis of the gap."""
 
 
 class BeamContact(Record):
-    """Frictionless contact of two beams; ``thick`` beams touch by their edges, other beams as lines."""
+    """Contact of two beams."""
 
     kind: Literal["beam-beam"]
     between: Annotated[tuple[Name, Name], Of("beam")]
+    """The two beams; places are measured along the first beam."""
     thick: bool = True
+    """Contact of edges, half of the thickness from the neutral line; otherwise of neutral lines."""
     paper: PaperContact | None = None
+    """Data for the formulation ``paper``."""
 
     @property
     def beams(self) -> tuple[str, ...]:
@@ -104,10 +111,12 @@ class BeamContact(Record):
 
 
 class _OneBeam(Record):
-    """Contact of one beam, with the beam's edge if ``thick``."""
+    """Contact of a single beam."""
 
     beam: Annotated[Name, Of("beam")]
+    """The beam of the contact."""
     thick: bool = True
+    """Contact of edges, half of the thickness from the neutral line; otherwise of neutral lines."""
 
     @property
     def beams(self) -> tuple[str, ...]:
@@ -116,25 +125,19 @@ class _OneBeam(Record):
 
 
 class SelfContact(_OneBeam):
-    """Frictionless contact of a beam with itself, after enough rotation.
-
-    A ``thick`` beam touches by the edges, half of the local thickness from the neutral line; another beam as a line.
-    The touching side of the beam follows from the motion.
-    """
+    """Contact of a beam with itself, after enough rotation; the touching side follows from the motion."""
 
     kind: Literal["beam-self"]
     paper: ClassVar[None] = None  # the formulation has no form for self-contact
 
 
 class RigidContact(_OneBeam):
-    """Fields of all contacts of a beam with a rigid shape, without friction.
-
-    The shape is fixed to ``body`` and stated at the initial place, m.  A ``thick`` beam touches by the edge, half of
-    the local thickness from the neutral line; another beam as a line.
-    """
+    """Fields of all contacts of a beam with a rigid shape on a body, stated at the initial place."""
 
     body: Annotated[Name, Of("body")]
+    """Body of the rigid shape."""
     paper: PaperRigid | None = None
+    """Data for the formulation ``paper``."""
 
     def rules(self) -> Iterator[Mistake]:
         """Data for ``paper`` of other beams, and shapes without geometry."""
@@ -147,24 +150,29 @@ class RigidContact(_OneBeam):
 
 
 class CircleContact(RigidContact):
-    """Contact of a beam with a rigid circle of ``radius`` about ``center``, from outside or inside (``side``)."""
+    """Contact of a beam with a rigid circle, from outside or inside."""
 
     kind: Literal["beam-circle"]
     center: Point
+    """Center at the initial place."""
     radius: PositiveLength
+    """Radius of the circle."""
     side: Literal["outside", "inside"] = "outside"
+    """Side of the beam."""
 
 
 class LineContact(RigidContact):
-    """Contact of a beam with a rigid line of straight pieces between ``points``.
+    """Contact of a beam with a rigid line of straight pieces.
 
-    The beam lies on the free ``side``, seen along the points.  The solid lies behind the line and ends at right angles
-    to the first and the last piece.  A line is closed, without ends, if the last point equals the first.
+    The solid lies behind the line and ends at right angles to the first and the last piece.  A line is closed, without
+    ends, if the last point equals the first.
     """
 
     kind: Literal["beam-line"]
     points: Annotated[tuple[Point, ...], Field(min_length=2)]
+    """Corners of the line, at most 1001."""
     side: Literal["left", "right"]
+    """Free side, seen along the points."""
 
     @property
     def closed(self) -> bool:
@@ -203,29 +211,30 @@ def _crosses(piece: tuple[Point, Point], other: tuple[Point, Point]) -> bool:
 
 
 class HalfPlaneContact(RigidContact):
-    """Contact of a beam with a rigid half-plane with a straight edge through ``point``.
-
-    ``normal`` points away from the half-plane, towards the beam; the solver makes the normal a unit vector.
-    """
+    """Contact of a beam with a rigid half-plane."""
 
     kind: Literal["beam-half-plane"]
     point: Point
+    """A point of the edge."""
     normal: Direction
+    """Normal of the edge, towards the free side."""
 
 
 class FunctionContact(RigidContact):
-    """Contact of a beam with a rigid edge y = f(x) (``axis`` is ``x``) or x = f(y) (``axis`` is ``y``).
+    """Contact of a beam with the graph of a polynomial f.
 
-    ``coefficients`` of f, lowest power first, f in metres for a variable in metres within ``range``.  The beam lies
-    ``above`` the edge, at a coordinate larger than f, or ``below``.  As with a :class:`LineContact`, the solid lies
-    behind the edge and ends at the edge's ends.
+    As with a :class:`LineContact`, the solid lies behind the edge and ends at the edge's ends.
     """
 
     kind: Literal["beam-function"]
     axis: Literal["x", "y"]
+    """Variable of f: ``x`` for y = f(x), ``y`` for x = f(y)."""
     coefficients: Coefficients
+    """Coefficients of f, lowest power first."""
     range: tuple[Length, Length]
+    """Ends of the edge."""
     side: Literal["above", "below"]
+    """Free side: at a coordinate above or below f."""
 
     @property
     def curve(self) -> Polynomial:
@@ -238,17 +247,20 @@ class FunctionContact(RigidContact):
 
 
 class SplineContact(RigidContact):
-    """Contact of a beam with a rigid edge along a :class:`Spline` through ``points``, on the free ``side``.
+    """Contact of a beam with a rigid edge along a spline.
 
-    ``start_direction`` and ``end_direction`` are those of the spline.  As with a :class:`LineContact`, the solid lies
-    behind the edge and ends at the edge's ends.
+    As with a :class:`LineContact`, the solid lies behind the edge and ends at the edge's ends.
     """
 
     kind: Literal["beam-spline"]
     points: SplinePoints
+    """At least three points of the edge, or the path of a table with points."""
     start_direction: Direction | None = None
+    """Tangent at the first point."""
     end_direction: Direction | None = None
+    """Tangent at the last point."""
     side: Literal["left", "right"]
+    """Free side, seen along the points."""
 
     @property
     def curve(self) -> Spline:
@@ -262,16 +274,17 @@ class SplineContact(RigidContact):
 
 
 class EllipseContact(RigidContact):
-    """Contact of a beam with a rigid ellipse about ``center``, from outside or inside (``side``).
-
-    ``semi_axes`` a and b, m; ``angle`` of the first axis, counter-clockwise from x.
-    """
+    """Contact of a beam with a rigid ellipse, from outside or inside."""
 
     kind: Literal["beam-ellipse"]
     center: Point
+    """Center at the initial place."""
     semi_axes: tuple[PositiveLength, PositiveLength]
+    """Semi-axes of the ellipse."""
     angle: Angle = 0.0
+    """Angle of the first axis, counter-clockwise from x."""
     side: Literal["outside", "inside"] = "outside"
+    """Side of the beam."""
 
     @property
     def curve(self) -> Spline:

@@ -62,37 +62,39 @@ class _Curve(Record):
 
 
 class Line(_Curve):
-    """Straight neutral line from ``start`` to ``end``, m."""
+    """Straight line."""
 
     kind: Literal["line"]
     start: Point
+    """First point of the line."""
     end: Point
+    """Last point of the line."""
 
 
 class Arc(_Curve):
-    """Circular neutral line about ``center`` from ``start`` to ``end``, m.
-
-    Both ends lie on the circle; ``direction`` is the sense of rotation, so that an arc is less than a full turn.
-    """
+    """Part of a circle, less than a full turn; both ends lie on the circle."""
 
     kind: Literal["arc"]
     center: Point
+    """Center of the circle."""
     start: Point
+    """First point of the line."""
     end: Point
+    """Last point of the line."""
     direction: Literal["counterclockwise", "clockwise"]
+    """Sense of rotation from start to end."""
 
 
 class Polynomial(_Curve):
-    """Neutral line y = f(x) (``axis`` is ``x``) or x = f(y) (``axis`` is ``y``), m.
-
-    ``coefficients`` of f, lowest power first, f in metres for a variable in metres.  ``range`` is the variable at the
-    start and at the end: a beam may run against its axis.
-    """
+    """Graph of a polynomial f, in either sense along its axis."""
 
     kind: Literal["polynomial"]
     axis: Literal["x", "y"]
+    """Variable of f: ``x`` for y = f(x), ``y`` for x = f(y)."""
     coefficients: Coefficients
+    """Coefficients of f, lowest power first, at most 21; f is a length and the variable a length."""
     range: tuple[Length, Length]
+    """Variable at the start and at the end; the slope is at most 1000."""
 
     @property
     def start(self) -> Point:
@@ -110,19 +112,20 @@ class Polynomial(_Curve):
 
 
 class Spline(_Curve):
-    """Smooth neutral line through ``points`` (at least three), m, from the first to the last.
+    """Smooth line through points, from the first to the last.
 
     x and y are cubic splines of t; t is zero at the first point and grows between points by their distance.  Tangent
-    and curvature are continuous.  At an end with a ``start_direction`` or ``end_direction`` the derivative is the unit
-    vector of the direction, in the sense of the beam.  At an end without a direction the outer two pieces are one
-    cubic.  The spline of three points without directions is the parabola through them.  A file may name a table of
-    points in place of ``points``.
+    and curvature are continuous.  At an end with a direction the derivative is the unit vector of the direction, in the
+    sense of the beam.  The spline of three points without directions is the parabola through the points.
     """
 
     kind: Literal["spline"]
     points: SplinePoints
+    """At least three points of the line, or the path of a table with points."""
     start_direction: Direction | None = None
+    """Tangent at the start; without a direction the first two pieces are a single cubic."""
     end_direction: Direction | None = None
+    """Tangent at the end; without a direction the last two pieces are a single cubic."""
 
     @property
     def start(self) -> Point:

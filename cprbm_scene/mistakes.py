@@ -86,12 +86,12 @@ def hint(word: str, known: Iterable[str]) -> str:
     """`` (is 'X' meant?)`` for a ``word`` close to a ``known`` word, upper or lower case; otherwise an empty text."""
     by_case, same = {each.casefold(): each for each in known}, word.casefold()
     term, place = _MEANT.get(same, ("", ""))
+    if _NOT_MODELLED.search(word) and not any(map(_NOT_MODELLED.search, by_case)):
+        return f" ({word} is not modelled)"
     near = [term] if term in by_case and same not in by_case else get_close_matches(same, by_case, n=1)
     # any two words as short as a unit are close
     if near and (len(word) > 2 or near[0] == same):
         return f" (is {by_case[near[0]]!r} meant?)"
-    if _NOT_MODELLED.search(word):
-        return f" ({word} is not modelled)"
     return f" (is {place} meant?)" if place else ""
 
 

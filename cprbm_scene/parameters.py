@@ -178,23 +178,25 @@ Scatter = Annotated[float, Field(gt=0.0)] | None
 
 
 class Tolerance(Record):
-    """Scatter of a parameter: ``normal``, a standard deviation, or ``uniform``, half of a width; in its unit."""
+    """Scatter of a parameter, normal or uniform."""
 
     normal: Scatter = None
+    """Standard deviation of a normal scatter, in the parameter's unit."""
     uniform: Scatter = None
+    """Half of the width of a uniform scatter, in the parameter's unit."""
 
 
 class Parameter(Record):
-    """A named number: a ``value`` in a ``unit`` such as ``mm`` or ``N*mm``, within a ``range``, with a ``tolerance``.
-
-    Without a unit the parameter is a plain number.  In place of a number the value may be an expression; it is then in
-    the file's units.  After reading all numbers are in SI.
-    """
+    """A named number for expressions; after reading all numbers are in SI."""
 
     value: Annotated[float, WrapValidator(_or_expression), WithJsonSchema(OR_EXPRESSION)]
+    """Value in the ``unit``, or an expression in the file's units."""
     unit: str = ""
+    """Product of units, such as ``mm``, ``N*mm`` or ``N/mm**2``; empty for a plain number."""
     range: tuple[float, float] | None = None
+    """Least and largest value, in the ``unit``."""
     tolerance: Tolerance | None = None
+    """Scatter of the value."""
 
 
 def register(reading: Reading, parameters: Mapping[str, Parameter]) -> Mapping[str, Parameter]:

@@ -102,24 +102,28 @@ class Stage(Record):
     """Part of the loading: the values of a load or drive, in the order of stepping.
 
     Loads and drives are zero before a stage steps them (such a drive holds the initial place) and keep their last value
-    in later stages.  A list of loads in place of a name steps them ``together``: every load has the value of the
-    station, and ``steps`` names the first.
+    in later stages.  After reading a list of loads, ``steps`` names the first.
 
     ``beyond`` selects the path at a critical point, where the state ceases to be a minimum of the potential
     energy: ``stop``, or ``jump`` to the state at the end of the energy descent.  Load steps are then short enough
     to pass no critical point.  Without ``beyond`` load steps are as long as possible, and a critical point is reported
-    only where no step leads past; a branch jump to a state beside the critical point is reported in a note.  ``shown``
-    are stations for tables and pictures, beside the last of all.  ``critical_limit`` (in the unit of the stations)
-    replaces the usual largest difference and uncertainty of critical values for the verdict AGREE.
+    only where no step leads past; a branch jump to a state beside the critical point is reported in a note.
     """
 
     name: Name
+    """Name of the stage."""
     steps: Annotated[Name, Of("load or drive"), WithJsonSchema(_SEVERAL)]
+    """Load or drive with the values of the stations; a list steps several loads."""
     together: Annotated[tuple[Name, ...], Of("load", key="steps")] = ()
+    """Loads of a list in ``steps``, written by the reader."""
     stations: Annotated[tuple[Station, ...], Field(min_length=1, max_length=10_001)]
+    """Values of the load or drive, in order; a value stands once in a stage."""
     shown: tuple[Station, ...] = ()
+    """Stations of tables and pictures, beside the last station of all."""
     critical_limit: Annotated[float, Field(gt=0.0), Measured(_of_stage)] | None = None
+    """Largest uncertainty of critical values, in place of 0.3° of rotation or 1 % of the span."""
     beyond: Literal["stop", "jump"] | None = None
+    """Search for the end of the branch: the answer ends there, or jumps to the next minimum of the energy."""
 
     @model_validator(mode="before")
     @classmethod
@@ -150,16 +154,19 @@ class Stage(Record):
 class Probe(Record):
     """Requested number (or numbers) at every station, named ``of.quantity``.
 
-    ``of`` is the name of a body's point, a body, a beam, a contact, a stop, or ``scene``.  ``points`` is the number of
-    places, equally spaced in arc length, of a beam's stress.  ``verdict_limit`` replaces the scene's for this probe.
-    With ``stages`` the probe is asked in these stages only; answers of other stages have an empty value.
+    Places of stresses are equally spaced in arc length.  With ``stages``, answers of other stages have an empty value.
     """
 
     of: Name
+    """Name of a point, body, beam, contact or stop, or ``scene``."""
     quantity: Quantity
+    """Requested quantity."""
     points: Annotated[int, Field(ge=3, le=10_001)] = 81
+    """Number of places along a beam, for stresses."""
     verdict_limit: PositiveShare | None = None
+    """Limit in place of the scene's ``verdict_limit``."""
     stages: Annotated[Annotated[tuple[Name, ...], Field(min_length=1)] | None, Of("stage")] = None
+    """Stages with the probe; without the key all stages."""
 
     def asked_in(self, stage: str) -> bool:
         """True if the probe is asked in a stage."""
@@ -180,19 +187,22 @@ class Probe(Record):
 class Claim(Record):
     """Statement of a publication on a probe: the relative difference stays below ``bound``.
 
-    Without a ``station`` the claim concerns every station with a value of the probe, without a ``stage`` every stage.
-    With a ``value`` (SI) the claim states the probe's value: ours then stays within ``bound`` of the value, a fraction
-    of the value, or of the probe's scale if the value is zero.
-
-    The probe ``critical`` is the first critical value of the ``stage``, without a stage of every stage.
+    With a ``value`` the claim states the probe's value: ours then stays within ``bound`` of the value, a fraction of
+    the value, or of the probe's scale if the value is zero.
     """
 
     probe: str
+    """Name of a probe, ``NAME.QUANTITY``, or ``critical`` for the first critical value of a stage."""
     stage: Annotated[Name | None, Of("stage")] = None
+    """Stage of the claim; without the key all stages."""
     station: Annotated[float, Measured(_of_stations)] | None = None
+    """Station of the claim; without the key all stations with a value."""
     value: Annotated[float, Measured(_of_value)] | None = None
+    """Stated value of the probe; without a value the claim compares both solvers."""
     bound: Positive
+    """Largest relative difference."""
     text: Text = ""
+    """Words of the source."""
 
     def speaks_of(self, stage: str, station: float) -> bool:
         """True if the claim concerns a station; stations are equal up to round-off."""

@@ -148,34 +148,50 @@ class Origin:
 class Scene(Record):
     """The problem statement: mechanism, loading, requested quantities.
 
-    Names of points, bodies, beams, contacts, stops, pins, loads and drives are unique across the scene.
-    ``may_cross`` lists pairs that may pass through each other without a contact: two beams, or a beam and a contact
-    with a rigid edge.  ``verdict_limit`` is the largest total uncertainty, a fraction of a probe's scale, for the
-    verdict AGREE; a probe may have another limit.  ``units`` are those of a file; a scene from a file has SI units, and
-    ``display_units`` remember the file's.
-    ``theory`` is the beam theory of the CPRBM: bending alone, with stretch, or with stretch and shear.
+    Names of points, bodies, beams, contacts, stops, pins, loads and drives are unique across the scene.  A scene from a
+    file has SI units, and ``display_units`` remember the file's.
     """
 
     name: Name
+    """Name of the scene, for tables and file names."""
     title: Title = ""
+    """Heading of tables and pages."""
     source: Text = ""
+    """Origin of the scene, such as a publication."""
     units: Units = Units()
+    """Units of the numbers in the file."""
     theory: Literal["bending", "stretch", "shear"] = "bending"
+    """Beam theory of the CPRBM and the finite elements: bending alone, with stretch, or with stretch and shear."""
     parameters: Named[Parameter] = Field(default_factory=frozendict)
+    """Named numbers for expressions."""
     materials: Named[Material]
+    """Materials by name."""
     beams: Annotated[Named[Beam], Field(min_length=1, max_length=256)]
+    """Beams by name."""
     bodies: Annotated[Named[Body], Field(max_length=256)]
+    """Rigid bodies by name."""
     loads: Named[Load] = Field(default_factory=frozendict)
+    """Loads by name."""
     drives: Named[Drive] = Field(default_factory=frozendict)
+    """Drives by name."""
     contacts: Annotated[Named[Contact], Field(max_length=1000)] = Field(default_factory=frozendict)
+    """Contacts by name."""
     stops: Named[Stop] = Field(default_factory=frozendict)
+    """Stops by name."""
     pins: Named[BodyPin] = Field(default_factory=frozendict)
+    """Pins between bodies by name."""
     assembly: Assembly | None = None
+    """Motion of beams to their points before the first stage."""
     may_cross: Annotated[tuple[tuple[Name, Name], ...], Of("beam or contact with a rigid edge")] = ()
+    """Pairs that may pass through each other: two beams, or a beam and a contact with a rigid edge."""
     stages: Annotated[tuple[Stage, ...], Field(min_length=1)]
+    """Stages of the loading, in order."""
     probes: Annotated[tuple[Probe, ...], Field(min_length=1)]
+    """Requested numbers."""
     claims: tuple[Claim, ...] = ()
+    """Statements of the source on probes."""
     verdict_limit: PositiveShare = 0.015
+    """Largest stated uncertainty for the verdict AGREE, a fraction of a probe's scale."""
     file: str = ""
     _origin: Origin = PrivateAttr(default=Origin())
 

@@ -72,7 +72,9 @@ class Of:
 class Record(BaseModel):
     """Immutable record with strict types, without unknown keys, with finite numbers only."""
 
-    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(
+        frozen=True, strict=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True
+    )
 
     @model_validator(mode="wrap")
     @classmethod
@@ -115,9 +117,13 @@ class Units(Record):
     """Units of the numbers in a file; moments, distributed loads and energies are of force and length."""
 
     length: Literal["m", "cm", "mm", "um", "in"] = "m"
+    """Unit of lengths."""
     force: Literal["N", "kN", "mN", "uN"] = "N"
+    """Unit of forces."""
     angle: Literal["rad", "deg"] = "rad"
+    """Unit of angles."""
     stress: Literal["Pa", "kPa", "MPa", "GPa"] = "Pa"
+    """Unit of moduli and of stresses in claims."""
 
 
 @dataclass(slots=True)

@@ -20,8 +20,10 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx_click",
     "drawn",
+    "key_tables",
     "pictures",
     "ran",
+    "sketches",
     "mathematics",
 ]
 exclude_patterns = ["made"]

@@ -22,7 +22,6 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from pictures import thumbnail
 
 import cprbm
@@ -32,11 +31,10 @@ from comparisons.display_units import axis_unit, display_unit
 from comparisons.formats import number
 from comparisons.offset_verdict import compared_offset
 from comparisons.present import figures
-from comparisons.present.canvas import BLUE, GREY, RED, canvas, finished, show_lengths
 from comparisons.present.columns import Figure
-from comparisons.present.curves import curve_figures
+from comparisons.present.curves import curve_figures, stress_figures
 from comparisons.present.offset import offset_figures
-from comparisons.quantities import arc_lengths, load_unit, unit_of
+from comparisons.quantities import load_unit, unit_of
 from comparisons.writing import write
 from cprbm_scene import Answer, OffsetQuestion, Scene, Stage
 from cprbm_scene.statement import STRESSES
@@ -102,32 +100,11 @@ def _has(answer: Answer, stage: Stage, value: float) -> bool:
     return any(at.stage == stage.name and at.value == value for at in answer.stations)
 
 
-def stress(scene: Scene, answers: tuple[Answer, Answer]) -> Figure | None:
-    """Bending stress along the beams at the last station."""
-    probes = [probe for probe in scene.probes if probe.quantity == "bending_stress"]
-    reached = [answer.stations[-1] for answer in answers if answer.stations]
-    if not probes or len(reached) < len(answers):
-        return None
-    with canvas(7.0, 0.4 + 2.2 * len(probes)) as figure:
-        largest = max(float(np.max(np.abs(at.values[probe.name]))) for at in reached for probe in probes)
-        factor, unit = display_unit(scene, "Pa", largest)
-        for axes, probe in zip(np.atleast_1d(figure.subplots(len(probes), 1)), probes, strict=True):
-            s = arc_lengths(scene, probe)
-            chain, elements = (at.values[probe.name] / factor for at in reached)
-            axes.axhline(0.0, color=GREY, linewidth=0.6)
-            axes.plot(s, elements, "-", color=RED, linewidth=1.6, label="finite elements")
-            axes.plot(s, chain, ".", color=BLUE, markersize=4.0, label="CPRBM")
-            axes.set_title(probe.of, loc="left", fontsize=10)
-            axes.set_ylabel(f"stress, {unit}")
-            show_lengths(scene, axes.xaxis)
-        show_lengths(scene, axes.xaxis, "arc length as drawn")
-        figure.axes[0].legend(loc="best", fontsize=8)
-        return finished(
-            figure,
-            "stress",
-            "Bending stress along the beams at the last station, positive where the load turns the tangent "
-            "counter-clockwise along the beam.",
-        )
+def stress(scene: Scene, answers: tuple[Answer, Answer]) -> Iterator[Figure]:
+    """Bending stress along the beams at the last station; nothing where an answer does not reach the station."""
+    chain, elements = (answer.stations[-1:] for answer in answers)
+    if chain and elements and (chain[0].stage, chain[0].value) == (elements[0].stage, elements[0].value):
+        yield from stress_figures(scene, elements[0], chain[0])
 
 
 @cache
@@ -173,7 +150,7 @@ def pictures_of(name: str) -> tuple[str, tuple[Figure, ...]]:
     scene = thinned(question)
     answers = solved(scene)
     write(MADE / name / "thumbnail.png", thumbnail(scene, answers[0]))
-    drawn = (shapes(scene, answers), *curve_figures(scene, answers[1], answers[0]), stress(scene, answers))
+    drawn = (shapes(scene, answers), *curve_figures(scene, answers[1], answers[0]), *stress(scene, answers))
     said = "".join(
         f"The {who} end before the last station: {answer.sentence}.\n\n"
         for who, answer in zip(("links", "elements"), answers, strict=True)

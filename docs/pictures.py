@@ -64,7 +64,7 @@ def _draw_offset(axes: Axes, question: OffsetQuestion) -> None:
 
 def _draw_mechanism(axes: Axes, scene: Scene, answer: Answer) -> None:
     view = view_of(scene, answer.stations[-1])
-    draw_parts(axes, view.of("rigid"))
+    draw_parts(axes, view.of("edge"))
     for name, beam in scene.beams.items():
         drawn = points(beam.curve, np.linspace(0.0, length(beam.curve), 120))
         axes.plot(*drawn.T, "-", color="#c4c9cf", linewidth=2.2)

@@ -16,7 +16,7 @@ import logging
 import math
 import time
 
-from cprbm_scene import Answer, Ending, Scene, StationAnswer
+from cprbm_scene import Answer, Ending, Mistake, Scene, SceneError, StationAnswer
 from cprbm_scene.requirements import requirements
 from cprbm_scene.statement import BeamContact, BeamMoment, EdgeContact, SelfContact, TurningBody
 from cprbm_scene.stations import station_reached
@@ -51,6 +51,9 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
         The stations up to where the solution holds; its ending is NOT_COVERED where one is missing. Values are
         read-only arrays in SI, of the shapes in :mod:`cprbm_scene.answer`.
 
+    Raises:
+        SceneError: the scene has a record without equations; the error names every key.
+
     Source:
         Euler's elastica with contact, by Gauss's collocation; nothing is discretised but the integration.
 
@@ -61,13 +64,13 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
         >>> answer.completed, answer.stations[-1].certificate.residual < 1e-10
         (True, True)
     """
+    refuse(scene)
     chosen = settings or Settings()
     began = time.perf_counter()
     way = Way(modelled(scene), chosen)
     stations: list[StationAnswer] = []
     ending, sentence = Ending.COMPLETED, ""
     try:
-        _covered(scene)
         for stage in scene.stages:
             way.begin(stage)
             step = 0.0
@@ -89,37 +92,49 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
     )
 
 
-def _covered(scene: Scene) -> None:
-    """Refuse what has no equations here.
+def refuse(scene: Scene) -> None:
+    """Refuse records for which there are no equations.
 
     Raises:
-        NotCoveredError: the scene has stops, an assembly, a body on a pivot, bodies that are pinned to each other,
-            contact with a line, a half-plane or a function, of a beam with itself or of two beams by edges whose
-            distance from the neutral line varies, or a moment on a beam, or it is asked what a slide does, or it has
-            another requirement than a theory.
+        SceneError: the scene has such records; the error names every key.
     """
-    contacts = scene.contacts.values()
-    tapered = any(
-        isinstance(contact, BeamContact) and contact.thick and any(scene.beams[beam].tapered for beam in contact.beams)
-        for contact in contacts
-    )
-    for what, there in (
-        ("stops", scene.stops),
-        ("assembly", scene.assembly is not None),
-        ("bodies on pivots", any(isinstance(body, TurningBody) for body in scene.bodies.values())),
-        ("pins between bodies", scene.pins),
-        (
-            "contact with lines, half-planes and functions",
-            any(isinstance(contact, EdgeContact) for contact in contacts),
+    found = [
+        *((mistake.key, mistake.found, mistake.allowed) for kind, mistake in requirements(scene) if kind != "theory"),
+        *((f"stops.{name}", "a stop", "pins without stops") for name in scene.stops),
+        *((f"pins.{name}", "a pin between two bodies", "pins of beams") for name in scene.pins),
+        *[("assembly", "an assembly", "beams that are drawn in place")] * (scene.assembly is not None),
+        *(
+            (f"bodies.{name}.motion", "'turns'", "'fixed', 'free' or 'slides'")
+            for name, body in scene.bodies.items()
+            if isinstance(body, TurningBody)
         ),
-        ("contact of a beam with itself", any(isinstance(contact, SelfContact) for contact in contacts)),
-        ("contact of two beams by their edges where a thickness varies", tapered),
-        ("what a slide does", any(probe.of in scene.bodies and probe.quantity == "reaction" for probe in scene.probes)),
-        ("moments on beams", any(isinstance(load, BeamMoment) for load in scene.loads.values())),
-        *((f"{mistake.key}: {mistake.found}", kind != "theory") for kind, mistake in requirements(scene)),
-    ):
-        if there:
-            raise NotCoveredError(f"there are no equations for {what} here")
+        *(
+            (f"contacts.{name}.kind", repr(contact.kind), "'beam-beam' or 'beam-circle'")
+            for name, contact in scene.contacts.items()
+            if isinstance(contact, EdgeContact | SelfContact)
+        ),
+        *(
+            (f"contacts.{name}.thick", "edges of a thickness that varies", "thick = false, or a constant thickness")
+            for name, contact in scene.contacts.items()
+            if isinstance(contact, BeamContact)
+            and contact.thick
+            and any(scene.beams[beam].tapered for beam in contact.beams)
+        ),
+        *(
+            (f"loads.{name}.kind", "'beam_moment'", "another kind of load")
+            for name, load in scene.loads.items()
+            if isinstance(load, BeamMoment)
+        ),
+        *(
+            (f"probes[{i}]", f"{probe.name!r}, the force of a slide", "another quantity")
+            for i, probe in enumerate(scene.probes)
+            if probe.of in scene.bodies and probe.quantity == "reaction"
+        ),
+    ]
+    if found:
+        raise SceneError(
+            [Mistake(key, what, f"{known}, for the exact solution", scene.file) for key, what, known in found]
+        )
 
 
 def _certified(way: Way, station: float) -> StationAnswer:

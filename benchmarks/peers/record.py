@@ -23,8 +23,7 @@ import numpy as np
 
 from cprbm.chain import Mechanism, mechanism_of
 from cprbm.chain.rows import ends_of, unit_direction
-from cprbm.paper.boundaries import fitted_boundary, related_joints
-from cprbm.paper.contacts import refuse_contacts
+from cprbm.paper.contacts import fitted_boundary, refuse_contacts, related_joints
 from cprbm.settings import Settings
 from cprbm_scene import BeamContact, CircleContact, FreeEnd, Mistake, Scene, SceneError, WeldedEnd
 from cprbm_scene.answer import Array, Ints

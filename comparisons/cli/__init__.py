@@ -1,1 +1,1 @@
-"""The command line: one file per sub-command, and nothing of the mechanics."""
+"""The command line: a list or help loads click alone, and a command loads libraries at the start of the run."""

@@ -1,12 +1,51 @@
-"""Groups of commands with developers' tools outside the wheel; an unknown name gets a list of the known names."""
+"""Lazy commands, and groups of commands under headings.
+
+A list of commands, and the help of a command, load no command's module: the module comes with the first call.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import fields
 from difflib import get_close_matches
+from importlib import import_module
+from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from comparisons import workshop
+from comparisons.choices import Choices
+from comparisons.cli.options import SEARCHED
+from comparisons.cli.request import Request
+
+_CHOSEN, _SHARED = ({field.name for field in fields(record)} for record in (Choices, Request))
+
+
+class SolvingCommand(click.Command):
+    """A command whose function takes a :class:`Request`; the values of all other options are arguments."""
+
+    def invoke(self, ctx: click.Context) -> Any:  # noqa: ANN401 - click's form
+        """Exit code of the command.
+
+        Raises:
+            click.UsageError: the command line has a number of links or elements beside a tolerance.
+        """
+        assert self.callback is not None
+        for name, option in SEARCHED.items():
+            if ctx.params.get("tol") and ctx.get_parameter_source(name) is not ParameterSource.DEFAULT:
+                text = f"found --tol and {option}; allowed: only one of the two, since --tol searches N."
+                raise click.UsageError(text, ctx)
+        choices = {name: value for name, value in ctx.params.items() if name in _CHOSEN}
+        shared = {name: value for name, value in ctx.params.items() if name in _SHARED}
+        others = {name: value for name, value in ctx.params.items() if name not in _CHOSEN | _SHARED}
+        return ctx.invoke(self.callback, Request(ctx.obj, choices=Choices(**choices), **shared), **others)
+
+
+def later(place: str) -> Callable[..., Any]:
+    """Function that loads the function ``module.name`` of the command line with the first call."""
+    module, _, name = place.rpartition(".")
+    return lambda *given, **named: getattr(import_module(f"comparisons.cli.{module}"), name)(*given, **named)
 
 
 class ToolCommand(click.Command):
@@ -17,7 +56,8 @@ class ToolCommand(click.Command):
     """
 
     def __init__(self, tool: str) -> None:
-        super().__init__(tool.rpartition(" ")[2], help=workshop.TOOLS[tool].purpose)
+        record = workshop.TOOLS[tool]
+        super().__init__(tool.rpartition(" ")[2], help=record.purpose, hidden=bool(record.new_name))
         self.tool = tool
 
     def loaded(self) -> click.Command:
@@ -32,7 +72,40 @@ class ToolCommand(click.Command):
 
 
 class Commands(click.Group):
-    """Commands by name; the message for an unknown name lists the known names."""
+    """Commands under headings; the message for an unknown name lists the known names.
+
+    Attributes:
+        headings: the listed commands by heading.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        headings: Mapping[str, Iterable[click.Command]],
+        text: str,
+        params: Iterable[click.Option] = (),
+        callback: Callable[[click.Context], None] | None = None,
+    ) -> None:
+        """The group; with a ``callback`` a command line without a command calls the callback."""
+        called = None if callback is None else click.pass_context(callback)
+        super().__init__(name, callback=called, params=[*params], help=text, invoke_without_command=called is not None)
+        self.headings = {heading: tuple(commands) for heading, commands in headings.items()}
+        for command in (command for commands in self.headings.values() for command in commands):
+            self.add_command(command)
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names of all commands; the developers' tools belong to a checkout."""
+        shown = {name: each for name, each in self.commands.items() if not each.hidden}
+        return [name for name, each in shown.items() if workshop.is_checkout() or not isinstance(each, ToolCommand)]
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands of every group under its heading."""
+        known = self.list_commands(ctx)
+        room = formatter.width - 6 - max(map(len, known))
+        for heading, commands in self.headings.items():
+            found = [(str(each.name), each.get_short_help_str(room)) for each in commands if each.name in known]
+            with formatter.section(heading):
+                formatter.write_dl(found)
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -44,13 +117,12 @@ class Commands(click.Group):
             click.UsageError: no command has this name.
         """
         name = args[0]
-        path = f"{ctx.command_path} {name}".partition(" ")[2]
-        if absence := workshop.absence(path):
+        if absence := workshop.absence(f"{ctx.command_path} {name}".partition(" ")[2]):
             raise click.ClickException(absence)
-        if self.get_command(ctx, name) is None:
+        if name not in self.commands:
             known = self.list_commands(ctx)
             near = get_close_matches(name.casefold(), known, n=1)
             meant = f" (is {near[0]!r} meant?)" if near else ""
             ctx.fail(f"found {name!r}, no command of '{ctx.command_path}'{meant}; allowed: {', '.join(known)}")
-        _, command, rest = super().resolve_command(ctx, args)
-        return name, command.loaded() if isinstance(command, ToolCommand) else command, rest
+        command = self.commands[name]
+        return name, command.loaded() if isinstance(command, ToolCommand) else command, args[1:]

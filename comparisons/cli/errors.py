@@ -1,36 +1,146 @@
-"""Messages and exit codes for exceptions; imported after an exception only."""
+"""The end of a command line: an exit code, and a sentence on standard error for every exception and signal.
+
+Exit codes: 0 all agree or finished; 1 a verdict is DIFFER or a solve did not complete; 2 the question is wrong, or
+the output cannot be written; 3 nothing worse than UNDECIDED; 128 plus the number of a signal (130: Ctrl-C).
+
+The module imports the standard library only, since any other library may be missing.
+"""
 
 from __future__ import annotations
 
-from concurrent.futures import BrokenExecutor
-from concurrent.futures.process import BrokenProcessPool
+import os
+import shlex
+import signal
+import sys
+from collections.abc import Callable
+from contextlib import suppress
 from difflib import get_close_matches
 from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING
 
-from comparisons.cli.missing_library import WRONG_QUESTION
-from cprbm_scene import Mistake, SceneError
+if TYPE_CHECKING:
+    from cprbm_scene import Mistake
 
-NOT_FINISHED = 1
+INCOMPLETE, WRONG_QUESTION, UNDECIDED = 1, 2, 3
+CLOSED_PIPE = 141
+"""Exit code of a shell for SIGPIPE."""
+
+End = tuple[str, int]
+"""Sentence on standard error, and exit code."""
+
+_CONTROLS = {*map(chr, (*range(32), *range(127, 160)))} - {"\n"}
+_SIGNALS = {"SIGINT": "Interrupted", "SIGTERM": "Asked to end", "SIGHUP": "The terminal was closed"}
+"""Sentences by signal name; some systems lack some of the signals."""
+
+_PACKAGES = ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons")
+_CASES = " 'cprbm list' names the cases; 'cprbm new NAME' writes a file to start from."
+_KEPT, _REPEAT = "Finished results stand", "repeat the command to go on."
 
 
-def message(error: Exception) -> tuple[str, int] | None:
-    """Sentence and exit code for an ``error``; None for a fault of the program."""
+class SignalInterrupt(KeyboardInterrupt):
+    """A signal ended the run."""
+
+    def __init__(self, number: int = signal.SIGINT) -> None:
+        super().__init__()
+        self.number = number
+
+
+def handle_signals(*, ignore: bool = False) -> None:
+    """Let every signal raise :class:`SignalInterrupt`, except signals that this process ignores; or ignore all."""
+    for number in (getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)):
+        if ignore or signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, signal.SIG_IGN if ignore else _interrupt)
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    raise SignalInterrupt(number)
+
+
+def printable(text: object) -> str:
+    """Text with control characters, except line ends, as visible escapes: a path may hold commands of a terminal."""
+    return "".join(repr(letter)[1:-1] if letter in _CONTROLS else letter for letter in str(text))
+
+
+def say(text: str) -> None:
+    """Write a line on standard error; with standard error closed the exit code remains."""
+    with suppress(OSError, AttributeError):
+        sys.stderr.write(f"cprbm: {printable(text)}\n")
+        sys.stderr.flush()
+
+
+def exit_code(command: Callable[[], int | None]) -> int:
+    """Exit code of a command; a sentence about an exception is on standard error.
+
+    Raises:
+        Exception: the exception is a fault of the program.
+    """
+    try:
+        return command() or 0
+    except Exception as error:
+        found = _end(error)
+        _drop_output()
+        if found is None:
+            raise
+    except KeyboardInterrupt as stop:
+        number = signal.Signals(stop.number if isinstance(stop, SignalInterrupt) else signal.SIGINT)
+        found = f"{_SIGNALS[number.name]}; finished results stand.", 128 + number
+    if found[0]:
+        say(found[0])
+    return found[1]
+
+
+def _end(error: Exception) -> End | None:
+    """The end after an exception; None for a fault of the program."""
     match error:
-        case SceneError():
-            lines = "\n  ".join(_with_next_step(mistake) for mistake in error.mistakes)
-            return f"The question is wrong.{' ' if len(error.mistakes) == 1 else chr(10) + '  '}{lines}", WRONG_QUESTION
-        case BrokenProcessPool():
-            return (
-                "A worker process was killed, perhaps for lack of memory. Finished results stand; repeat the command "
-                "to go on.",
-                NOT_FINISHED,
-            )
-        case BrokenExecutor():
-            return f"{error} Finished results stand; repeat the command to go on.", NOT_FINISHED
+        case BrokenPipeError():  # the reader has seen enough, as ``head`` has
+            return "", CLOSED_PIPE
+        case ImportError():
+            return _end_without_library(error)
         case MemoryError():
-            return "The memory is too small for this model. Finished results stand; ask for fewer links.", NOT_FINISHED
+            return f"The memory is too small for this model. {_KEPT}; ask for fewer links.", INCOMPLETE
         case OSError():
             return f"Cannot write {error.filename or 'the output'}: {error.strerror or error}.", WRONG_QUESTION
+    return _end_of_words(error) or _end_of_question(error)
+
+
+def _end_of_words(error: Exception) -> End | None:
+    """The end after wrong words on the command line, and after an answered request for help."""
+    import click
+
+    match error:
+        case click.exceptions.Exit():
+            return "", error.exit_code
+        case click.exceptions.NoArgsIsHelpError():
+            click.echo(error.format_message(), err=True)
+            return "", WRONG_QUESTION
+        case click.UsageError(ctx=context):
+            text = error.format_message()
+            missing = error.param if isinstance(error, click.MissingParameter) else None
+            metavar = missing.make_metavar(context) if missing and context else ""
+            cases = _CASES if "CASE" in metavar else ""
+            help_ = f" Try '{context.command_path} --help'." if context else ""
+            return f"{text if text.endswith(('.', '?', '!')) else f'{text}.'}{cases}{help_}", WRONG_QUESTION
+        case click.ClickException():
+            return error.format_message(), WRONG_QUESTION
+    return None
+
+
+def _end_of_question(error: Exception) -> End | None:
+    """The end after a wrong scene, and after the loss of a worker."""
+    from concurrent.futures import BrokenExecutor
+    from concurrent.futures.process import BrokenProcessPool
+
+    from cprbm_scene import SceneError
+
+    match error:
+        case SceneError():
+            lines = [_with_next_step(mistake) for mistake in error.mistakes]
+            return ("\n  " if len(lines) > 1 else " ").join(("The question is wrong.", *lines)), WRONG_QUESTION
+        case BrokenProcessPool():
+            return f"A worker process was killed, perhaps for lack of memory. {_KEPT}; {_REPEAT}", INCOMPLETE
+        case BrokenExecutor():
+            return f"{error} {_KEPT}; {_REPEAT}", INCOMPLETE
     return None
 
 
@@ -42,3 +152,26 @@ def _with_next_step(mistake: Mistake) -> str:
     near = get_close_matches(path.name, [file.name for file in path.parent.glob("*.toml")], n=1)
     meant = f"is {path.parent / near[0]} meant? " if near else ""
     return f"{mistake}; {meant}'cprbm new NAME' writes a scene to start from, 'cprbm list' names the built-in cases"
+
+
+def _end_without_library(error: ImportError) -> End | None:
+    """The end without a library; None for a module of this project."""
+    place, module = error.__traceback__, ""
+    while place is not None:  # NumPy and other libraries raise errors without a name
+        module, place = str(place.tb_frame.f_globals.get("__name__", "")), place.tb_next
+    library = (error.name or module).partition(".")[0]
+    if not library or library in _PACKAGES:
+        return None
+    reason = next(iter(str(error).strip().splitlines()), "without a reason")
+    distribution = "scikit-fem" if library == "skfem" else library
+    install = f"{shlex.quote(sys.executable)} -m pip install --upgrade --force-reinstall {distribution}"
+    return f"The library {library} cannot be loaded ({reason}). Install it with: {install}", WRONG_QUESTION
+
+
+def _drop_output() -> None:
+    """Discard the rest of standard output after a failure: the interpreter would write it at exit and complain."""
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

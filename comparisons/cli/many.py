@@ -1,56 +1,159 @@
-"""Options of the commands that solve a scene at many points."""
+"""``cprbm sweep``, ``tolerance`` and ``optimise``: a scene at many values of its parameters."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Literal
 
 import click
 
-from comparisons.cli.options import (
-    folder,
-    group,
-    parameters,
-    quietness,
-    settings,
-    sized,
-    time_limit,
-    variants,
-    verbose,
-)
+from comparisons.cases import opened
+from comparisons.cli.bars import bar
+from comparisons.cli.errors import INCOMPLETE, UNDECIDED
+from comparisons.cli.output import print_tables
+from comparisons.cli.questions import scene_of, with_room
+from comparisons.cli.request import Request
+from comparisons.optimum import problem as problems
+from comparisons.optimum import result as optima
+from comparisons.optimum.search import PointSolver, search
+from comparisons.pairing import solvers_of
+from comparisons.present.columns import Section
+from comparisons.present.page import Page, put_page, put_section
+from comparisons.scatter import study as scatters
+from comparisons.scatter.draws import distributions_of
+from comparisons.scatter.result import result_of
+from comparisons.sweeps import points as grids
+from comparisons.sweeps import running
+from comparisons.sweeps.demands import Demands, bounds_of, read_demands
+from comparisons.sweeps.netcdf import write_netcdf
+from comparisons.sweeps.page import write_page
+from comparisons.sweeps.tables import write_tables
+from comparisons.sweeps.workers import Workers, workers_on
+from cprbm_scene import Scene
 
 
-def _place(ctx: click.Context, param: click.Parameter, value: str | None) -> str:
-    """A place of workers."""
-    if value is None:
-        return f"local:{min(2, os.cpu_count() or 1)}"
-    from comparisons.sweeps.workers import PLACES, place_of
+def sweep(
+    request: Request,
+    vary: tuple[str, ...],
+    sample: str | None,
+    solver: Literal["cprbm", "fea", "compare"],
+    check: int,
+    shard: tuple[int, int],
+    merge: tuple[Path, ...],
+    netcdf: bool,  # noqa: FBT001 - click passes a keyword
+) -> int:
+    """Solve a scene at the points of a grid or a sample; the exit code.
 
-    if place_of(value) is None:
-        raise click.BadParameter(f"found {value!r}; allowed: {PLACES}")
-    return value
+    0 if all points completed and all checks agree; 1 for a failure or DIFFER; 3 for nothing worse than UNDECIDED.
+    """
+    scene = scene_of(request)
+    axes, points = _points(request, scene, vary, sample)
+    checked = grids.chosen_for_check(points, axes, check)
+    tasks = running.tasks_of(scene, points, solver, checked, request.choices, shard)
+    with _workers(request, scene, "sweep", len(tasks)) as (out, workers, moved):
+        found = running.Sweep(scene, axes, tasks, running.known_outcomes([out, *merge]))
+        solvers = solvers_of(request.planted)
+        found = running.run(found, workers, request.choices, solvers, request.at_most, out, moved)
+    write_tables(out, found)
+    write_page(out, found)
+    if netcdf:
+        write_netcdf(out / "sweep.nc", found)
+    click.echo(f"{scene.name}: {found.headline}.")
+    if not request.quiet:
+        for task, outcome in found.points():
+            if not outcome.completed:
+                place = ", ".join(axis.text(task.point[axis.name]) for axis in axes)
+                click.echo(f"{place}: {outcome.sentence}")
+        click.echo(f"tables: {out / 'numbers.csv'}, {out / 'last.csv'}; page: {out / 'index.html'}")
+    outcomes = [outcome for _, outcome in found.points()]
+    if any(not outcome.completed or outcome.verdict == "DIFFER" for outcome in outcomes):
+        return INCOMPLETE
+    return UNDECIDED if any(outcome.verdict == "UNDECIDED" for outcome in outcomes) else 0
 
 
-solved_often = group(
-    parameters,
-    sized,
-    variants,
-    click.option("--on", "place", callback=_place, metavar="local:N|dask://HOST:PORT",
-                 help="Worker processes, or the scheduler of a Dask cluster.  [default: a process per core, at most "
-                 "two]"),
-    time_limit("Time limit of a solve; a solve that crashes or takes longer is tried twice.", "600"),
-    quietness,
-    verbose,
-    folder("Folder of tables and page; a stopped command goes on from there.  [default: COMMAND-NAME]"),
-)  # fmt: skip
-"""Options of a command that solves often: parameters, sizes, variants, workers, time limit and folder."""
+def tolerance(
+    request: Request, samples: int, sobol: bool, limits: Path | None, solver: Literal["cprbm", "fea"]  # noqa: FBT001
+) -> int:  # fmt: skip
+    """Solve a sample of a scene's parameters, and print quantiles and yield; exit code 1 if a point is missing."""
+    scene = scene_of(request)
+    bounds = bounds_of(scene, read_demands(limits) if limits else Demands(), str(limits))
+    distributions = distributions_of(scene)
+    asked = scatters.study(scene, distributions, samples, solver, request.choices, indexed=sobol, bounds=bounds)
+    with _workers(request, scene, "tolerance", len(asked.sweep.tasks)) as (out, workers, moved):
+        solvers = solvers_of(request.planted)
+        found = scatters.solved(asked, workers, request.choices, solvers, request.at_most, out, moved)
+    result = result_of(found)
+    write_tables(out, found.sweep)
+    _put(request, scene, out, result, f"{out / 'tolerance.json'}, {out / 'numbers.csv'}")
+    return 0 if result.complete else INCOMPLETE
 
 
-def in_si(case: str) -> Callable[[str, str], float]:
+def optimise(request: Request, goal: Path, vary: tuple[str, ...], starts: int, solves: int) -> int:
+    """Search the parameters of a scene for a goal; exit code 3 if the best point is undecided, 1 without an optimum."""
+    scene = scene_of(request)
+    si = _si(request)
+    problem = problems.problem_of(scene, [grids.axis_of(text, si) for text in vary], goal)
+    with _workers(request, scene, "optimise", starts * solves) as (out, workers, moved):
+        known, journal = running.known_outcomes([out]), out / running.JOURNAL
+        solvers = solvers_of(request.planted)
+        solver = PointSolver(problem, workers, request.choices, solvers, request.at_most, journal, known, moved)
+        found = optima.optimum(problem, search(problem, solver, starts, solves), solver)
+    _put(request, scene, out, optima.result_of(found), str(out / "optimum.json"))
+    if not found.doubt:
+        return 0
+    return UNDECIDED if found.compared.verdict == "UNDECIDED" else INCOMPLETE
+
+
+@contextmanager
+def _workers(
+    request: Request, scene: Scene, command: str, solves: int
+) -> Iterator[tuple[Path, Workers, Callable[[int], None]]]:
+    """Context with the folder, workers, and a bar to be moved to a number of finished solves."""
+    out = request.out or Path(f"{command}-{scene.name}")
+    with workers_on(request.place) as workers, bar(solves, shown=not request.quiet, loggers=()) as progress:
+        with_room(request, str(out))
+        yield out, workers, progress.move
+
+
+def _put(request: Request, scene: Scene, out: Path, result: Section, numbers: str) -> None:
+    """Write and print the section of a study."""
+    put_section(out, result)
+    put_page(out, Page(result.heading, scene.title, further=(result,)))
+    for sentence in result.sentences:
+        click.echo(sentence)
+    if not request.quiet:
+        print_tables(result.tables)
+        click.echo(f"numbers: {numbers}; page: {out / 'index.html'}")
+
+
+def _points(
+    request: Request, scene: Scene, vary: tuple[str, ...], sampled: str | None
+) -> tuple[tuple[grids.Axis, ...], tuple[grids.Point, ...]]:
+    """Axes and points of the command line.
+
+    Raises:
+        click.UsageError: the command line has neither a range nor a sample.
+    """
+    si = _si(request)
+    axes = tuple(grids.axis_of(text, si) for text in vary)
+    if sampled is None:
+        if not axes:
+            raise click.UsageError("found neither --vary nor --sample; allowed: --vary t=1.8mm..2.2mm:11, or a sample.")
+        points = grids.grid(axes)
+    elif sampled.endswith(".csv"):
+        points = grids.read_points(Path(sampled), si)
+        axes = grids.axes_of(points)
+    else:
+        axes = axes or grids.ranges_of(scene)
+        points = grids.sample(sampled, axes)
+    return grids.in_file_units(scene, axes), points
+
+
+def _si(request: Request) -> Callable[[str, str], float]:
     """Function that returns the SI value of a text for a parameter.
 
     The function raises SceneError for an unknown parameter, a wrong unit and a wrong value.
     """
-    from comparisons.cases import opened
-
-    return lambda name, text: opened(case, {**settings(), name: text}).parameters[name].value
+    return lambda name, text: opened(request.case, {**request.values, name: text}).parameters[name].value

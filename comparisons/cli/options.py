@@ -1,24 +1,20 @@
-"""Options of several sub-commands: readers of their values, and groups of options as decorators."""
+"""Options of the commands as data: readers of their values, and groups of options that commands share."""
 
 from __future__ import annotations
 
-import logging
 import math
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import click
-from click.core import ParameterSource
+from click.shell_completion import CompletionItem
 
-from comparisons.choices import KINEMATICS, Choices, check
+from comparisons.choices import KINEMATICS, Choices
 
-if TYPE_CHECKING:
-    from cprbm_scene import Question
-
-Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 Value = TypeVar("Value")
 Reader = Callable[[click.Context, click.Parameter, Any], Any]
 """Callback of click: the value of a text, None for an absent option; click.BadParameter for a wrong text."""
@@ -26,8 +22,11 @@ Reader = Callable[[click.Context, click.Parameter, Any], Any]
 COUNT = "N|BEAM=N,..."
 """Metavar of a number of links or elements."""
 
+SEARCHED = {"links": "-n", "elements": "--elements", "across": "--across"}
+"""Options that ``--tol`` takes the place of, by the names of their values."""
 
-def _reader(read: Callable[[str], Value], holds: Callable[[Value], bool], allowed: str) -> Reader:
+
+def _reader(read: Callable[[Any], Value], allowed: str, holds: Callable[[Value], bool] = lambda value: True) -> Reader:
     """Reader of texts with a value that ``holds``; the message for all other texts says what is ``allowed``."""
 
     def value_of(ctx: click.Context, param: click.Parameter, text: Any) -> Any:  # noqa: ANN401 - text, path or None
@@ -45,10 +44,6 @@ def _whole(text: str) -> int:
     return int(text)
 
 
-def _several(text: str) -> tuple[int, ...]:
-    return tuple(_whole(part.strip()) for part in text.split(","))
-
-
 def _by_beam(text: str) -> int | dict[str, int]:
     if "=" not in text:
         return _whole(text)
@@ -64,177 +59,169 @@ def _share(text: str) -> float:
     return float(text[:-1]) / 100.0 if text.endswith("%") else float(text)
 
 
-def _solvers(text: str) -> bool:
-    named = sorted(part.strip() for part in text.split(","))
-    if named not in (["cprbm", "fea"], ["cprbm", "fea", "solid"]):
-        raise ValueError(text)
-    return "solid" in named
+def _values(texts: tuple[str, ...]) -> dict[str, str]:
+    pairs = {name.strip(): text.strip() for name, _, text in (each.partition("=") for each in texts)}
+    if not all((*pairs, *pairs.values())):
+        raise click.BadParameter(f"found {', '.join(texts)}; allowed: NAME=VALUE, such as t=1.9mm")
+    return pairs
 
 
-def _always(value: object) -> bool:
-    return True
+def _several(text: str) -> tuple[int, ...]:
+    return tuple(_whole(part.strip()) for part in text.split(","))
 
 
-def _is_fraction(value: float) -> bool:
-    return 0.0 < value < 1.0
+count = _reader(_by_beam, "one number, or beam=number once for each beam")
+whole = _reader(_whole, "a whole number from 1 to 9999")
+counts = _reader(_several, "whole numbers between commas")
+family_sizes = _reader(_several, "two numbers or more, each larger than the one before",
+                       lambda found: len(found) > 1 and all(a < b for a, b in pairwise(found)))  # fmt: skip
+positive = _reader(float, "a number greater than 0", lambda value: 0.0 < value < math.inf)
+fraction = _reader(float, "a number greater than 0 and less than 1", lambda value: 0.0 < value < 1.0)
+tolerance = _reader(_share, "as 0.1% or as 0.001, greater than 0 and less than 1", lambda value: 0.0 < value < 1.0)
+shard = _reader(lambda text: tuple(map(int, text.split("/"))), "I/N with I from 1 to N, as 3/64",
+                lambda found: len(found) == 2 and 1 <= found[0] <= found[1])  # fmt: skip
+values = _reader(_values, "NAME=VALUE, such as t=1.9mm")
+opinions = _reader(lambda text: tuple(sorted(part.strip() for part in text.split(","))),
+                   "cprbm,fea or cprbm,fea,solid",
+                   lambda found: found in (("cprbm", "fea"), ("cprbm", "fea", "solid")))  # fmt: skip
+drawing = _reader(Path, "a name that ends in .svg or .png", lambda path: path.suffix.lower() in (".svg", ".png"))
 
 
-count = _reader(_by_beam, _always, "one number, or beam=number once for each beam")
-whole = _reader(_whole, _always, "a whole number from 1 to 9999")
-counts = _reader(_several, _always, "whole numbers between commas")
-family_sizes = _reader(_several, lambda found: len(found) > 1 and all(a < b for a, b in pairwise(found)),
-                       "two numbers or more, each larger than the one before")  # fmt: skip
-positive = _reader(float, lambda value: 0.0 < value < math.inf, "a number greater than 0")
-fraction = _reader(float, _is_fraction, "a number greater than 0 and less than 1")
-tolerance = _reader(_share, _is_fraction, "as 0.1% or as 0.001, greater than 0 and less than 1")
-opinions = _reader(_solvers, _always, "cprbm,fea or cprbm,fea,solid")
-_drawing = _reader(Path, lambda path: path.suffix.lower() in (".svg", ".png"), "a name that ends in .svg or .png")
+def place(ctx: click.Context, param: click.Parameter, value: str | None) -> str:
+    """A place of workers."""
+    if value is None:
+        return f"local:{min(2, os.cpu_count() or 1)}"
+    from comparisons.sweeps.workers import PLACES, place_of
+
+    if place_of(value) is None:
+        raise click.BadParameter(f"found {value!r}; allowed: {PLACES}")
+    return value
 
 
-def refuse_sizes_with(tol: float | None) -> None:
-    """Refuse a number of links or elements beside a tolerance.
-
-    Raises:
-        click.UsageError: the command line has both.
-    """
-    source = click.get_current_context().get_parameter_source
-    for name, option in (("links", "-n"), ("elements", "--elements"), ("across", "--across")):
-        if tol is not None and source(name) is not ParameterSource.DEFAULT:
-            raise click.UsageError(f"found --tol and {option}; allowed: only one of the two, since --tol searches N.")
+def power_of_2(ctx: click.Context, param: click.Parameter, value: int) -> int:
+    """A power of 2."""
+    if value & (value - 1):
+        raise click.BadParameter(f"found {value}; allowed: a power of 2, as {1 << value.bit_length() - 1}")
+    return value
 
 
-def _store(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -> None:
-    """Store the values of parameters by name in the context."""
-    named = [part.partition("=") for part in value]
-    if not all(name.strip() and text.strip() for name, _, text in named):
-        raise click.BadParameter(f"found {', '.join(value)}; allowed: NAME=VALUE, such as t=1.9mm")
-    ctx.meta[__name__] = {name.strip(): text.strip() for name, _, text in named}
-
-
-def settings() -> dict[str, str]:
-    """Values of the option ``--set`` of the running command, by parameter name."""
-    return dict(click.get_current_context().meta.get(__name__, {}))
-
-
-def _choice(read: Reader | None = None) -> Reader:
-    """Callback that stores the value of an option as a field of :class:`Choices` in the context."""
-
-    def store(ctx: click.Context, param: click.Parameter, value: Any) -> None:  # noqa: ANN401 - any option
-        ctx.meta.setdefault(Choices.__name__, {})[param.name] = value if read is None else read(ctx, param, value)
-
-    return store
-
-
-def choices_for(*questions: Question) -> Choices:
-    """Choices of the running command, from the options ``sized``, ``variants`` and ``numerical``.
-
-    Raises:
-        SceneError: a scene of the ``questions`` lacks a beam with an own number.
-    """
-    from cprbm_scene import OffsetQuestion
-
-    found = Choices(**click.get_current_context().meta.get(Choices.__name__, {}))
-    for question in questions:
-        if not isinstance(question, OffsetQuestion):
-            check(found, question)
-    return found
-
-
-def _listen(ctx: click.Context, param: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's form
-    """Print the log of the solvers on standard error."""
+def listen(ctx: click.Context, param: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's form
+    """Print the log of the solvers on standard error until the command ends."""
     if value:
+        import logging
+
         from comparisons import logs
 
         logs.print_from(logging.INFO)
         ctx.call_on_close(lambda: logs.print_from(logging.NOTSET))
 
 
-def group(*options: Decorator) -> Decorator:
-    """Decorator with several options, in the order of the help."""
+def candidates(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Names of cases with the beginning ``incomplete``, and files, if the argument accepts files."""
+    from comparisons import cases
 
-    def decorated(command: Callable[..., Any]) -> Callable[..., Any]:
-        for option in reversed(options):
-            command = option(command)
-        return command
-
-    return decorated
-
-
-def folder(text: str) -> Decorator:
-    """Decorator for ``--out DIR`` with the help ``text``."""
-    return click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help=text)
+    accepted = param.metavar or ""
+    # a shell looks for files if no name fits, and drops names in front of this item
+    files = [CompletionItem(incomplete, type="file")] if "FILE" in accepted else []
+    names = (*cases.names(), "all") if "all" in accepted else cases.names()
+    return [*files, *(CompletionItem(name) for name in names if name.startswith(incomplete))]
 
 
-def time_limit(text: str, seconds: str) -> Decorator:
-    """Decorator for ``--at-most`` with the help ``text`` and the default ``seconds``."""
-    return click.option("--at-most", callback=positive, metavar="SECONDS", default=seconds, show_default=True,
+def folder(text: str) -> click.Option:
+    """Option ``--out DIR`` with the help ``text``."""
+    return click.Option(["--out"], type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help=text)
+
+
+def time_limit(text: str, seconds: str) -> click.Option:
+    """Option ``--at-most`` with the help ``text`` and the default ``seconds``."""
+    return click.Option(["--at-most"], callback=positive, metavar="SECONDS", default=seconds, show_default=True,
                         help=text)  # fmt: skip
 
 
-def timed(repeated: str, longer: str, most: str = "60") -> Decorator:
-    """Decorator for ``--repeat`` with the help ``repeated``, and ``--at-most`` with the help ``longer``.
+def repeated(text: str) -> click.Option:
+    """Option ``--repeat`` with the help ``text``."""
+    return click.Option(["--repeat"], callback=whole, metavar="TIMES", default="5", show_default=True, help=text)
 
-    ``most`` is the default of ``--at-most``, s.
-    """
-    return group(
-        click.option("--repeat", callback=whole, metavar="TIMES", default="5", show_default=True, help=repeated),
-        time_limit(f"A solve that takes longer {longer}", most),
-    )
+
+def solvers(third: str) -> click.Option:
+    """Option ``--solver`` of a comparison, perhaps with the solid for a purpose ``third``."""
+    return click.Option(["--solver", "opinions"], callback=opinions, default="cprbm,fea", show_default=True,
+                        metavar="SOLVERS", help=f"Solvers: 'cprbm,fea', or 'cprbm,fea,solid' for {third}.")  # fmt: skip
+
+
+def solver(names: Sequence[str], text: str) -> click.Option:
+    """Option ``--solver`` with a name among ``names``; the first is the default."""
+    return click.Option(["--solver"], type=click.Choice(names), default=names[0], show_default=True, help=text)
+
+
+def flag(text: str, *names: str) -> click.Option:
+    """Option without a value."""
+    return click.Option(names, is_flag=True, help=text)
 
 
 _STANDARD, _THEORIES = Choices(), click.Choice(KINEMATICS)
-_FILE = click.Path(dir_okay=False, path_type=Path)
+FILE = click.Path(dir_okay=False, path_type=Path)
 
-parameters = click.option("--set", callback=_store, multiple=True, expose_value=False, metavar="NAME=VALUE",
-                          help="Value of a parameter of the scene, such as t=1.9mm; may be repeated.")  # fmt: skip
-variants = group(
-    click.option("--formulation", type=click.Choice(["auto", "paper"]), default=_STANDARD.formulation,
-                 show_default=True, callback=_choice(), expose_value=False,
-                 help="Contact formulation of the CPRBM."),
-    click.option("--theory", type=_THEORIES, callback=_choice(), expose_value=False,
-                 help="Beam theory of both solvers.  [default: the scene's]"),
-    click.option("--kinematics", type=_THEORIES, callback=_choice(), expose_value=False,
+CASE = click.Argument(["case"], metavar="CASE|FILE.toml", shell_complete=candidates)
+CASES = click.Argument(["arguments"], nargs=-1, required=True, metavar="CASE|FILE.toml...|all",
+                       shell_complete=candidates)  # fmt: skip
+SET = click.Option(["--set", "values"], callback=values, multiple=True, metavar="NAME=VALUE",
+                   help="Value of a parameter of the scene, such as t=1.9mm; may be repeated.")  # fmt: skip
+SIZED = (
+    click.Option(["-n", "--links", "links"], metavar=COUNT, default=str(_STANDARD.links), show_default=True,
+                 callback=count, help="CPRBM links per beam: 40 for all beams, or beam1=30,beam2=40."),
+    click.Option(["--elements"], metavar=COUNT, default=str(_STANDARD.elements), show_default=True, callback=count,
+                 help="Finite elements per beam: 80 for all beams, or beam1=60,beam2=80."),
+)  # fmt: skip
+VARIANTS = (
+    click.Option(["--formulation"], type=click.Choice(["auto", "paper"]), default=_STANDARD.formulation,
+                 show_default=True, help="Contact formulation of the CPRBM."),
+    click.Option(["--theory"], type=_THEORIES, help="Beam theory of both solvers.  [default: the scene's]"),
+    click.Option(["--kinematics"], type=_THEORIES,
                  help="Beam theory of the finite elements; beside them the CPRBM answers in this theory.  "
                  "[default: as --theory]"),
 )  # fmt: skip
-sized = group(
-    click.option("-n", "--links", "links", metavar=COUNT, default=str(_STANDARD.links), show_default=True,
-                 callback=_choice(count), expose_value=False,
-                 help="CPRBM links per beam: 40 for all beams, or beam1=30,beam2=40."),
-    click.option("--elements", metavar=COUNT, default=str(_STANDARD.elements), show_default=True,
-                 callback=_choice(count), expose_value=False,
-                 help="Finite elements per beam: 80 for all beams, or beam1=60,beam2=80."),
-)  # fmt: skip
-numerical = group(
-    sized,
-    variants,
-    click.option("--across", metavar="N", default=str(_STANDARD.across), show_default=True,
-                 callback=_choice(whole), expose_value=False,
+NUMERICAL = (
+    *SIZED,
+    *VARIANTS,
+    click.Option(["--across"], metavar="N", default=str(_STANDARD.across), show_default=True, callback=whole,
                  help="Elements of the solid across a beam's thickness."),
-    click.option("--penetration", metavar="SHARE", default=str(_STANDARD.penetration), show_default=True,
-                 callback=_choice(fraction), expose_value=False,
-                 help="Allowed overlap of the finite elements, over the thickness."),
-    click.option("--tol", callback=tolerance, metavar="TOL",
+    click.Option(["--penetration"], metavar="SHARE", default=str(_STANDARD.penetration), show_default=True,
+                 callback=fraction, help="Allowed overlap of the finite elements, over the thickness."),
+    click.Option(["--tol"], callback=tolerance, metavar="TOL",
                  help="Double N until the stated error is below TOL, as 0.1% or 0.001, at every probe and station; "
                  "in place of -n, --elements, --across."),
 )  # fmt: skip
-exactness = click.option(
-    "--exact/--no-exact", "exact", default=None,
+EXACT = click.Option(
+    ["--exact/--no-exact", "exact"], default=None,
     help="Ask the exact reference in bending, or leave the reference out; otherwise a rule on the number of pieces "
     "and stations decides.",
 )  # fmt: skip
-quietness = click.option("-q", "--quiet", is_flag=True, help="Print neither tables nor progress.")
-verbose = click.option("-v", "--verbose", is_flag=True, expose_value=False, callback=_listen,
+QUIET = flag("Print neither tables nor progress.", "-q", "--quiet")
+VERBOSE = click.Option(["-v", "--verbose"], is_flag=True, expose_value=False, callback=listen,
                        help="Print runs, stations and iterations on standard error.")  # fmt: skip
-output_options = group(
-    click.option("--json", "json_file", type=_FILE, metavar="FILE",
+OUTPUT = (
+    click.Option(["--json", "json_file"], type=FILE, metavar="FILE",
                  help="Write the numbers as JSON in SI; '-' is standard output without further text."),
-    quietness,
-    verbose,
+    QUIET,
+    VERBOSE,
 )  # fmt: skip
-exports = group(
-    click.option("--csv", "csv_file", type=_FILE, metavar="FILE",
+EXPORTS = (
+    click.Option(["--csv", "csv_file"], type=FILE, metavar="FILE",
                  help="Write a table with a row per station, probe and component."),
-    click.option("--plot", "plot_file", type=_FILE, metavar="FILE", callback=_drawing,
+    click.Option(["--plot", "plot_file"], type=FILE, metavar="FILE", callback=drawing,
                  help="Draw the mechanism at the last station, as .svg or .png."),
 )  # fmt: skip
+MANY = (
+    SET,
+    *SIZED,
+    *VARIANTS,
+    click.Option(["--on", "place"], callback=place, metavar="local:N|dask://HOST:PORT",
+                 help="Worker processes, or the scheduler of a Dask cluster.  [default: a process per core, at most "
+                 "two]"),
+    time_limit("Time limit of a solve; a solve that crashes or takes longer is tried twice.", "600"),
+    QUIET,
+    VERBOSE,
+    folder("Folder of tables and page; a stopped command goes on from there.  [default: COMMAND-NAME]"),
+)  # fmt: skip
+"""Options of a command that solves a scene at many points."""

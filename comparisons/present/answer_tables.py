@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby
 
 from comparisons.case import Comparison
 from comparisons.display_units import display_units, distance_text, load_column, load_text, with_unit
 from comparisons.formats import component_names, components, number, percent
-from comparisons.present.columns import Column, Table, table_of
+from comparisons.present.columns import Column, Table, columns_of, table_of
 from comparisons.quantities import load_unit, norm, unit_of
 from comparisons.tolerances.result import Tolerance
 from comparisons.verdict.events import CriticalRow, mechanism, released
@@ -16,15 +17,22 @@ from comparisons.verdict.scales import probe_scales
 from comparisons.verdict.station_events import Place
 from cprbm_scene import Answer, Critical, Event, Scene, Stage
 
+CRITICAL_TITLE = "Critical values: where a branch ends"
+
 
 def answer_tables(scene: Scene, answer: Answer, tolerances: Sequence[Tolerance] = ()) -> tuple[Table, ...]:
     """Search for N, all stations of every stage, critical points and events; tables without rows are left out."""
-    stages = (_stage_table(scene, answer, stage) for stage in scene.stages)
+    events = [
+        Column[Event]("stage", "stage"),
+        Column("contact", "contact"),
+        Column("event", "kind"),
+        Column("at", lambda event: load_text(scene, event.stage, event.value)),
+    ]
     found = (
         search_table(scene, tolerances),
-        *stages,
-        answer_critical_table(scene, answer),
-        event_table(scene, answer),
+        *(_stage_table(scene, answer, stage) for stage in scene.stages),
+        _answer_critical_table(scene, answer),
+        table_of("Events", events, answer.events),
     )
     return tuple(table for table in found if table.rows)
 
@@ -33,45 +41,30 @@ def _stage_table(scene: Scene, answer: Answer, stage: Stage) -> Table:
     """All stations of a stage, with a column for every component."""
     stations = [station for station in answer.stations if station.stage == stage.name]
     probes, scales = scene.probes_in(stage.name), probe_scales(scene, (answer,))
-    units = display_units(
-        scene,
-        (
-            (unit_of(scene, probe, stage), norm(probe.quantity, at.values[probe.name]))
-            for probe in probes
-            for at in stations
-        ),
-    )
-    columns: dict[str, list[str]] = {}
+    sizes = ((unit_of(scene, at, stage), norm(at.quantity, each.values[at.name])) for at in probes for each in stations)
+    units, columns = display_units(scene, sizes), dict([load_column(scene, stage, [at.value for at in stations])])
     for probe in probes if stations else ():
         factor, unit = units[unit_of(scene, probe, stage)]
         floor = ROUND_OFF * scales[stage.name, probe.name]
         texts = [dict(components(probe.quantity, at.values[probe.name], factor, floor)) for at in stations]
-        for name in component_names(probe.quantity):
-            columns[f"{f'{probe.name} {name}'.rstrip()}, {unit}"] = [each.get(name, "open") for each in texts]
-    heading, loads = load_column(scene, stage, [station.value for station in stations])
+        columns |= {
+            f"{f'{probe.name} {name}'.rstrip()}, {unit}": tuple(each.get(name, "open") for each in texts)
+            for name in component_names(probe.quantity)
+        }
     ended = f"{answer.ending.name}: {answer.sentence or answer.ending.value}"
-    return Table(
-        f"{scene.title or scene.name}: {stage.name}, {answer.solver}",
-        (heading, *columns),
-        tuple(zip(loads, *columns.values(), strict=True)),
-        ended if stations and stations[-1] is answer.stations[-1] else "",
-    )
+    note = ended if stations and stations[-1] is answer.stations[-1] else ""
+    title = f"{scene.title or scene.name}: {stage.name}, {answer.solver}"
+    return Table(title, tuple(columns), tuple(zip(*columns.values(), strict=True)), note)
 
 
 def search_table(scene: Scene, found: Sequence[Tolerance]) -> Table:
     """N by solver, with the largest uncertainty at that N."""
-
-    def largest(one: Tolerance) -> str | None:
-        if one.worst is None:
-            return None
-        return f"{one.worst.probe} at {load_text(scene, one.worst.stage, one.worst.station)}"
-
     columns = [
-        Column[Tolerance]("solver", lambda one: one.solver),
-        Column("N", lambda one: one.n),
+        Column[Tolerance]("solver", "solver"),
+        Column("N", "n"),
         Column("extrapolated from", lambda one: ", ".join(map(str, one.extrapolated)) or None),
-        Column("largest u", lambda one: None if one.worst is None else percent(one.worst.fraction)),
-        Column("of", largest),
+        Column("largest u", "worst.fraction", percent),
+        Column("of", "worst", lambda row: f"{row.probe} at {load_text(scene, row.stage, row.station)}"),
         Column("met", lambda one: "yes" if one.met else "no"),
         Column("solved", lambda one: ", ".join(map(str, one.solved))),
     ]
@@ -79,42 +72,22 @@ def search_table(scene: Scene, found: Sequence[Tolerance]) -> Table:
     return table_of(f"N for a tolerance of {percent(found[0].asked)}" if found else "", columns, found, note)
 
 
-CRITICAL_TITLE = "Critical values: where a branch ends"
-
-
 def critical_table(compared: Comparison) -> Table:
     """Critical points of both answers."""
     scene = compared.scene
-
-    def load(header: str, solver: str) -> Column[CriticalRow]:
-        def text(row: CriticalRow) -> str | None:
-            found = getattr(row, solver)
-            return None if found is None else f"{with_unit(scene, found.value, row.unit, 5)}, {mechanism(found)}"
-
-        return Column(header, text)
-
-    def distance(header: str, size: str) -> Column[CriticalRow]:
-        owner, _, name = size.rpartition(".")
-
-        def text(row: CriticalRow) -> str | None:
-            record = row.bounds if owner else row
-            return None if record is None else distance_text(scene, getattr(record, name), row.unit)
-
-        return Column(header, text)
-
+    sizes = {"apart": "difference", "u CPRBM": "bounds.cprbm", "u FEA": "bounds.fea", "allowed": "allowed"}
     columns = [
         Column[CriticalRow]("stage", lambda row: row.stage if row.place == 0 else f"{row.stage}, {row.place + 1}"),
-        load("CPRBM", "cprbm"),
-        load("FEA", "fea"),
-        distance("apart", "difference"),
-        distance("u CPRBM", "bounds.cprbm"),
-        distance("u FEA", "bounds.fea"),
-        distance("allowed", "allowed"),
-        distance("theory", "theory"),
-        Column("releases CPRBM", lambda row: _release(scene, row.cprbm)),
-        Column("releases FEA", lambda row: _release(scene, row.fea)),
-        Column("word", lambda row: row.word.value),
-    ]
+        *columns_of(
+            lambda row, found: f"{with_unit(scene, found.value, row.unit, 5)}, {mechanism(found)}",
+            {"CPRBM": "cprbm", "FEA": "fea"},
+        ),
+        *columns_of(lambda row, size: distance_text(scene, size, row.unit), sizes | {"theory": "theory"}),
+        *columns_of(
+            lambda _, found: _release(scene, found), {"releases CPRBM": "cprbm", "releases FEA": "fea"}
+        ),
+        Column("word", "word.value"),
+    ]  # fmt: skip
     return table_of(
         CRITICAL_TITLE,
         columns,
@@ -128,24 +101,27 @@ def critical_table(compared: Comparison) -> Table:
 def branch_table(compared: Comparison) -> Table:
     """Words by branch; without rows where no branch ends."""
     scene = compared.scene
+
+    def span(stage: str, first: float, last: float) -> str:
+        return " to ".join(load_text(scene, stage, value) for value in dict.fromkeys((first, last)))
+
     branches = compared.verdict.branches if compared.criticals or len(compared.verdict.branches) > 1 else ()
     rows = [
         (
             f"{each.stage}, branch {each.number}",
-            " to ".join(load_text(scene, each.stage, value) for value in (each.first, each.last)),
+            span(each.stage, each.first, each.last),
             str(each.stations - each.near),
             str(each.near),
             "takes no part" if each.word is None else each.word.value,
         )
         for each in branches
     ]
-    between: dict[str, dict[float, None]] = {}
-    for row in compared.rows:
-        if row.branch is None:
-            between.setdefault(row.stage, {})[row.station] = None
-    for stage, values in between.items():
-        texts = ", ".join(load_text(scene, stage, value) for value in values)
-        rows.append((f"{stage}, {Place.BETWEEN.value}", texts, str(len(values)), "–", "takes no part"))
+    stations = dict.fromkeys((row.stage, row.branch is None, row.station) for row in compared.rows)
+    for (stage, between), found in groupby(stations, key=lambda at: at[:2]):
+        loads = [load for *_, load in found]
+        if between:
+            name = f"{stage}, {Place.BETWEEN.value}"
+            rows.append((name, span(stage, loads[0], loads[-1]), str(len(loads)), "–", "takes no part"))
     return Table(
         "Branch by branch",
         ("branch", "stations", "compared", "between events", "word"),
@@ -154,17 +130,17 @@ def branch_table(compared: Comparison) -> Table:
     )
 
 
-def answer_critical_table(scene: Scene, answer: Answer) -> Table:
+def _answer_critical_table(scene: Scene, answer: Answer) -> Table:
     """Critical points of an answer, passed points first."""
     units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
     passed = {id(one.end): f", passed: turned by {number(one.turned, 3)} rad" for one in answer.gone_over}
     columns = [
-        Column[Critical]("stage", lambda one: one.stage),
+        Column[Critical]("stage", "stage"),
         Column("at", lambda one: with_unit(scene, one.value, units[one.stage], 5)),
         Column("±", lambda one: distance_text(scene, one.uncertainty, units[one.stage])),
         Column("mechanism", lambda one: f"{mechanism(one)}{passed.get(id(one), '')}"),
-        Column("smallest curvature", lambda one: number(one.curvature)),
-        Column("left", lambda one: number(one.left)),
+        Column("smallest curvature", "curvature", number),
+        Column("left", "left", number),
         Column("releases", lambda one: _release(scene, one)),
     ]
     return table_of(
@@ -176,17 +152,7 @@ def answer_critical_table(scene: Scene, answer: Answer) -> Table:
     )
 
 
-def event_table(scene: Scene, answer: Answer) -> Table:
-    """Closings and openings of contacts."""
-    columns = [
-        Column[Event]("stage", lambda event: event.stage),
-        Column("contact", lambda event: event.contact),
-        Column("event", lambda event: event.kind),
-        Column("at", lambda event: load_text(scene, event.stage, event.value)),
-    ]
-    return table_of("Events", columns, answer.events)
-
-
-def _release(scene: Scene, critical: Critical | None) -> str | None:
-    energy = None if critical is None else released(critical)
+def _release(scene: Scene, critical: Critical) -> str | None:
+    """Released energy of a critical point with its unit; None without a release."""
+    energy = released(critical)
     return None if energy is None else with_unit(scene, energy, "J", 4)

@@ -13,7 +13,7 @@ from comparisons.display_units import at_station
 from comparisons.formats import component_names, components, number, percent
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.present import offset
-from comparisons.present.columns import NOTHING, Column, Table, table_of
+from comparisons.present.columns import NOTHING, Column, Table, follow, table_of
 from comparisons.present.row_tables import Judged, judged_rows, row_units, share
 from comparisons.present.table import brief_lines
 from comparisons.sentences import pressure, theory_sentence
@@ -43,18 +43,14 @@ def brief(compared: Comparison | OffsetComparison, argument: str, page: Path | N
     last = _next_step(argument, verdict, page)
     if isinstance(compared, OffsetComparison):
         errors = offset.error_table(compared)
-        lines = ("", *brief_lines(errors, width=WIDTH), *_wrapped(f"{errors.title}. {errors.note}"))
-        return "\n".join((*first, *lines, *last))
-    theories = theory_sentence(compared.scene, compared.runs, compared.rows)
-    last = (*_found_sizes(compared), *_wrapped(theories), *last)
+        explained = _wrapped(f"{errors.title}. {errors.note}")
+        return "\n".join((*first, "", *brief_lines(errors, width=WIDTH), *explained, *last))
+    theories = _wrapped(theory_sentence(compared.scene, compared.runs, compared.rows))
+    last = [*_found_sizes(compared), *theories, *last]
     rows = last_rows_of_stages(compared)
-    lines = ()
-    for count in range(min(ROWS, len(rows)), 0, -1):
-        table = nearest_rows(compared, rows, count)
-        lines = ("", *brief_lines(table, width=WIDTH), *filter(None, (table.note,)))
-        if len(first) + len(lines) + len(last) < LINES:
-            break
-    return "\n".join((*first, *lines, *last))
+    tables = (nearest_rows(compared, rows, count) for count in range(min(ROWS, len(rows)), 0, -1))
+    reports = ([*first, "", *brief_lines(table, width=WIDTH), *filter(None, (table.note,)), *last] for table in tables)
+    return "\n".join(next((report for report in reports if len(report) < LINES), [*first, *last]))
 
 
 def headline(name: str, verdict: Verdict, sentence: str) -> str:
@@ -71,17 +67,18 @@ def name_of(compared: Comparison | OffsetComparison) -> str:
 def last_rows_of_stages(compared: Comparison) -> tuple[Judged, ...]:
     """Rows of the last station of every stage, with their words."""
     last = {row.stage: row.station for row in compared.rows}
-    return tuple(judged for judged in judged_rows(compared) if judged[0].station == last[judged[0].stage])
+    return tuple(judged for judged in judged_rows(compared) if judged.row.station == last[judged.row.stage])
 
 
 def nearest_rows(compared: Comparison, rows: Sequence[Judged], count: int) -> Table:
-    """Table of the rows nearest their limits, in the order of stages and probes; the note counts the other rows."""
-    order = sorted(range(len(rows)), key=lambda place: _nearness(rows[place]))
-    units = row_units(compared.scene, [rows[place][0] for place in order[:count]])
-    body: list[tuple[str, ...]] = []
-    stage = ""
+    """Table of the rows nearest their limits, in the order of stages and probes; the note counts the other rows.
+
+    A row has a line for every component.  The first line has difference, stated uncertainty and word.
+    """
+    order, body, stage = sorted(range(len(rows)), key=lambda place: _nearness(rows[place])), list[tuple[str, ...]](), ""
+    units = row_units(compared.scene, [rows[place].row for place in order[:count]])
     for judged in (rows[place] for place in sorted(order[:count])):
-        row = judged[0]
+        row = judged.row
         if row.stage != stage:
             stage = row.stage
             body.append((at_station(compared.scene, *row.where), *[""] * 6))
@@ -95,13 +92,14 @@ def nearest_rows(compared: Comparison, rows: Sequence[Judged], count: int) -> Ta
 def summary(finished: Sequence[Comparison | OffsetComparison]) -> Table:
     """Table with a row for every case."""
     columns = [
-        Column("case", name_of),
-        Column("word", lambda compared: compared.verdict.word.value),
-        Column("reason", lambda compared: compared.verdict.reason.value if compared.verdict.reason else ""),
+        Column[Comparison | OffsetComparison]("case", name_of),
+        Column("word", "verdict.word.value"),
+        Column("reason", lambda compared: follow(compared, "verdict.reason.value") or ""),
         Column("rows agreeing", _agreeing),
-        Column("largest difference over stated", lambda compared: number(_largest_pressure(compared), 2)),
-        Column("seconds", lambda compared: number(_seconds(compared), 2)),
-    ]
+        Column("largest difference over stated", lambda compared: max(_pressures(compared), default=None),
+               lambda value: number(value, 2)),
+        Column("seconds", _seconds, lambda value: number(value, 2)),
+    ]  # fmt: skip
     return table_of("Summary", columns, finished, "Seconds: of all runs, by the solvers' own clocks.")
 
 
@@ -110,10 +108,11 @@ def _agreeing(compared: Comparison | OffsetComparison) -> str:
     return f"{words.count(Word.AGREE)} of {len(words)}"
 
 
-def _largest_pressure(compared: Comparison | OffsetComparison) -> float | None:
+def _pressures(compared: Comparison | OffsetComparison) -> list[float]:
+    """Differences over stated uncertainties."""
     if isinstance(compared, OffsetComparison):
-        return max((row.pressure for row in compared.rows), default=None)
-    return max((pressure(row) for row in compared.rows if row.bounds is not None), default=None)
+        return [row.pressure for row in compared.rows]
+    return [pressure(row) for row in compared.rows if row.bounds is not None]
 
 
 def _seconds(compared: Comparison | OffsetComparison) -> float:
@@ -130,28 +129,21 @@ def _nearness(judged: Judged) -> tuple[int, float]:
 
 
 def _lines(judged: Judged, factor: float, unit: str) -> list[tuple[str, ...]]:
-    """A line for every component of a row; the first line has difference, stated uncertainty and word.
-
-    The value of a stress is the largest magnitude along the beam.
-    """
+    """Lines of a row; the value of a stress is the largest magnitude along the beam."""
     row, word, _ = judged
-    floor = ROUND_OFF * row.scale
-    found = [dict(components(row.probe.quantity, values, factor, floor)) for values in (row.cprbm, row.fea)]
     stated = share(row, row.bounds.total, digits=2) if row.bounds else None
-    measured = (
-        share(row, row.difference, digits=2) or NOTHING,
-        stated or NOTHING,
-        NOTHING if word is None else word.value,
-    )
-    names = component_names(row.probe.quantity) if any(found) else ("",)
+    measured = (share(row, row.difference, digits=2), stated, word and word.value)
+    found = [
+        dict(components(row.probe.quantity, values, factor, ROUND_OFF * row.scale)) for values in (row.cprbm, row.fea)
+    ]
     return [
         (
             f"{row.probe.name} {name}".removesuffix("max").rstrip(),
             unit,
             *(values.get(name, "open") for values in found),
-            *(measured if place == 0 else ("", "", "")),
+            *(("", "", "") if place else (text or NOTHING for text in measured)),
         )
-        for place, name in enumerate(names)
+        for place, name in enumerate(component_names(row.probe.quantity) if any(found) else ("",))
     ]
 
 
@@ -161,18 +153,16 @@ def _wrapped(sentence: str) -> list[str]:
 
 def _found_sizes(compared: Comparison) -> Iterator[str]:
     """Links and elements that ``--tol`` has found, and the solvers without a sufficient size."""
-    sizes = ", ".join(f"{found.solver} {found.n}" for found in compared.tolerances)
-    if sizes:
-        yield f"N for {percent(compared.tolerances[0].asked)}: {sizes}."
-    for found in compared.tolerances:
-        if not found.met:
-            yield from _wrapped(found.sentence(compared.scene))
+    found = compared.tolerances
+    if found:
+        yield f"N for {percent(found[0].asked)}: {', '.join(f'{each.solver} {each.n}' for each in found)}."
+    yield from (line for each in found if not each.met for line in _wrapped(each.sentence(compared.scene)))
 
 
-def _next_step(argument: str, verdict: Verdict, page: Path | None) -> tuple[str, ...]:
+def _next_step(argument: str, verdict: Verdict, page: Path | None) -> list[str]:
     """The next command in a line, where the first sentence has a command or the case agrees without a report."""
     hint = _COMMAND.search(verdict.because)
     if hint is not None:
         command, options = ("compare", hint[1]) if hint[1].startswith("-") else hint[1].split(" ", 1)
-        return (f"next: cprbm {command} {argument} {options}",)
-    return (f"next: cprbm compare {argument} --out DIR",) if verdict.word is Word.AGREE and page is None else ()
+        return [f"next: cprbm {command} {argument} {options}"]
+    return [f"next: cprbm compare {argument} --out DIR"] if verdict.word is Word.AGREE and page is None else []

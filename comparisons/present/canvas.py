@@ -32,7 +32,7 @@ _STYLE: dict[Any, Any] = {  # the stubs name every key of every version
     "svg.hashsalt": "cprbm",
     "svg.fonttype": "path",
     "font.family": "DejaVu Sans",
-    "font.size": 10.0,
+    "font.size": 11.0,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "legend.frameon": False,
@@ -42,7 +42,6 @@ _STYLE: dict[Any, Any] = {  # the stubs name every key of every version
 }
 
 _LOOKS: dict[Kind, dict[str, Any]] = {
-    "rigid": {"facecolor": "#b9bfc6", "alpha": 0.55, "linewidth": 0.0, "zorder": 0.5},
     "edge": {"color": INK, "linewidth": 0.9, "zorder": 0.6},
     "rest": {"facecolor": "#d3d6da", "edgecolor": "#aab0b7", "linewidth": 0.5, "zorder": 1.0},
     "beam": {"facecolor": RED, "linewidth": 0.0, "zorder": 2.0},
@@ -54,6 +53,9 @@ _LOOKS: dict[Kind, dict[str, Any]] = {
     "contact": {"linestyle": "", "marker": ".", "markersize": 3.0, "color": GREEN, "zorder": 5.0},
 }
 """Matplotlib's keywords by kind of part; parts with a ``facecolor`` are areas."""
+
+_RIGID: dict[str, Any] = {"facecolor": "#b9bfc6", "alpha": 0.55, "linewidth": 0.0, "zorder": 0.5}
+"""Keywords of the solid side of an edge."""
 
 
 @contextmanager
@@ -111,11 +113,12 @@ def draw_parts(axes: Axes, parts: Iterable[Part], colour: str = INK) -> None:
     """Draw parts of the drawing list; lines and marks without a colour of their own take ``colour``."""
     for part in parts:
         look = _LOOKS[part.kind]
+        if part.kind == "edge":
+            axes.fill(*part.area.T, **_RIGID)
         if "facecolor" in look:
             axes.fill(*part.points.T, **look)
         else:
-            line = np.concatenate([part.points, part.points[:1]]) if part.closed else part.points
-            axes.plot(*line.T, **{"color": colour, **look})
+            axes.plot(*part.line.T, **{"color": colour, **look})
 
 
 def draw_names(axes: Axes, scene: Scene) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
@@ -22,18 +23,44 @@ class Column(Generic[T]):
 
     Attributes:
         header: heading of the column, or key of the record.
-        value: value for an item; None without a value.
+        value: value for an item, or the path to the value (:func:`follow`); None without a value.
         text: text of a value on the screen and on a page.
     """
 
     header: str
-    value: Callable[[T], Any]
+    value: Callable[[T], Any] | str
     text: Callable[[Any], str] = str
+
+    def of(self, item: T) -> Any:  # noqa: ANN401 - any value
+        """Value for an item."""
+        return follow(item, self.value) if isinstance(self.value, str) else self.value(item)
 
     def cell(self, item: T) -> str:
         """Text for an item."""
-        value = self.value(item)
+        value = self.of(item)
         return NOTHING if value is None else self.text(value)
+
+
+def follow(item: Any, path: str) -> Any:  # noqa: ANN401 - any record
+    """Value at the end of a path of attributes or keys, such as ``bounds.total``; None where an owner is None."""
+    for name in path.split("."):
+        item = item.get(name) if isinstance(item, Mapping) else getattr(item, name) if item is not None else None
+    return item
+
+
+def columns_of(text: Callable[[Any, Any], str | None], paths: Mapping[str, str]) -> list[Column[Any]]:
+    """Columns of the same kind.
+
+    Args:
+        text: text of an item and the value at a path, called with values alone; None for no text.
+        paths: paths to the values by header.
+    """
+
+    def cell(item: object, path: str) -> str | None:
+        value = follow(item, path)
+        return None if value is None else text(item, value)
+
+    return [Column(header, partial(cell, path=path)) for header, path in paths.items()]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,18 +85,15 @@ def table_of(title: str, columns: Sequence[Column[T]], items: Iterable[T], note:
 
 def without_empty(table: Table) -> Table:
     """The table without columns that have no value in any row; the first column stays."""
-    kept = [
-        place
-        for place in range(len(table.headers))
-        if place == 0 or any(row[place] not in ("", NOTHING) for row in table.rows)
-    ]
-    headers, *rows = (tuple(row[place] for place in kept) for row in (table.headers, *table.rows))
+    columns = [*zip(table.headers, *table.rows, strict=True)]
+    kept = [column for place, column in enumerate(columns) if place == 0 or {*column[1:]} - {"", NOTHING}]
+    headers, *rows = zip(*kept, strict=True)
     return replace(table, headers=headers, rows=tuple(rows))
 
 
 def records_of(columns: Sequence[Column[T]], items: Iterable[T]) -> list[Plain]:
     """Record of every item: values by header."""
-    return [{column.header: column.value(item) for column in columns} for item in items]
+    return [{column.header: column.of(item) for column in columns} for item in items]
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,17 +5,14 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple, TypedDict
+from typing import Any, TypedDict
 
 from comparisons.case import Comparison
 from comparisons.display_units import file_unit
 from comparisons.plain import Plain
-from comparisons.present.columns import Column, records_of
 from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
-from comparisons.verdict.rows import Row
-from comparisons.verdict.words import Word
-from cprbm_scene import Answer, Probe, Scene
-from cprbm_scene.answer import Array
+from cprbm_scene import Answer, Probe, Scene, StationAnswer
+from cprbm_scene.answer import Array, PointForce
 from cprbm_scene.statement import STRESSES
 
 
@@ -39,23 +36,21 @@ class Number(TypedDict):
     station_unit: str
 
 
-class _Entry(NamedTuple):
-    """A number of a comparison: row, word, component, place, and the values of both solvers."""
-
-    row: Row
-    word: Word | None
-    component: str
-    arc_length: float | None
-    cprbm: float | None
-    fea: float | None
-
-
 _MEASURED = {
     "station_unit": ("station",),
     "arc_length_unit": ("arc_length", "x", "y"),
     "unit": ("value", "cprbm", "fea", "difference", "stated", "force_x", "force_y"),
 }
 """Columns of units, and the columns of numbers in the unit."""
+
+_COMPARISON = (
+    *("scene", "stage", "station", "station_unit", "branch", "probe", "component", "arc_length", "unit"),
+    *("cprbm", "fea", "difference", "stated", "word"),
+)
+_CONTACT_FORCE = (
+    *("scene", "solver", "stage", "station", "station_unit", "contact", "beam", "arc_length", "x", "y"),
+    *("arc_length_unit", "force_x", "force_y", "unit"),
+)
 
 
 def numbers(scene: Scene, answer: Answer) -> Iterator[Number]:
@@ -88,34 +83,22 @@ def _parts(scene: Scene, probe: Probe, values: Array) -> dict[tuple[str, float |
     return {(name, None): value for name, value in zip(names, values.tolist(), strict=True)}
 
 
-def comparison_columns(scene: Scene) -> Sequence[Column[_Entry]]:
-    """Columns of a comparison; ``difference`` and ``stated`` are norms of the probe, in ``unit``."""
-    units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
-    return (
-        Column("scene", lambda at: scene.name),
-        Column("stage", lambda at: at.row.stage),
-        Column("station", lambda at: at.row.station),
-        Column("station_unit", lambda at: units[at.row.stage]),
-        Column("branch", lambda at: at.row.branch),
-        Column("probe", lambda at: at.row.probe.name),
-        Column("component", lambda at: at.component),
-        Column("arc_length", lambda at: at.arc_length),
-        Column("unit", lambda at: at.row.unit),
-        Column("cprbm", lambda at: at.cprbm),
-        Column("fea", lambda at: at.fea),
-        Column("difference", lambda at: at.row.difference),
-        Column("stated", lambda at: None if at.row.bounds is None else at.row.bounds.total),
-        Column("word", lambda at: "" if at.word is None else at.word.value),
-    )
-
-
 def comparison_records(compared: Comparison) -> list[Plain]:
-    """Every number of a comparison with the values of both solvers; ``word`` is empty where a row takes no part."""
-    scene, entries = compared.scene, []
+    """Every number of a comparison with the values of both solvers; ``word`` is empty where a row takes no part.
+
+    ``difference`` and ``stated`` are norms of the probe, in ``unit``.
+    """
+    scene, records = compared.scene, list[Plain]()
+    units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
     for row, word in zip(compared.rows, compared.verdict.words, strict=True):
         cprbm, fea = (_parts(scene, row.probe, values) for values in (row.cprbm, row.fea))
-        entries += [_Entry(row, word, *part, cprbm.get(part), fea.get(part)) for part in cprbm | fea]
-    return records_of(comparison_columns(scene), entries)
+        where = (scene.name, *row.where, units[row.stage], row.branch, row.probe.name)
+        judged = (row.difference, row.bounds and row.bounds.total, word.value if word else "")
+        records += [
+            dict(zip(_COMPARISON, (*where, *part, row.unit, cprbm.get(part), fea.get(part), *judged), strict=True))
+            for part in cprbm | fea
+        ]
+    return records
 
 
 def csv_of(scene: Scene, *answers: Answer) -> str:
@@ -127,8 +110,25 @@ def csv_of(scene: Scene, *answers: Answer) -> str:
 def csv_of_comparisons(comparisons: Sequence[Comparison]) -> str:
     """Comparisons as comma-separated values in the units of the scenes' files, with a line of headers."""
     rows = (in_file_units(each.scene, record) for each in comparisons for record in comparison_records(each))
-    headers = [column.header for each in comparisons[:1] for column in comparison_columns(each.scene)]
-    return csv_text([*headers, "arc_length_unit"], rows)
+    return csv_text([*_COMPARISON, "arc_length_unit"], rows)
+
+
+def contact_csv(scene: Scene, answers: Sequence[Answer]) -> str:
+    """Contact forces of answers as comma-separated values in the units of the scene's file, with a line of headers."""
+    units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
+    lines = (
+        (scene.name, answer.solver, at.stage, at.value, units[at.stage], force.source, force.target,
+         *map(float, (force.s, *force.place)), "m", *map(float, force.force), "N")
+        for answer in answers for at in answer.stations for force in pressing(scene, at)
+    )  # fmt: skip
+    return csv_text(
+        _CONTACT_FORCE, (in_file_units(scene, dict(zip(_CONTACT_FORCE, line, strict=True))) for line in lines)
+    )
+
+
+def pressing(scene: Scene, station: StationAnswer) -> Iterator[PointForce]:
+    """Forces of contacts on beams, in the order of contacts and beams."""
+    return (at for at in station.forces if at.source in scene.contacts and at.target in scene.beams and at.force.any())
 
 
 def in_file_units(scene: Scene, record: Mapping[str, object]) -> Plain:
@@ -136,9 +136,7 @@ def in_file_units(scene: Scene, record: Mapping[str, object]) -> Plain:
     row: Plain = {**record, "arc_length_unit": "m"}
     for unit, columns in _MEASURED.items():
         factor, row[unit] = file_unit(scene, row[unit])
-        for column in columns:
-            if isinstance(row.get(column), float):
-                row[column] = in_unit(row[column], factor)
+        row |= {column: in_unit(row[column], factor) for column in columns if isinstance(row.get(column), float)}
     return row
 
 

@@ -1,139 +1,180 @@
-"""Curves of a comparison: values against every load and drive, and reactions of drives."""
+"""Figures of curves, panels of lines: against loads and drives, reactions, stresses and contact forces."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import cycle
-from typing import TYPE_CHECKING
+from itertools import cycle, groupby, pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from comparisons.case import Comparison
-from comparisons.display_units import axis_unit, display_unit
+from comparisons.display_units import at_station, axis_unit, display_unit
 from comparisons.formats import number
+from comparisons.geometry import longest
 from comparisons.present.canvas import BLUE, GREY, LINES, RED, canvas, finished
+from comparisons.present.case_tables import by_drive
 from comparisons.present.columns import Figure
-from comparisons.present.reaction_tables import by_drive
-from comparisons.quantities import UNITS, load_unit
+from comparisons.present.csv_table import pressing
+from comparisons.quantities import UNITS, arc_lengths, load_unit
 from comparisons.reactions import ENERGY, MESH_ALLOWANCE, WorkEnergyReaction, multiplier, reaction_probe
 from comparisons.stages import begins_at
+from comparisons.stations import station_of
 from cprbm_scene import Answer, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array
 from cprbm_scene.freedoms import unit
-from cprbm_scene.statement import DisplacementDrive, Force, Probe, RotationDrive
+from cprbm_scene.statement import DisplacementDrive, Force, Probe, Quantity, RotationDrive
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+Look = Mapping[str, Any]
+"""Matplotlib's keywords of a line."""
 
-_LOOKS = {"FEA": (RED, "-", 2.6), "CPRBM": (BLUE, "none", 1.0)}  # colour and line of curves, width of jumps
+Line = tuple[Array, Array, Look]
+"""Abscissae (k,), ordinates (k,) and look."""
 
-
-@dataclass(frozen=True, slots=True)
-class Ordinate:
-    """A panel of a curve: its title, SI unit, and values at a station by label of the line."""
-
-    title: str
-    unit: str
-    lines: Mapping[str, Callable[[StationAnswer], Array]]
-
-    def sizes(self, stations: Sequence[StationAnswer]) -> list[float]:
-        """Magnitudes of all values."""
-        return [float(np.max(np.abs(of(at)), initial=0.0)) for at in stations for of in self.lines.values()]
+FEA: Look = {"color": RED, "linewidth": 1.8, "label": "FEA"}
+CPRBM: Look = {"color": BLUE, "linestyle": "none", "marker": ".", "markersize": 5.0, "label": "CPRBM"}
+_BAND = "#eef2f7"
+_WIDTH, _HEIGHT = 5.2, 2.5  # inches: a figure, and a panel
+_MARKERS = 30  # most markers of a branch
 
 
-def _ordinates(scene: Scene, stages: Sequence[Stage]) -> Iterator[Ordinate]:
-    """Force or displacement of the stepped load or drive, energy, rotations and contact forces, as far as asked."""
+class Panel(NamedTuple):
+    """Axes with lines.
+
+    Attributes:
+        label: of the ordinate.
+        lines: all lines.
+        title: of the axes.
+        band: half of the height of a tinted band round zero; 0 without a band.
+    """
+
+    label: str
+    lines: Sequence[Line]
+    title: str = ""
+    band: float = 0.0
+
+
+Values = Callable[[StationAnswer], Array]
+"""Value (1,) of a curve at a station, in SI; empty without a value."""
+
+
+def panels_figure(
+    name: str,
+    caption: str,
+    abscissa: str,
+    panels: Sequence[Panel],
+    marks: Sequence[tuple[float, str, str]] = (),
+    *,
+    shared: bool = True,
+) -> Figure:
+    """Figure of panels above each other.
+
+    Args:
+        name, caption: of the figure.
+        abscissa: label of the abscissa.
+        panels: from above to below.
+        marks: abscissa, colour and text of dotted lines across all panels.
+        shared: whether all panels have the same range of abscissae.
+    """
+    with canvas(_WIDTH, 0.8 + _HEIGHT * len(panels)) as drawing:
+        plots = drawing.subplots(len(panels), 1, sharex=shared, squeeze=False)[:, 0]
+        for axes, panel in zip(plots, panels, strict=True):
+            axes.axhspan(-panel.band, panel.band, color=_BAND, linewidth=0.0, zorder=0)
+            axes.axhline(0.0, color=GREY, linewidth=0.5)
+            for xs, ys, look in panel.lines:
+                axes.plot(xs, ys, **look)
+            for x, colour, _ in marks:
+                axes.axvline(x, color=colour, linewidth=0.7, linestyle=":")
+            axes.set_ylabel(panel.label)
+            axes.set_title(panel.title, loc="left")
+            if panel.lines:
+                axes.legend(loc="best")
+        for place, (x, _, text) in enumerate(mark for mark in marks if mark[2]):
+            plots[0].annotate(text, (x, 1.0), xycoords=("data", "axes fraction"), ha="center",
+                              textcoords="offset points", xytext=(0, 3 + 12 * (place % 2)))  # fmt: skip
+        plots[-1].set_xlabel(abscissa)
+        return finished(drawing, name, caption)
+
+
+def _ordinates(scene: Scene, stages: Sequence[Stage]) -> Iterator[tuple[str, str, Mapping[str, Values]]]:
+    """Title, SI unit, and values by label: of the stepped load or drive, energy, rotations and contact forces."""
     asked = [probe for probe in scene.probes if all(probe.asked_in(stage.name) for stage in stages)]
-    names, stepped = {probe.name for probe in asked}, scene.stepped(stages[0])
+    names, stepped, first = {probe.name for probe in asked}, scene.stepped(stages[0]), stages[0]
 
-    def value(probe: Probe) -> Callable[[StationAnswer], Array]:
+    def value(probe: Probe) -> Values:
         return lambda at: at.values[probe.name][:1]
 
     if isinstance(stepped, Force):
-        probe, way = Probe(of=stepped.point, quantity="displacement"), unit(stepped.direction)
-        if probe.name in names:
+        moved, way = Probe(of=stepped.point, quantity="displacement").name, unit(stepped.direction)
+        if moved in names:
             title = f"displacement of {stepped.point} along the force"
-            yield Ordinate(title, "m", {"": lambda at: np.atleast_1d(at.values[probe.name] @ way)})
-    elif isinstance(stepped, DisplacementDrive | RotationDrive):
-        reaction = reaction_probe(stepped)
-        if reaction.name in names:
-            title = "reaction moment" if reaction.quantity == "reaction_moment" else "reaction force"
-            first = stages[0]
-            yield Ordinate(
-                title, UNITS[reaction.quantity], {"": lambda at: np.atleast_1d(multiplier(scene, first, at))}
-            )
-    for quantity, title in (("rotation", "rotation"), ("force", "contact force")):
+            yield title, "m", {"": lambda at: np.atleast_1d(at.values[moved] @ way)}
+    elif isinstance(stepped, DisplacementDrive | RotationDrive) and reaction_probe(stepped).name in names:
+        title = "reaction force" if isinstance(stepped, DisplacementDrive) else "reaction moment"
+        si = UNITS[reaction_probe(stepped).quantity]
+        yield title, si, {"": lambda at: np.atleast_1d(multiplier(scene, first, at))}
+    groups: dict[Quantity, str] = {"rotation": "rotation", "force": "contact force"}
+    for quantity, title in groups.items():
         lines = {probe.of: value(probe) for probe in asked if probe.quantity == quantity}
         if lines:
-            yield Ordinate(title, UNITS[quantity], lines)  # type: ignore[index]
+            yield title, UNITS[quantity], lines
     if ENERGY.name in names:
-        yield Ordinate("potential energy", "J", {"": value(ENERGY)})
+        yield "potential energy", "J", {"": value(ENERGY)}
 
 
 def curve_figures(scene: Scene, fea: Answer, cprbm: Answer) -> Iterator[Figure]:
     """A figure for every load or drive with two stations or more, in the manner of the paper's Fig. 18."""
-    ways: dict[str, list[Stage]] = {}
-    for stage in scene.stages:
-        ways.setdefault(stage.steps, []).append(stage)
-    for steps, stages in ways.items():
-        panels = list(_ordinates(scene, stages))
-        if panels and len({value for stage in stages for value in stage.stations}) > 1:
-            yield _curve(scene, {"FEA": fea, "CPRBM": cprbm}, steps, stages, panels)
+    for steps in dict.fromkeys(stage.steps for stage in scene.stages):
+        stages = [stage for stage in scene.stages if stage.steps == steps]
+        ordinates = list(_ordinates(scene, stages))
+        if ordinates and len({value for stage in stages for value in stage.stations}) > 1:
+            yield _curve(scene, {"FEA": fea, "CPRBM": cprbm}, stages, ordinates)
 
 
 def _curve(
-    scene: Scene, answers: Mapping[str, Answer], steps: str, stages: Sequence[Stage], panels: Sequence[Ordinate]
+    scene: Scene,
+    answers: Mapping[str, Answer],
+    stages: Sequence[Stage],
+    ordinates: Sequence[tuple[str, str, Mapping[str, Values]]],
 ) -> Figure:
     """Values of both answers against a load or drive, branch by branch, with critical points and jumps."""
-    names = {stage.name for stage in stages}
-    largest = max(abs(value) for stage in stages for value in stage.stations)
-    step, step_unit = axis_unit(scene, load_unit(scene, stages[0]), largest)
+    names, steps = {stage.name for stage in stages}, stages[0].steps
+    step, step_unit = axis_unit(scene, load_unit(scene, stages[0]), max(abs(x) for at in stages for x in at.stations))
     mine = [station for answer in answers.values() for station in answer.stations if station.stage in names]
-    ends = {name: [each for each in answer.critical if each.stage in names] for name, answer in answers.items()}
-    jumps = any(station.branch > 0 for station in mine)
-    with canvas(7.2, 0.8 + 2.8 * len(panels)) as drawing:
-        plots = np.atleast_1d(drawing.subplots(len(panels), 1, sharex=True))
-        for axes, panel in zip(plots, panels, strict=True):
-            factor, unit_name = display_unit(scene, panel.unit, max(panel.sizes(mine), default=0.0))
-            for (line, of), (style, marker) in zip(panel.lines.items(), cycle(LINES), strict=False):
-                for name, answer in answers.items():
-                    label = f"{line}, {name}" if len(panel.lines) > 1 else name
-                    marks = marker if len(panel.lines) > 1 else ""
-                    _draw_path(axes, scene, stages, answer, of, (step, factor), (name, label, style, marks))
-            for name, found in ends.items():
-                for critical in found:
-                    axes.axvline(critical.value / step, color=_LOOKS[name][0], linewidth=0.7, linestyle=":")
-            axes.axhline(0.0, color=GREY, linewidth=0.5)
-            axes.set_ylabel(f"{panel.title}, {unit_name}")
-            if len(panel.lines) > 1 or axes is plots[0]:
-                axes.legend(loc="best", fontsize=8.5)
-        for place, critical in enumerate(ends["CPRBM"]):
-            text = (
-                f"{number(critical.value / step, 4)}{'' if step_unit == '°' else ' '}{step_unit}, {critical.loss.value}"
-            )
-            plots[0].annotate(text, (critical.value / step, 1.0), xycoords=("data", "axes fraction"), ha="center",
-                              textcoords="offset points", xytext=(0, 3 + 11 * (place % 2)), fontsize=8.5)  # fmt: skip
-        plots[-1].set_xlabel(f"{steps}, {step_unit}")
-        titles = ", ".join(panel.title for panel in panels)
-        caption = f"{titles[:1].upper()}{titles[1:]} against {steps}; triangles point along the stage."
-        caption += " Dashed: jumps between the stations beside a critical point." if jumps else ""
-        caption += " Dotted: critical values of either solver, the CPRBM's with names." if any(ends.values()) else ""
-        return finished(drawing, f"path-{steps}", caption)
+    panels = []
+    for title, si, lines in ordinates:
+        sizes = (float(np.max(np.abs(of(at)), initial=0.0)) for at in mine for of in lines.values())
+        factor, unit_name = display_unit(scene, si, max(sizes, default=0.0))
+        drawn = [
+            path
+            for (label, of), (style, marker) in zip(lines.items(), cycle(LINES), strict=False)
+            for name, look in (("FEA", {**FEA, "linestyle": style}), ("CPRBM", {**CPRBM, "marker": label and marker}))
+            for path in _paths(scene, stages, answers[name], of, (step, factor),
+                               {**look, "label": f"{label}, {name}".removeprefix(", ")})
+        ]  # fmt: skip
+        panels.append(Panel(f"{title}, {unit_name}", drawn))
+    ends = [(name, each) for name, answer in answers.items() for each in answer.critical if each.stage in names]
+    marks = [
+        (
+            each.value / step,
+            FEA["color"] if name == "FEA" else CPRBM["color"],
+            ""
+            if name == "FEA"
+            else f"{number(each.value / step, 4)} {step_unit}, {each.loss.value}".replace(" °", "°"),
+        )
+        for name, each in ends
+    ]
+    titles = ", ".join(title for title, *_ in ordinates)
+    caption = f"{titles[:1].upper()}{titles[1:]} against {steps}; triangles point along the stage."
+    caption += " Dashed: jumps between the stations beside a critical point." if any(at.branch for at in mine) else ""
+    caption += " Dotted: critical values of either solver, the CPRBM's with names." if ends else ""
+    return panels_figure(f"path-{steps}", caption, f"{steps}, {step_unit}", panels, marks)
 
 
-def _draw_path(
-    axes: Axes,
-    scene: Scene,
-    stages: Sequence[Stage],
-    answer: Answer,
-    of: Callable[[StationAnswer], Array],
-    scales: tuple[float, float],
-    look: tuple[str, str, str, str],
-) -> None:
-    """One line: the finite elements as lines, the CPRBM as markers, for every branch of every stage."""
-    name, label, style, marks = look
-    colour, line, width = _LOOKS[name]
+def _paths(
+    scene: Scene, stages: Sequence[Stage], answer: Answer, of: Values, scales: tuple[float, float], look: Look
+) -> Iterator[Line]:
+    """A line for every branch of every stage, and a dashed line for every jump; only the first has a label."""
     before: StationAnswer | None = None
     for stage in stages:
         up = stage.stations[-1] > begins_at(scene, stage)
@@ -141,21 +182,17 @@ def _draw_path(
         for branch in dict.fromkeys(at.branch for at in stations):
             mine = [at for at in stations if at.branch == branch]
             if before is not None and before.branch != branch:
-                jump = [(at.value / scales[0], of(at)[0] / scales[1]) for at in (before, mine[0])]
-                axes.plot(*zip(*jump, strict=True), "--", color=colour, linewidth=width)
-            axes.plot(
-                [at.value / scales[0] for at in mine],
-                [of(at)[0] / scales[1] for at in mine],
-                linestyle=style if line == "-" else line,
-                linewidth=1.8,
-                marker="" if name == "FEA" else marks or (">" if up else "<"),
-                markersize=4.0,
-                markerfacecolor=colour if up else "white",
-                markeredgewidth=0.7,
-                color=colour,
-                label=label,
-            )
-            label, before = "_", mine[-1]
+                jump = {**look, "linestyle": "--", "marker": "", "linewidth": 1.0, "label": None}
+                yield *_points([before, mine[0]], of, scales), jump
+            marker = {"marker": look["marker"] or (">" if up else "<")} if "marker" in look else {}
+            few = {"markevery": -(-len(mine) // _MARKERS)}  # more markers would hide the line
+            filled = {"markerfacecolor": look["color"] if up else "white", "markersize": 4.0, "markeredgewidth": 0.7}
+            yield *_points(mine, of, scales), {**look, **filled, **few, **marker}
+            look, before = {**look, "label": None}, mine[-1]
+
+
+def _points(stations: Sequence[StationAnswer], of: Values, scales: tuple[float, float]) -> tuple[Array, Array]:
+    return np.array([at.value for at in stations]) / scales[0], np.array([of(at)[0] for at in stations]) / scales[1]
 
 
 def reaction_figures(compared: Comparison) -> Iterator[Figure]:
@@ -167,43 +204,94 @@ def reaction_figures(compared: Comparison) -> Iterator[Figure]:
         factor, unit_name = display_unit(scene, found[0].unit, max(abs(each.multiplier) for each in found))
         si = load_unit(scene, next(stage for stage in scene.stages if stage.name == found[0].stage))
         step, step_unit = axis_unit(scene, si, max(abs(each.station) for each in found))
-        band, title = 100.0 * MESH_ALLOWANCE, "moment" if si == "rad" else "force"
-        with canvas(6.4, 6.0) as drawing:
-            above, below = drawing.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-            for place, branch in enumerate(dict.fromkeys((each.stage, each.branch) for each in found)):
-                mine = [each for each in found if (each.stage, each.branch) == branch]
-                _draw_reactions(above, below, mine, (step, factor), first=place == 0)
-            above.set_ylabel(f"reaction {title}, {unit_name}")
-            below.axhspan(-band, band, color="#eef2f7", zorder=0)
-            below.axhline(0.0, color=GREY, linewidth=0.6)
-            below.set_ylabel("relative difference, %")
-            below.set_xlabel(f"{drive}, {step_unit}")
-            for axes in (above, below):
-                axes.legend(loc="best")
-            caption = (
-                f"Reaction at the drive {drive}. Below: relative differences from the CPRBM's multiplier. The band of "
-                f"{band:g} % to either side is the allowance for the motion of the mesh where contacts are closed. "
-                "Stations beside an event have no work–energy reaction."
-            )
-            yield finished(drawing, f"reaction-{drive}", caption)
+        crosses = {**FEA, "linestyle": "none", "marker": "x"}
+        rings = {**CPRBM, "marker": "o", "markerfacecolor": "none", "label": "CPRBM, work–energy"}
+        solid = {**CPRBM, "linestyle": "-", "marker": "", "label": "CPRBM, multiplier"}
+        forces = {"fea": crosses, "multiplier": solid, "work_energy": rings}
+        band = 100.0 * MESH_ALLOWANCE
+        title = "moment" if si == "rad" else "force"
+        panels = [
+            Panel(f"reaction {title}, {unit_name}", _reaction_lines(found, step, factor, forces)),
+            Panel(
+                "relative difference, %",
+                _reaction_lines(found, step, -0.01, {"from_fea": crosses})
+                + _reaction_lines(found, step, 0.01, {"difference": {**CPRBM, "label": "work–energy"}}),
+                band=band,
+            ),
+        ]
+        caption = (
+            f"Reaction at the drive {drive}. Below: relative differences from the CPRBM's multiplier. The band of "
+            f"{band:g} % to either side is the allowance for the motion of the mesh where contacts are closed. "
+            "Stations beside an event have no work–energy reaction."
+        )
+        yield panels_figure(f"reaction-{drive}", caption, f"{drive}, {step_unit}", panels)
 
 
-def _draw_reactions(
-    above: Axes, below: Axes, mine: Sequence[WorkEnergyReaction], scales: tuple[float, float], *, first: bool
-) -> None:
-    """The three reactions of one branch, and differences from the multiplier; only the first branch has labels."""
-    step, factor = scales
-    ring = {"color": BLUE, "markersize": 4.5, "markerfacecolor": "none"}
-    for axes, values, look, style, label in (
-        (above, [each.fea / factor for each in mine], "x", {"color": RED}, "FEA"),
-        (above, [each.multiplier / factor for each in mine], "-", {"color": BLUE}, "CPRBM, multiplier"),
-        (above, [_scaled(each.work_energy, 1.0 / factor) for each in mine], "o", ring, "CPRBM, work–energy"),
-        (below, [_scaled(each.from_fea, -100.0) for each in mine], "x", {"color": RED}, "FEA"),
-        (below, [_scaled(each.difference, 100.0) for each in mine], ".", {"color": BLUE}, "work–energy"),
-    ):
-        stations = [each.station / step for each in mine]
-        axes.plot(stations, values, look, label=label if first else None, **style)
+def _reaction_lines(
+    found: Sequence[WorkEnergyReaction], step: float, factor: float, looks: Mapping[str, Look]
+) -> list[Line]:
+    """Lines of numbers of reactions by name, over the units of the axes, with gaps between branches."""
+    pairs = enumerate(pairwise(found), 1)
+    gaps = [place for place, (one, other) in pairs if (one.stage, one.branch) != (other.stage, other.branch)]
+    x = np.insert(np.array([at.station for at in found]) / step, gaps, np.nan)
+    values = {name: np.array([getattr(at, name) for at in found], dtype=float) / factor for name in looks}
+    return [(x, np.insert(values[name], gaps, np.nan), look) for name, look in looks.items()]
 
 
-def _scaled(value: float | None, factor: float) -> float:
-    return np.nan if value is None else factor * value
+def _along_beams(
+    scene: Scene, name: str, caption: str, quantity: tuple[str, str], lines: Mapping[str, Sequence[Line]]
+) -> Figure:
+    """Figure of a quantity along beams.
+
+    Args:
+        scene, name, caption: of the figure.
+        quantity: title and SI unit.
+        lines: arc lengths, m, values, SI, and looks, by title of the panel.
+    """
+    title, si = quantity
+    factor, unit_name = display_unit(scene, si, max(np.abs(y).max() for panel in lines.values() for _, y, _ in panel))
+    metre, length_unit = display_unit(scene, "m", longest(scene))
+    panels = [
+        Panel(f"{title}, {unit_name}", [(s / metre, y / factor, look) for s, y, look in panel], beam)
+        for beam, panel in lines.items()
+    ]
+    return panels_figure(name, caption, f"initial arc length, {length_unit}", panels, shared=False)
+
+
+def stress_figures(scene: Scene, fea: StationAnswer, cprbm: StationAnswer) -> Iterator[Figure]:
+    """Bending stress along the beams at a station of both answers, in the manner of the paper's Fig. 10."""
+    lines = {
+        probe.of: [
+            (arc_lengths(scene, probe), at.values[probe.name], look) for at, look in ((fea, FEA), (cprbm, CPRBM))
+        ]
+        for probe in scene.probes_in(fea.stage)
+        if probe.quantity == "bending_stress" and fea.values[probe.name].size == cprbm.values[probe.name].size > 0
+    }
+    if lines:
+        caption = (
+            f"Bending stress along the beams at {at_station(scene, fea.stage, fea.value)}, positive where the load "
+            "turns the tangent counter-clockwise along the beam."
+        )
+        yield _along_beams(scene, "stress", caption, ("bending stress", "Pa"), lines)
+
+
+def contact_figures(compared: Comparison) -> Iterator[Figure]:
+    """Forces along every pressed beam at the last common station, summed up from the start of the beam.
+
+    A solver states forces at places: a zone is a row of point forces.  The CPRBM has a force per link in contact, the
+    finite elements a force per quadrature point.  Sums along the beam compare, single forces do not.
+    """
+    scene, last, lines = compared.scene, compared.rows[-1].where, dict[str, list[Line]]()
+    dotted = {**CPRBM, "linestyle": ":", "marker": "o"}
+    for answer, look in ((compared.runs.reference, FEA), (compared.runs.cprbm[0], dotted)):
+        forces = sorted(pressing(scene, station_of(answer, *last)), key=lambda at: (at.source, at.target, float(at.s)))
+        for pair, found in groupby(forces, key=lambda at: f"{at.source} on {at.target}"):
+            s, sizes = np.array([(float(at.s), np.hypot(*at.force)) for at in found]).T
+            step = {**look, "drawstyle": "steps-post", "markerfacecolor": "none"}
+            lines.setdefault(pair, []).append((np.append(s[:1], s), np.cumsum([0.0, *sizes]), step))
+    if lines:
+        caption = (
+            f"Contact forces along the beams at {at_station(scene, *last)}, summed up from the start of the beam. A "
+            "step is a force at a point, a slope is a zone; where the sum is constant, nothing presses."
+        )
+        yield _along_beams(scene, "contact-forces", caption, ("sum of forces", "N"), dict(sorted(lines.items())))

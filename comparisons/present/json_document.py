@@ -9,6 +9,7 @@ from comparisons.case import Comparison
 from comparisons.claims import claim_met, claim_of, claim_of_critical, claimed_difference, critical_difference
 from comparisons.contact_model import contact_model
 from comparisons.plain import Plain, plain
+from comparisons.present.columns import follow
 from comparisons.quantities import arc_lengths, unit_of
 from comparisons.reactions import WorkEnergyReaction
 from comparisons.third import Third, thirds_of
@@ -16,7 +17,6 @@ from comparisons.tolerances.result import Tolerance
 from comparisons.verdict.completeness import CERTIFICATE_NUMBERS
 from comparisons.verdict.events import CriticalRow, released
 from comparisons.verdict.rows import Row
-from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Answer, Critical, Probe, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES
@@ -31,7 +31,7 @@ def comparison(compared: Comparison) -> Plain:
     return {
         "case": scene.name,
         "verdict": verdict.word.value,
-        "reason": name_of(verdict.reason),
+        "reason": follow(verdict, "reason.value"),
         "sentence": verdict.sentence,
         "theory": runs.theory,
         "other_theory": None if runs.other is None else solver(runs.other),
@@ -41,7 +41,8 @@ def comparison(compared: Comparison) -> Plain:
             if answer is not None
         },
         "rows": [
-            {**_row(compared, row), "verdict": name_of(word), "reason": name_of(why)} for row, word, why in judged
+            {**_row(compared, row), "verdict": follow(word, "value"), "reason": follow(why, "value")}
+            for row, word, why in judged
         ],
         "critical": [_critical_row(scene, each) for each in compared.criticals],
         "branches": [
@@ -52,7 +53,7 @@ def comparison(compared: Comparison) -> Plain:
                 "to": each.last,
                 "stations": each.stations,
                 "near_critical": each.near,
-                "verdict": name_of(each.word),
+                "verdict": follow(each, "word.value"),
             }
             for each in verdict.branches
         ],
@@ -93,7 +94,17 @@ def solver(answer: Answer, audited: Audit | None = None) -> Plain:
         "seconds": plain(answer.seconds),
         "settings": plain(answer.settings),
         "certificate": worst_certificate(answer),
-        "audit": None if audited is None or not audited.stations else _audit(audited),
+        "audit": None
+        if audited is None or not audited.stations
+        else {
+            "holds": not audited.complaints,
+            "complaints": list(audited.complaints),
+            "remarks": list(audited.crossings),
+            "stations": audited.stations,
+            "unbalance": plain(audited.unbalance),
+            "scaled_unbalance": plain(audited.scaled),
+            "smallest_curvature": None,
+        },
         "stations": len(answer.stations),
         "events": [
             {"stage": event.stage, "contact": event.contact, "kind": event.kind, "value": plain(event.value)}
@@ -135,11 +146,6 @@ def critical(found: Critical) -> Plain:
     }
 
 
-def name_of(value: Word | Reason | None) -> str | None:
-    """Name of a word or a reason; None without either."""
-    return None if value is None else value.value
-
-
 def values(probe: Probe, found: Array) -> Any:  # noqa: ANN401 - a number, a list or None
     """Values of a probe: a number, a list of several numbers, None without a value."""
     if found.size == 0:
@@ -147,18 +153,6 @@ def values(probe: Probe, found: Array) -> Any:  # noqa: ANN401 - a number, a lis
     if found.size == 1 and probe.quantity not in STRESSES:
         return plain(float(found[0]))
     return [plain(float(value)) for value in found]
-
-
-def _audit(found: Audit) -> Plain:
-    return {
-        "holds": not found.complaints,
-        "complaints": list(found.complaints),
-        "remarks": list(found.crossings),
-        "stations": found.stations,
-        "unbalance": plain(found.unbalance),
-        "scaled_unbalance": plain(found.scaled),
-        "smallest_curvature": None,
-    }
 
 
 def _search(tolerances: tuple[Tolerance, ...], name: str) -> Plain:
@@ -251,7 +245,15 @@ def _critical_row(scene: Scene, row: CriticalRow) -> Plain:
         "released": {name: None if found is None else plain(released(found)) for name, found in both.items()},
         "gone_over": {name: plain(turned) for name, turned in row.turned.items()},
         "difference": plain(row.difference),
-        "uncertainty": _uncertainty(row),
+        "uncertainty": {
+            name: plain(follow(row, path))
+            for name, path in (
+                ("cprbm", "bounds.cprbm"),
+                ("fea", "bounds.fea"),
+                ("round_off", "bounds.round_off"),
+                ("theory", "theory"),
+            )
+        },
         "claim": None if claim is None else claim.bound,
         "claim_value": None if claim is None else claim.value,
         "claim_met": None if claim is None or off is None else off <= claim.bound,
@@ -259,13 +261,8 @@ def _critical_row(scene: Scene, row: CriticalRow) -> Plain:
         "allowed": row.allowed,
         "span": row.span,
         "verdict": row.word.value,
-        "reason": name_of(row.judged[1]),
+        "reason": follow(row.judged[1], "value"),
     }
-
-
-def _uncertainty(row: CriticalRow) -> Plain:
-    parts = {name: getattr(row.bounds, name, None) for name in ("cprbm", "fea", "round_off")}
-    return {name: plain(part) for name, part in {**parts, "theory": row.theory}.items()}
 
 
 def _reaction(found: WorkEnergyReaction) -> Plain:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,15 +19,14 @@ from cprbm_scene.offset import Shown
 _SHOWN = 6  # columns and rows of the short table
 
 
-@dataclass(frozen=True, slots=True)
-class OffsetStanding:
+class OffsetStanding(NamedTuple):
     """A claim beside a spacing: the row with the largest error, the largest share of t, and N above the bound."""
 
     claim: OffsetClaim
     spacing: str
     worst: OffsetRow
     over_offset: float
-    missed: tuple[int, ...]
+    missed: list[int]
 
 
 def document(compared: OffsetComparison) -> Plain:
@@ -63,13 +62,13 @@ def _row(compared: OffsetComparison, row: OffsetRow) -> Plain:
     }
 
 
-def offset_sections(compared: OffsetComparison) -> tuple[Section, ...]:
-    """Errors and claims; run times stand last."""
+def offset_sections(compared: OffsetComparison, figures: Sequence[Figure] = ()) -> tuple[Section, ...]:
+    """Errors with the figures, and claims; run times stand last."""
     seconds = [Column[tuple[str, float]]("answer", lambda at: at[0]), Column("seconds", lambda at: at[1], number)]
     note = "From the question to all points, by this machine's clock."
     return (
-        Section("Errors against the exact offset curve", tables=(error_table(compared),)),
-        Section("What the source claims", tables=(claims_table(compared),)),
+        Section("Errors against the exact offset curve", (), tuple(figures), (error_table(compared),)),
+        Section("What the source claims", tables=(_claims_table(compared),)),
         Section("Run time", tables=(table_of("Seconds", seconds, compared.seconds.items(), note),)),
     )
 
@@ -77,9 +76,8 @@ def offset_sections(compared: OffsetComparison) -> tuple[Section, ...]:
 def error_table(compared: OffsetComparison) -> Table:
     """The largest relative errors of the first spacing, at some N and t."""
     question = compared.question
-    spacing = next(iter(question.spacings))
+    spacing, offsets = next(iter(question.spacings)), _some(question.offsets)
     found = {(row.n, row.offset): row.difference for row in compared.rows if row.spacing == spacing}
-    offsets = _some(question.offsets)
     return Table(
         f"{question.title or question.name}: largest relative error, spacing {spacing}",
         ("N", *(f"t = {t:g}" for t in offsets)),
@@ -88,34 +86,41 @@ def error_table(compared: OffsetComparison) -> Table:
     )
 
 
-def claims_table(compared: OffsetComparison) -> Table:
+def claim_rows(compared: OffsetComparison) -> list[tuple[str, ...]]:
+    """Claims with their spacings, bounds, largest errors, places and findings."""
+    rows = _claims_table(compared).rows
+    return [
+        (f"{claim}, spacing {spacing}", bound, largest, at, met)
+        for claim, spacing, bound, largest, at, _, met, *_ in rows
+    ]
+
+
+def _claims_table(compared: OffsetComparison) -> Table:
     """Claims of the source beside the largest errors found here."""
+    standings = []
+    for claim in compared.question.claims:
+        for spacing in compared.question.spacings:
+            rows = [row for row in compared.rows if row.spacing == spacing and row.n >= claim.numbers_from]
+            worst, over = max(rows, key=lambda row: row.difference), max(row.over_offset for row in rows)
+            missed = sorted({row.n for row in rows if not row.difference < claim.bound})
+            standings.append(OffsetStanding(claim, spacing, worst, over, missed))
     columns = [
         Column[OffsetStanding]("claim", lambda at: at.claim.text or f"from N = {at.claim.numbers_from} on"),
-        Column("spacing", lambda at: at.spacing),
-        Column("source", lambda at: percent(at.claim.bound)),
-        Column("largest here", lambda at: percent(at.worst.difference)),
-        Column("at", lambda at: f"N, t = {at.worst.n}, {at.worst.offset:g}"),
-        Column("over t", lambda at: percent(at.over_offset)),
+        Column("spacing", "spacing"),
+        Column("source", "claim.bound", percent),
+        Column("largest here", "worst.difference", percent),
+        Column("at", "worst", lambda row: f"N, t = {row.n}, {row.offset:g}"),
+        Column("over t", "over_offset", percent),
         Column("", lambda at: "not met" if at.missed else "met"),
         Column("not met at N", lambda at: ", ".join(map(str, at.missed)) or None),
     ]
     return table_of(
         "Claims of the source",
         columns,
-        _standings(compared),
+        standings,
         "Claims take no part in the verdict. N counts springs, and offset points; 'over t' is the largest error "
         "relative to the offset.",
     )
-
-
-def _standings(compared: OffsetComparison) -> Iterable[OffsetStanding]:
-    for claim in compared.question.claims:
-        for spacing in compared.question.spacings:
-            rows = tuple(row for row in compared.rows if row.spacing == spacing and row.n >= claim.numbers_from)
-            missed = sorted({row.n for row in rows if not row.difference < claim.bound})
-            worst = max(rows, key=lambda row: row.difference)
-            yield OffsetStanding(claim, spacing, worst, max(row.over_offset for row in rows), tuple(missed))
 
 
 def _some(values: Iterable[float]) -> list[float]:
@@ -133,17 +138,14 @@ def offset_figures(compared: OffsetComparison) -> tuple[Figure, ...]:
 
 def _errors(compared: OffsetComparison) -> Figure:
     """A map per spacing, in the manner of the paper's Fig. 6."""
-    question = compared.question
+    question, spacings = compared.question, compared.question.spacings
     numbers, offsets = sorted(question.numbers), sorted(question.offsets)
     found = {(row.spacing, row.n, row.offset): 100.0 * row.difference for row in compared.rows}
     positive = [value for value in found.values() if value > 0.0] or [1.0]
     least, most = 10.0 ** np.floor(np.log10(min(positive))), 10.0 ** np.ceil(np.log10(max(positive)))
-    rows = -(-len(question.spacings) // 2)
-    with canvas(8.4, 3.3 * rows) as drawing:
-        plots = drawing.subplots(rows, 2, sharex=True, sharey=True, squeeze=False).ravel().tolist()
-        for axes in plots[len(question.spacings) :]:
-            axes.set_visible(False)
-        for axes, spacing in zip(plots, question.spacings, strict=False):
+    with canvas(5.2, 2.6 * len(spacings)) as drawing:
+        plots = drawing.subplots(len(spacings), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+        for axes, spacing in zip(plots, spacings, strict=True):
             z = np.array([[max(found[spacing, n, t], least) for n in numbers] for t in offsets])
             mesh = axes.pcolormesh(
                 numbers, offsets, z, norm="log", vmin=least, vmax=most, shading="nearest", rasterized=True
@@ -153,9 +155,9 @@ def _errors(compared: OffsetComparison) -> Figure:
                 lines = axes.contour(numbers, offsets, z, levels=bounds, colors="white", linewidths=1.2)
                 axes.clabel(lines, fmt=lambda value: f"{value:g} %")
             axes.set_title(spacing, loc="left")
-            axes.set_xlabel("springs N")
             axes.set_ylabel("offset t, m")
-        drawing.colorbar(mesh, ax=plots, label="largest relative error, %")
+        plots[-1].set_xlabel("springs N")
+        drawing.colorbar(mesh, ax=[*plots], label="largest relative error, %")
         caption = f"Largest error along {question.axis}, relative to the {question.relative_to}"
         return finished(drawing, "errors", f"{caption}; white: the claims' bounds.")
 
@@ -163,21 +165,20 @@ def _errors(compared: OffsetComparison) -> Figure:
 def _points(compared: OffsetComparison, shown: Shown) -> Figure:
     """The curve, its exact offsets and the calculated points, in the manner of the paper's Fig. 5."""
     question, u = compared.question, np.linspace(0.0, 1.0, 400)
-    with canvas(4.6 * len(shown.numbers), 3.2) as drawing:
-        plots = drawing.subplots(1, len(shown.numbers), sharey=True, squeeze=False)[0]
+    with canvas(5.2, 3.0 * len(shown.numbers)) as drawing:
+        plots = drawing.subplots(len(shown.numbers), 1, sharex=True, squeeze=False)[:, 0]
         for axes, n, points in zip(plots, shown.numbers, compared.shown, strict=True):
             axes.plot(*offset_curve(question.curve, u, 0.0).T, color="black", linewidth=1.4, label="curve")
-            for place, (t, found) in enumerate(zip(shown.offsets, points, strict=True)):
+            for t, found in zip(shown.offsets, points, strict=True):
                 exact = offset_curve(question.curve, u, float(question.sign * t))
-                labels = (None, None) if place else ("exact offset", "calculated")
-                axes.plot(*exact.T, color=RED, linewidth=1.2, label=labels[0])
-                axes.plot(*found.T, "o", color=BLUE, markersize=5, markerfacecolor="none", label=labels[1])
+                axes.plot(*exact.T, color=RED, linewidth=1.2, label="exact offset")
+                axes.plot(*found.T, "o", color=BLUE, markersize=5, markerfacecolor="none", label="calculated")
                 axes.annotate(f"t = {abs(t):g}", exact[200], textcoords="offset points", xytext=(0, 7), ha="center")
             axes.set_aspect("equal", adjustable="box")
             axes.margins(0.08)
             axes.set_title(f"N = {n}", loc="left")
-            axes.set_xlabel("x, m")
-        plots[0].set_ylabel("y, m")
+            axes.set_ylabel("y, m")
+        plots[-1].set_xlabel("x, m")
         common_legend(drawing, "lower center", 3)
         caption = f"Offset points on the exact offset curves, spacing {next(iter(question.spacings))}."
         return finished(drawing, "points", caption)

@@ -19,18 +19,18 @@ from comparisons.answer_file import packed
 from comparisons.case import Comparison
 from comparisons.formats import percent
 from comparisons.offset_verdict import OffsetComparison
-from comparisons.plain import text_of
-from comparisons.present import contact_forces, json_document, offset
+from comparisons.plain import Plain, text_of
+from comparisons.present import json_document, offset
 from comparisons.present.case_tables import case_sections, claims_table
 from comparisons.present.columns import Figure, Section, Table
+from comparisons.present.csv_table import contact_csv
 from comparisons.present.figures import comparison_figures
 from comparisons.present.stepper import HEADERS, SHADES, Stepper, stepper
-from comparisons.present.table import STYLES, html_cells, word_columns
+from comparisons.present.table import STYLES, html_cells
 from comparisons.writing import write
 from cprbm_scene import Question
 
-_SHOWN_BY_THE_STEPPER = ("shapes", "stations")
-"""Figures that stand in the folder only."""
+_CONTACT_FORCES = "contact-forces.csv"
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +39,11 @@ class Chapter:
 
     Attributes:
         name, title, source: of the question.
+        sections: the content in order.
         word, sentence: of the verdict; empty without a verdict.
-        largest: largest difference as a share of the probe's scale, and the probe.
-        because: the first sentence of the verdict.
+        glance: cells of the first table behind name and word.
         claims: rows of the table of claims.
         stepper: the mechanism station by station; None without a common station.
-        sections: the content in order.
         scene: text of the question's file; files: files beside the page, in the chapter's folder.
     """
 
@@ -54,8 +53,7 @@ class Chapter:
     sections: tuple[Section, ...]
     word: str = ""
     sentence: str = ""
-    because: str = ""
-    largest: tuple[str, str] = ("–", "–")
+    glance: tuple[str, ...] = ()
     claims: tuple[tuple[str, ...], ...] = ()
     stepper: Stepper | None = None
     scene: str = ""
@@ -72,6 +70,28 @@ class Page:
     further: Sequence[Section] = ()
     machine: Mapping[str, str | int] = field(default_factory=dict)
 
+    @property
+    def firsts(self) -> tuple[Table, ...]:
+        """The tables with a row for every verdict, and for every claim of a source; none without rows."""
+        verdicts = tuple((each.name, each.word, *each.glance) for each in self.chapters if each.word)
+        claims = tuple((each.name, *row) for each in self.chapters for row in each.claims)
+        glance = Table(
+            "Verdicts at a glance",
+            ("case", "verdict", "largest difference", "of", "claims met", "because"),
+            verdicts,
+            "Largest difference: over all compared rows, as a share of the probe's scale. The JSON files beside this "
+            "page have every number below.",
+            linked=True,
+        )
+        sources = Table(
+            "The sources’ figures and ours",
+            ("case", "claim", "source", "largest here", "at", "stands"),
+            claims,
+            "Claims take no part in the verdicts. Each case says what its differences are made of.",
+            linked=True,
+        )
+        return tuple(table for table in (glance, sources) if table.rows)
+
 
 def report_page(
     chapters: Sequence[Chapter], further: Sequence[Section] = (), machine: Mapping[str, str | int] | None = None
@@ -86,9 +106,8 @@ def report_page(
 
 def convergence_page(chapters: Sequence[Chapter]) -> Page:
     """The page of errors against N."""
-    return Page(
-        "Error against N", "Both solvers at a family of sizes: limits, orders and errors of all numbers.", chapters
-    )
+    lead = "Both solvers at a family of sizes: limits, orders and errors of all numbers."
+    return Page("Error against N", lead, chapters)
 
 
 def figures_of(compared: Comparison | OffsetComparison) -> tuple[Figure, ...]:
@@ -96,6 +115,13 @@ def figures_of(compared: Comparison | OffsetComparison) -> tuple[Figure, ...]:
     if isinstance(compared, OffsetComparison):
         return offset.offset_figures(compared)
     return comparison_figures(compared)
+
+
+def document_of(compared: Comparison | OffsetComparison) -> Plain:
+    """The documented JSON of a case of ``compare``."""
+    if isinstance(compared, OffsetComparison):
+        return offset.document(compared)
+    return json_document.comparison(compared)
 
 
 def question_of(compared: Comparison | OffsetComparison) -> Question:
@@ -109,30 +135,27 @@ def case_chapter(
     """The chapter of a case with figures and further sections."""
     verdict, chapter = compared.verdict, section_chapter(question_of(compared), further)
     if isinstance(compared, OffsetComparison):
-        first, *others = offset.offset_sections(compared)
+        sections, names = offset.offset_sections(compared, figures), ["comparison.json"]
+        claims, steps = offset.claim_rows(compared), None
         worst = max(compared.rows, key=lambda row: row.difference)
-        claims: list[tuple[str, ...]] = [
-            (f"{claim}, spacing {spacing}", source, largest, at, met)
-            for claim, spacing, source, largest, at, _, met, *_ in offset.claims_table(compared).rows
-        ]
-        chapter = replace(
-            chapter,
-            sections=(replace(first, figures=tuple(figures)), *others, *chapter.sections),
-            largest=(percent(worst.difference), f"{worst.spacing}, N = {worst.n}"),
-            files=("comparison.json", *chapter.files),
-        )
+        largest = percent(worst.difference), f"{worst.spacing}, N = {worst.n}"
     else:
-        table = claims_table(compared)
-        claims = [(*row[:4], row[-1]) for row in table.rows]
-        chapter = replace(
-            chapter,
-            sections=(*_with_figures(case_sections(compared), figures), *chapter.sections),
-            largest=_largest(compared),
-            stepper=stepper(compared),
-            files=("comparison.json", "answers.json.gz", f"{contact_forces.NAME}.csv", *chapter.files),
-        )
+        sections, names = case_sections(compared, figures), ["comparison.json", "answers.json.gz", _CONTACT_FORCES]
+        claims, steps = [(*row[:4], row[-1]) for row in claims_table(compared).rows], stepper(compared)
+        known = [row for row in compared.rows if row.bounds is not None and row.scale > 0.0]
+        shares = [(row.difference / row.scale, row.probe.name) for row in known]
+        share, probe = max(shares, key=lambda each: each[0], default=(None, "–"))
+        largest = percent(share), probe
+    met = f"{sum(row[-1] == 'met' for row in claims)} of {len(claims)}" if claims else "–"
     return replace(
-        chapter, word=verdict.word.value, sentence=verdict.sentence, because=verdict.because, claims=tuple(claims)
+        chapter,
+        sections=(*map(light, sections), *chapter.sections),
+        word=verdict.word.value,
+        sentence=verdict.sentence,
+        glance=(*largest, met, verdict.because),
+        claims=tuple(claims),
+        stepper=steps,
+        files=(*names, *chapter.files),
     )
 
 
@@ -153,74 +176,12 @@ def light(section: Section) -> Section:
     return replace(section, figures=tuple(replace(each, png=b"") for each in section.figures), data={})
 
 
-def _with_figures(sections: Sequence[Section], figures: Sequence[Figure]) -> Iterable[Section]:
-    """Curves first, and all other figures beside tables; a figure without tables has an own section."""
-    shown = [replace(each, png=b"") for each in figures if each.name not in _SHOWN_BY_THE_STEPPER]
-    headings = {
-        "path": "Curves",
-        "reaction": "Reactions of the drives",
-        "stress": "Stress along the beams",
-        "contact": "Contact zones and forces",
-    }
-    found: dict[str, list[Figure]] = {"Curves": []}
-    for figure in shown:
-        found.setdefault(headings[figure.name.partition("-")[0]], []).append(figure)
-    names = [each.heading for each in sections]
-    alone = [Section(heading, figures=tuple(mine)) for heading, mine in found.items() if mine and heading not in names]
-    curves = [each for each in alone if each.heading == "Curves"]
-    placed = [replace(each, figures=tuple(found.get(each.heading, ()))) for each in sections]
-    return (*curves, *placed[:1], *(each for each in alone if each not in curves), *placed[1:])
-
-
-def _largest(compared: Comparison) -> tuple[str, str]:
-    """The largest difference as a share of the probe's scale, and the probe."""
-    rows = [row for row in compared.rows if row.bounds is not None and row.scale > 0.0]
-    if not rows:
-        return "–", "–"
-    worst = max(rows, key=lambda row: row.difference / row.scale)
-    return percent(worst.difference / worst.scale), worst.probe.name
-
-
-def glance_table(chapters: Sequence[Chapter]) -> Table:
-    """The first table: a row for every case with a verdict."""
-    rows = []
-    for each in chapters:
-        met = sum(row[-1] == "met" for row in each.claims)
-        claims = f"{met} of {len(each.claims)}" if each.claims else "–"
-        rows.append((each.name, each.word, *each.largest, claims, each.because))
-    headers = ("case", "verdict", "largest difference", "of", "claims met", "because")
-    note = (
-        "Largest difference: over all compared rows, as a share of the probe's scale. The JSON files beside this page "
-        "have every number below."
-    )
-    return Table(
-        "Verdicts at a glance", headers, tuple(rows) if any(each.word for each in chapters) else (), note, linked=True
-    )
-
-
-def all_claims_table(chapters: Sequence[Chapter]) -> Table:
-    """Claims of all sources."""
-    rows = tuple((each.name, *row) for each in chapters for row in each.claims)
-    headers = ("case", "claim", "source", "largest here", "at", "stands")
-    note = "Claims take no part in the verdicts. Each case says what its differences are made of."
-    return Table("The sources’ figures and ours", headers, rows, note, linked=True)
-
-
 def html(page: Page) -> str:
     """The page as HTML."""
-    firsts = [table for table in (glance_table(page.chapters), all_claims_table(page.chapters)) if table.rows]
     words = [each.word for each in page.chapters if each.word]
-    return rendered(
-        "page.html",
-        {
-            "page": page,
-            "firsts": firsts,
-            "tally": {word: words.count(word) for word in ("AGREE", "UNDECIDED", "DIFFER") if word in words},
-            "script": _beside("report.js"),
-            "headers": HEADERS,
-            "shades": range(SHADES),
-        },
-    )
+    tally = {word: words.count(word) for word in ("AGREE", "UNDECIDED", "DIFFER") if word in words}
+    context = {"page": page, "tally": tally, "script": _beside("report.js"), "headers": HEADERS}
+    return rendered("page.html", {**context, "shades": range(SHADES)})
 
 
 def rendered(template: str, context: Mapping[str, object]) -> str:
@@ -234,15 +195,15 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
     environment = jinja2.Environment(
         autoescape=True, undefined=jinja2.StrictUndefined, loader=jinja2.PackageLoader("comparisons", "pages")
     )
-    environment.filters["cells"] = html_cells
-    environment.filters["words"] = word_columns
-    environment.filters["embedded"] = _embedded
-    # a name may break behind points and underscores; the type of an escaped text marks the escape
-    environment.filters["breaking"] = lambda name: type(name)(re.sub(r"(?<=\w[._])(?=[^\W\d])", "<wbr>", name))
-    environment.filters["joined"] = lambda sentence: sentence.replace(" %", "\u00a0%")  # on the line of the number
-    return (
-        environment.get_template(template).render({**context, "style": _beside("style.css"), "marked": STYLES}) + "\n"
-    )
+    environment.filters |= {
+        "cells": html_cells,
+        "embedded": _embedded,
+        # a name may break behind points and underscores; the type of an escaped text marks the escape
+        "breaking": lambda name: type(name)(re.sub(r"(?<=\w[._])(?=[^\W\d])", "<wbr>", name)),
+        "joined": lambda sentence: sentence.replace(" %", "\u00a0%"),  # on the line of the number
+    }
+    whole = {**context, "style": _beside("style.css"), "marked": STYLES}
+    return environment.get_template(template).render(whole) + "\n"
 
 
 def _embedded(svg: bytes) -> str:
@@ -282,19 +243,15 @@ def put_case(folder: Path, compared: Comparison | OffsetComparison, figures: Ite
     Raises:
         OSError: the folder cannot be written to.
     """
-    own = own_folder(folder, question_of(compared).name)
-    write(own / "comparison.json", text_of({"cases": [document_of(compared)]}, None))
+    own, name = own_folder(folder, question_of(compared).name), "comparison"
+    put_section(own, Section("", figures=tuple(figures), name=name, data={"cases": [document_of(compared)]}))
     if isinstance(compared, Comparison):
         runs = compared.runs
-        answers = {"cprbm paper": runs.paper, "cprbm perturbed": runs.perturbed, "exact": runs.exact}
-        answers[f"cprbm {runs.other_theory}"] = runs.other
-        found = {**dict(runs.everything()), **{name: each for name, each in answers.items() if each is not None}}
-        write(own / "answers.json.gz", packed(found))
-        write(
-            own / f"{contact_forces.NAME}.csv",
-            contact_forces.contact_csv(compared.scene, (runs.cprbm[0], runs.reference)),
-        )
-    put_section(own, Section("", figures=tuple(figures)))
+        others = {"cprbm paper": runs.paper, "cprbm perturbed": runs.perturbed, "exact": runs.exact}
+        others[f"cprbm {runs.other_theory}"] = runs.other
+        found = {name: each for name, each in others.items() if each is not None}
+        write(own / "answers.json.gz", packed({**dict(runs.everything()), **found}))
+        write(own / _CONTACT_FORCES, contact_csv(compared.scene, (runs.cprbm[0], runs.reference)))
 
 
 def put_section(folder: Path, section: Section) -> None:
@@ -308,10 +265,3 @@ def put_section(folder: Path, section: Section) -> None:
     for figure in section.figures:
         write(folder / f"{figure.name}.svg", figure.svg)
         write(folder / f"{figure.name}.png", figure.png)
-
-
-def document_of(compared: Comparison | OffsetComparison) -> dict[str, object]:
-    """The documented JSON of a case of ``compare``."""
-    if isinstance(compared, OffsetComparison):
-        return offset.document(compared)
-    return json_document.comparison(compared)

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from math import atan2, cos, hypot, sin
+from math import atan2, cos, sin
 from typing import Literal, NamedTuple
 
 import numpy as np
 
 from comparisons.geometry import edge_places, is_free_on_the_left, longest
 from comparisons.present.strips import Coloured, Strip, left_of, strip_of
-from cprbm_scene import Answer, FreeEnd, PinnedEnd, Scene, Stage, StationAnswer
+from cprbm_scene import Answer, FreeEnd, PinnedEnd, Scene, StationAnswer
 from cprbm_scene.answer import Array
 from cprbm_scene.freedoms import unit
 from cprbm_scene.statement import (
-    BeamForce,
     BeamMoment,
     CircleContact,
     DisplacementDrive,
@@ -23,15 +21,15 @@ from cprbm_scene.statement import (
     EdgeContact,
     FixedBody,
     Force,
-    HalfPlaneContact,
     LineContact,
+    Load,
     Moment,
     RigidContact,
     SelfContact,
     TurningBody,
 )  # fmt: skip
 
-Kind = Literal["rest", "rigid", "edge", "beam", "body", "weld", "pin", "pivot", "stop", "contact"]
+Kind = Literal["edge", "rest", "beam", "body", "weld", "pin", "pivot", "stop", "contact"]
 
 ARROW = 0.13
 """Length of the largest force's arrow over the longer side of the picture."""
@@ -43,40 +41,43 @@ DEPTH = 0.02
 """Depth of the drawn rigid side of an edge over the longest beam."""
 
 _ROUND = 120  # pieces of a circle or of a curved edge
-_LARGE = 0.6  # radius over the longest beam up to which a picture shows a whole circle
+_LARGE = 1.2  # diameter over the longest beam up to which a picture shows a whole circle
+_LOADED = 7  # arrows of a distributed load
 _RAY = 0.15  # length over the longest beam of the rays at the limits of a stop
 
 
 class Part(NamedTuple):
-    """A drawable part: a line or an area through ``points`` (k, 2), m, or marks at the points."""
+    """A drawable part: a line or an area through ``points`` (k, 2), m, or marks at the points.
+
+    The ``solid`` side (k, 2) of a rigid edge lies behind the points; of a ``closed`` edge it is the middle.
+    """
 
     kind: Kind
     name: str
     points: Array
     closed: bool = False
+    solid: Array = np.empty((0, 2))
+
+    @property
+    def area(self) -> Array:
+        """Corners (k, 2) of the area, m."""
+        return self.points if self.closed else np.concatenate([self.points, self.solid[::-1]])
+
+    @property
+    def line(self) -> Array:
+        """Places (k, 2) of the line, m, of a closed line with the first place at the end."""
+        return np.concatenate([self.points, self.points[:1]]) if self.closed else self.points
 
 
-class Obstacle(NamedTuple):
-    """Rigid edge that a beam may touch: its ``outline`` (k, 2), m, and the ``solid`` side (k, 2) behind the outline.
+class Arrow(NamedTuple):
+    """Forces (k, 2), N, and a moment, N·m, of a contact (``push``) or of a load or drive, ``on`` a beam or body."""
 
-    The solid side of a ``closed`` outline is its middle; ``width``, m, is the width of the beam.
-    """
-
+    kind: Literal["push", "load"]
     name: str
-    outline: Array
-    solid: Array
-    closed: bool
-    width: float
-
-
-@dataclass(frozen=True, slots=True)
-class Push:
-    """Forces (k, 2), N, of one contact ``on`` a beam or body at ``places`` (k, 2), m, of the pressed edge."""
-
-    contact: str
     on: str
     places: Array
     forces: Array
+    moment: float = 0.0
 
     @property
     def resultant(self) -> Array:
@@ -84,39 +85,24 @@ class Push:
         return np.asarray(self.forces.sum(axis=0))
 
     @property
+    def size(self) -> float:
+        """Magnitude of the resultant, N."""
+        return float(np.hypot(*self.resultant))
+
+    @property
     def middle(self) -> Array:
-        """The place (2,), m, nearest to the weighted mean of all places."""
+        """The place (2,), m, nearest to the mean of all places by the magnitudes of the forces."""
         weight = np.hypot(*self.forces.T)
-        return np.asarray(self.places[np.argmin(np.hypot(*(self.places - weight @ self.places / weight.sum()).T))])
+        mean = weight @ self.places / weight.sum() if weight.any() else self.places[0]
+        return np.asarray(self.places[np.argmin(np.hypot(*(self.places - mean).T))])
 
 
-class Arrow(NamedTuple):
-    """A force (2,), N, or a moment, N·m, at a place (2,), m, of the ``push`` of a contact or of a ``load``."""
-
-    kind: Literal["push", "load"]
-    name: str
-    place: Array
-    force: Array
-    moment: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class View:
-    """A mechanism at a station.
-
-    Attributes:
-        station: the station.
-        points: places of the bodies' points, m.
-        strips: beams; obstacles: rigid edges; pushes: contact forces.
-        arrows: forces of contacts on their first beams, and of loads and drives.
-        parts: all other drawable parts.
-    """
+class View(NamedTuple):
+    """A mechanism at a station: ``points`` of bodies by name, m, ``strips`` of beams, ``arrows``, and all ``parts``."""
 
     station: StationAnswer
     points: Mapping[str, Array]
     strips: Mapping[str, Strip]
-    obstacles: Sequence[Obstacle]
-    pushes: Sequence[Push]
     arrows: Sequence[Arrow]
     parts: Sequence[Part]
 
@@ -124,9 +110,12 @@ class View:
         """Parts of some kinds."""
         return [part for part in self.parts if part.kind in kinds]
 
+    def arrows_of(self, kind: str) -> list[Arrow]:
+        """Arrows of contacts (``push``), or of loads and drives (``load``)."""
+        return [arrow for arrow in self.arrows if arrow.kind == kind]
 
-@dataclass(frozen=True, slots=True)
-class Bounds:
+
+class Bounds(NamedTuple):
     """Common limits of several views.
 
     Attributes:
@@ -146,6 +135,11 @@ class Bounds:
         """The longer side, m."""
         return float(np.max(self.high - self.low))
 
+    def arrow(self, arrow: Arrow) -> Array | None:
+        """Vector (2,), m, from the tail to the head of a drawn arrow; None for a force without an arrow."""
+        most = self.force[arrow.kind]
+        return ARROW * self.size / most * arrow.resultant if arrow.size > LEAST * most > 0.0 else None
+
 
 def views_of(scene: Scene, answer: Answer) -> list[View]:
     """A view of every station."""
@@ -155,32 +149,32 @@ def views_of(scene: Scene, answer: Answer) -> list[View]:
 def view_of(scene: Scene, station: StationAnswer) -> View:
     """The drawable parts of a station."""
     strips = {name: strip_of(name, beam, station) for name, beam in scene.beams.items()}
-    places = _points(scene, station)
-    found = _pushes(scene, station, strips)
-    obstacles = [_obstacle(scene, station, name, contact) for name, contact in _edges(scene).items()]
-    first = {name: contact.beams[0] for name, contact in scene.contacts.items()}
-    arrows = [
-        Arrow("push", push.contact, push.middle, push.resultant) for push in found if first[push.contact] == push.on
-    ]
-    parts = (*_parts(scene, station, places), *_shapes(strips, obstacles))
-    return View(station, places, strips, obstacles, found, [*arrows, *_loads(scene, station, strips)], parts)
+    points = _points(scene, station)
+    arrows = (*_pushes(scene, station, strips), *_loads(scene, station, strips))
+    beams = (
+        Part(kind, name, strip.outline(rest=kind == "rest"), closed=True)
+        for name, strip in strips.items()
+        for kind in ("rest", "beam")
+    )
+    touched = (Part("contact", name, places) for name, places in station.touching.items())
+    parts = (*_edges(scene, station), *beams, *_bodies(scene, points), *_stops(scene, station, points), *touched)
+    return View(station, points, strips, arrows, parts)
 
 
 def bounds_of(scene: Scene, views: Sequence[View], quantity: Coloured) -> Bounds:
     """Limits that hold for all views; circles and edges larger than the beams do not count."""
-    reach, force, corners = longest(scene), {"push": 0.0, "load": 0.0}, []
-    largest = 0.0
-    for view in views:
-        corners += [part.points for part in view.parts if part.kind not in ("rigid", "edge", "stop")]
-        corners += [each.outline for each in view.obstacles
-                    if each.closed and np.ptp(each.outline, axis=0).max() <= 2.0 * _LARGE * reach]  # fmt: skip
-        for arrow in view.arrows:
-            force[arrow.kind] = max(force[arrow.kind], hypot(*arrow.force))
-        largest = max(largest, *(float(np.abs(getattr(strip, quantity)).max()) for strip in view.strips.values()))
-    both = np.concatenate(corners)
-    return Bounds(
-        both.min(axis=0), both.max(axis=0), 0.0 if quantity == "combined_stress" else -largest, largest, force
-    )
+    room = _LARGE * longest(scene)
+    corners = np.concatenate([
+        part.points for view in views for part in view.parts
+        if part.kind not in ("edge", "stop") or (part.closed and np.ptp(part.points, axis=0).max() <= room)
+    ])  # fmt: skip
+    force = {
+        kind: max((arrow.size for view in views for arrow in view.arrows_of(kind)), default=0.0)
+        for kind in ("push", "load")
+    }
+    largest = max(float(np.abs(getattr(strip, quantity)).max()) for view in views for strip in view.strips.values())
+    least = 0.0 if quantity == "combined_stress" else -largest
+    return Bounds(corners.min(axis=0), corners.max(axis=0), least, largest, force)
 
 
 def carried(scene: Scene, station: StationAnswer, body: str, places: Array) -> Array:
@@ -199,82 +193,52 @@ def _points(scene: Scene, station: StationAnswer) -> dict[str, Array]:
         for name, body in scene.bodies.items()
         for point, at in body.points.items()
     }
-    for beam, end, place in joined_ends(scene):
-        if scene.body_of(end.point) not in station.bodies:
-            shape = station.shapes[beam]
-            found[end.point] = np.array([shape.x[place], shape.y[place]])
+    for name, beam in scene.beams.items():
+        for end, place in ((beam.start, 0), (beam.end, -1)):
+            if not isinstance(end, FreeEnd) and scene.body_of(end.point) not in station.bodies:
+                found[end.point] = np.array([station.shapes[name].x[place], station.shapes[name].y[place]])
     return found
 
 
-def joined_ends(scene: Scene) -> Iterator[tuple[str, PinnedEnd, Literal[0, -1]]]:
-    """Every beam's end at a body: name of the beam, end, and index in the beam's shape."""
-    for name, beam in scene.beams.items():
-        for end, place in ((beam.start, 0), (beam.end, -1)):
-            if not isinstance(end, FreeEnd):
-                yield name, end, place  # type: ignore[misc]
-
-
-def _shapes(strips: Mapping[str, Strip], obstacles: Sequence[Obstacle]) -> Iterator[Part]:
-    """Areas of the beams at rest and at the station, and rigid edges with their solid sides."""
-    for each in obstacles:
-        area = each.outline if each.closed else np.concatenate([each.outline, each.solid[::-1]])
-        yield Part("rigid", each.name, area, closed=True)
-        yield Part("edge", each.name, each.outline, each.closed)
-    for name, strip in strips.items():
-        yield Part("rest", name, strip.outline(rest=True), closed=True)
-        yield Part("beam", name, strip.outline(), closed=True)
-
-
-def _parts(scene: Scene, station: StationAnswer, places: Mapping[str, Array]) -> Iterator[Part]:
-    """Bodies, joints, limits of stops, and places of contact."""
-    pins = {end.point for _, end, _ in joined_ends(scene) if isinstance(end, PinnedEnd)}
+def _bodies(scene: Scene, points: Mapping[str, Array]) -> Iterator[Part]:
+    """Bodies and joints."""
+    pins = {end.point for beam in scene.beams.values() for end in (beam.start, beam.end) if isinstance(end, PinnedEnd)}
     pins |= {point for pin in scene.pins.values() for point in pin.points}
     for name, body in scene.bodies.items():
-        corners = np.array([places[point] for point in body.points])
+        corners = np.array([points[point] for point in body.points])
         if not isinstance(body, FixedBody) and len(corners) > 1:
             yield Part("body", name, corners, closed=len(corners) > 2)
         for point in body.points:
             pivot = isinstance(body, TurningBody) and point == body.about
-            yield Part("pivot" if pivot else "pin" if point in pins else "weld", point, places[point][None])
+            yield Part("pivot" if pivot else "pin" if point in pins else "weld", point, points[point][None])
+
+
+def _stops(scene: Scene, station: StationAnswer, points: Mapping[str, Array]) -> Iterator[Part]:
+    """Rays at the limits of stops."""
     for name, stop in scene.stops.items():
         end = scene.beams[stop.beam].start if stop.end == "start" else scene.beams[stop.beam].end
         assert isinstance(end, PinnedEnd)
-        owner = scene.body_of(stop.towards)
-        at, towards = carried(
-            scene, station, owner, np.array([scene.place_of(end.point), scene.place_of(stop.towards)])
-        )
+        drawn = np.array([scene.place_of(end.point), scene.place_of(stop.towards)])
+        way = np.diff(carried(scene, station, scene.body_of(stop.towards), drawn), axis=0)[0]
         for limit in (stop.least, stop.most):
             if limit is not None:
-                angle = atan2(*(towards - at)[::-1]) + limit
-                pin = places[end.point]
+                angle = atan2(way[1], way[0]) + limit
                 ray = _RAY * longest(scene) * np.array([cos(angle), sin(angle)])
-                yield Part("stop", name, np.stack([pin, pin + ray]))
-    for name, touched in station.touching.items():
-        yield Part("contact", name, touched)
+                yield Part("stop", name, np.stack([points[end.point], points[end.point] + ray]))
 
 
-def _edges(scene: Scene) -> dict[str, RigidContact]:
-    """Rigid edges of contacts; an edge of several beams stands once."""
-    found: dict[str, RigidContact] = {}
+def _edges(scene: Scene, station: StationAnswer) -> list[Part]:
+    """Rigid edges with their solid sides; an edge of several beams stands once."""
+    found: dict[bytes, Part] = {}
     for name, contact in scene.contacts.items():
-        if isinstance(contact, RigidContact) and not any(_same_edge(contact, one) for one in found.values()):
-            found[name] = contact
-    return found
+        if isinstance(contact, RigidContact):
+            outline, solid, closed = outline_of(contact, 4.0 * longest(scene), DEPTH * longest(scene))
+            outline, solid = (carried(scene, station, contact.body, places) for places in (outline, solid))
+            found.setdefault(outline.tobytes() + solid.tobytes(), Part("edge", name, outline, closed, solid))
+    return [*found.values()]
 
 
-def _same_edge(one: RigidContact, other: RigidContact) -> bool:
-    return one.model_copy(update={"beam": other.beam, "thick": other.thick, "paper": other.paper}) == other
-
-
-def _obstacle(scene: Scene, station: StationAnswer, name: str, contact: RigidContact) -> Obstacle:
-    outline, solid, closed = _outline(contact, 4.0 * longest(scene), DEPTH * longest(scene))
-    beam = scene.beams[contact.beam]
-    width = float(beam.width_at(np.array(beam.knots)).max())
-    outline, solid = (carried(scene, station, contact.body, places) for places in (outline, solid))
-    return Obstacle(name, outline, solid, closed, width)
-
-
-def _outline(contact: RigidContact, reach: float, depth: float) -> tuple[Array, Array, bool]:
+def outline_of(contact: RigidContact, reach: float, depth: float) -> tuple[Array, Array, bool]:
     """Outline (k, 2) as drawn, places of its solid side, and whether the outline is closed.
 
     Args:
@@ -288,88 +252,66 @@ def _outline(contact: RigidContact, reach: float, depth: float) -> tuple[Array, 
         return outline, np.broadcast_to(centre, outline.shape), True
     assert isinstance(contact, EdgeContact)
     places, side = edge_places(contact, reach, _ROUND), -1.0 if is_free_on_the_left(contact) else 1.0
-    if isinstance(contact, HalfPlaneContact):
-        places, side = places[::-1], -1.0
-    if isinstance(contact, LineContact) and contact.closed and side * _area(places) > 0.0:
+    counter_clockwise = side * float(np.sum(places[:-1, 0] * places[1:, 1] - places[1:, 0] * places[:-1, 1])) > 0.0
+    if isinstance(contact, LineContact) and contact.closed and counter_clockwise:
         return places, np.broadcast_to(places[:-1].mean(axis=0), places.shape), True
     return places, places + side * depth * _normals(places), False
-
-
-def _area(places: Array) -> float:
-    """Area of a closed polygon (k, 2), positive if counter-clockwise."""
-    x, y = places.T
-    return 0.5 * float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
 
 
 def _normals(places: Array) -> Array:
     """Normals (k, 2) to the left of a polyline, at corners so long that both pieces have the same depth."""
     left = left_of(np.diff(places, axis=0))
-    both = np.concatenate([left[:1], left[1:] + left[:-1], left[-1:]])
-    if np.array_equal(places[0], places[-1]):
-        both[0] = both[-1] = left[0] + left[-1]
-    half = np.concatenate([left[:1], left])
-    return np.asarray(both / np.maximum(np.sum(both * half, axis=1), 0.3)[:, None])
+    first, last = (left[-1:], left[:1]) if np.array_equal(places[0], places[-1]) else (left[:1], left[-1:])
+    before, behind = np.concatenate([first, left]), np.concatenate([left, last])
+    both = before + behind
+    return np.asarray(both / np.maximum(np.sum(both * behind, axis=1), 0.3)[:, None])
 
 
-def _pushes(scene: Scene, station: StationAnswer, strips: Mapping[str, Strip]) -> list[Push]:
+def _pushes(scene: Scene, station: StationAnswer, strips: Mapping[str, Strip]) -> Iterator[Arrow]:
     """Contact forces at the pressed edges; none where the answer does not state forces."""
-    forces, found = station.forces, []
+    forces = station.forces
     size, source, target = np.hypot(*forces.force.T), np.array(forces.source), np.array(forces.target)
     for name, contact in scene.contacts.items():
         acting = (source == name) & (size > 0.0)
         for on in dict.fromkeys(target[acting].tolist()):
             mine = np.flatnonzero(acting & (target == on))
-            places, pressing = forces.place[mine], forces.force[mine]
+            mine = mine[np.argsort(forces.s[mine], kind="stable")]
+            places, pressing, groups = forces.place[mine], forces.force[mine], [np.arange(len(mine))]
             if contact.thick and on in strips:  # the answer states places on the neutral line
                 t = np.interp(forces.s[mine], strips[on].s, strips[on].thickness)
                 places = places - 0.5 * t[:, None] * pressing / size[mine, None]
-            parts = [np.arange(len(mine))]
             if isinstance(contact, SelfContact) and len(mine) > 1:  # two places of one beam
-                along = np.argsort(forces.s[mine], kind="stable")
-                parts = np.split(along, [int(np.argmax(np.diff(forces.s[mine][along]))) + 1])
-            found += [Push(name, on, places[part], pressing[part]) for part in parts]
-    return found
+                groups = np.split(groups[0], [int(np.argmax(np.diff(forces.s[mine]))) + 1])
+            yield from (Arrow("push", name, on, places[group], pressing[group]) for group in groups)
 
 
 def _loads(scene: Scene, station: StationAnswer, strips: Mapping[str, Strip]) -> Iterator[Arrow]:
-    """Arrows of drives and of the scene's loads."""
-    for acting in station.forces:
-        if acting.source in scene.drives:
-            turns = not isinstance(scene.drives[acting.source], DisplacementDrive)
-            yield Arrow("load", acting.source, acting.place, acting.force, float(acting.moment) if turns else 0.0)
+    """Arrows of drives and of the scene's loads; a load keeps the last value of earlier stages."""
+    for at in station.forces:
+        if at.source in scene.drives:
+            turns = not isinstance(scene.drives[at.source], DisplacementDrive)
+            yield Arrow(
+                "load", at.source, at.target, at.place[None], at.force[None], float(at.moment) if turns else 0.0
+            )
+    before = scene.stages[: [stage.name for stage in scene.stages].index(station.stage)]
+    values = {stage.steps: stage.stations[-1] for stage in before} | {scene.stages[len(before)].steps: station.value}
     for name, load in scene.loads.items():
-        value, way, zero = _value(scene, name, station), np.zeros(2), np.zeros(2)
-        if not isinstance(load, Moment | BeamMoment):
-            way = np.array(unit(load.direction)[:2])
-        if value == 0.0:
-            continue
-        match load:
-            case Moment():
-                body = scene.bodies[load.body]
-                middle = carried(scene, station, load.body, np.array([*body.points.values()])).mean(axis=0)
-                yield Arrow("load", name, middle, zero, value)
-            case Force():
-                place = carried(scene, station, scene.body_of(load.point), np.array([scene.place_of(load.point)]))[0]
-                yield Arrow("load", name, place, value * way)
-            case BeamForce():
-                yield Arrow("load", name, _along(strips[load.beam], load.at), value * way)
-            case BeamMoment():
-                yield Arrow("load", name, _along(strips[load.beam], load.at), zero, value)
-            case DistributedLoad():
-                strip, shares = strips[load.beam], np.linspace(*load.along, 7)
-                share = value * (load.along[1] - load.along[0]) * float(strip.s[-1]) / 7.0
-                yield from (Arrow("load", name, _along(strip, u), share * way) for u in shares)
+        value, (on, places) = values.get(name, 0.0), _loaded(scene, station, load, strips)
+        way = None if isinstance(load, Moment | BeamMoment) else np.array(unit(load.direction))
+        force = np.zeros(2) if way is None else value * way
+        if isinstance(load, DistributedLoad):
+            force *= (load.along[1] - load.along[0]) * float(strips[on].s[-1]) / len(places)
+        if value != 0.0:
+            yield from (Arrow("load", name, on, at[None], force[None], value if way is None else 0.0) for at in places)
 
 
-def _along(strip: Strip, u: float) -> Array:
-    """Place (2,), m, at a fraction of a beam's arc length."""
-    return np.array([np.interp(u * strip.s[-1], strip.s, each) for each in strip.line.T])
-
-
-def _value(scene: Scene, load: str, station: StationAnswer) -> float:
-    """Value of a load at a station: of the present stage, or else the last value of the stages before."""
-    names = [stage.name for stage in scene.stages]
-    before: Sequence[Stage] = scene.stages[: names.index(station.stage) + 1]
-    if before[-1].steps == load:
-        return station.value
-    return next((stage.stations[-1] for stage in reversed(before[:-1]) if stage.steps == load), 0.0)
+def _loaded(scene: Scene, station: StationAnswer, load: Load, strips: Mapping[str, Strip]) -> tuple[str, Array]:
+    """Body or beam, and places (k, 2), m, of a load: of a moment on a body the middle of the points."""
+    if isinstance(load, Moment):
+        corners = np.array([*scene.bodies[load.body].points.values()])
+        return load.body, carried(scene, station, load.body, corners).mean(axis=0)[None]
+    if isinstance(load, Force):
+        on = scene.body_of(load.point)
+        return on, carried(scene, station, on, np.array([scene.place_of(load.point)]))
+    u = np.linspace(*load.along, _LOADED) if isinstance(load, DistributedLoad) else np.array([load.at])
+    return load.beam, strips[load.beam].places(u)

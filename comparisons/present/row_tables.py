@@ -1,30 +1,27 @@
-"""Tables of judged rows: errors by quantity, values, stated uncertainties, and true errors."""
+"""Tables of judged rows: columns of values and of shares, by the paths of the sizes in a row."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TypeAlias
+from typing import Any, NamedTuple
 
 from comparisons.case import Comparison
-from comparisons.display_units import at_station, display_units
+from comparisons.contact_model import contact_model
+from comparisons.display_units import at_station, display_units, with_unit
 from comparisons.formats import number, percent, vector
 from comparisons.geometry import bentness
-from comparisons.present.columns import Column, Table, table_of
+from comparisons.present.columns import Column, Table, columns_of, table_of
 from comparisons.quantities import norm
-from comparisons.verdict.calibration import EXACT_FACTOR, ErrorRatio, error_ratios, tally, true_errors
+from comparisons.third import thirds_of
+from comparisons.verdict.calibration import EXACT_FACTOR, error_ratios, tally, true_errors
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs import SOLVERS
 from comparisons.verdict.station_events import Place
 from comparisons.verdict.words import Reason, Word
-from cprbm_scene import Scene
+from cprbm_scene import Answer, Scene
+from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES, Quantity
-
-Judged: TypeAlias = tuple[Row, Word | None, Reason | None]
-"""Row, word and reason."""
-
-Units: TypeAlias = Mapping[str, tuple[float, str]]
-"""Size and name of displayed units by SI unit."""
 
 GROUPS: tuple[tuple[str, frozenset[Quantity]], ...] = (
     ("Errors in displacement", frozenset({"displacement", "rotation", "angle", "centre", "ends"})),
@@ -34,34 +31,45 @@ GROUPS: tuple[tuple[str, frozenset[Quantity]], ...] = (
 )
 """Tables of errors by quantity, in the manner of the paper."""
 
-_VALUES = {"cprbm": "CPRBM", "fea": "FEA", "exact": "exact"}
+MANY_TIMES = 10.0
+"""Fraction above which a distance prints with its unit."""
+
+_SOLVERS = ("CPRBM", "FEA")
+_VALUES = {"CPRBM": "row.cprbm", "FEA": "row.fea", "exact": "row.exact"}
+
+
+class Judged(NamedTuple):
+    """A row, its word and its reason; a row without a word takes no part in the verdict."""
+
+    row: Row
+    word: Word | None
+    reason: Reason | None
 
 
 def judged_rows(compared: Comparison) -> tuple[Judged, ...]:
     """All rows with words and reasons."""
-    return tuple(zip(compared.rows, compared.verdict.words, compared.verdict.reasons, strict=True))
+    return tuple(map(Judged, compared.rows, compared.verdict.words, compared.verdict.reasons))
 
 
 def shown_stations(compared: Comparison) -> tuple[tuple[Judged, ...], ...]:
     """Rows of the shown stations and of the last station, in order."""
     by_station: dict[tuple[str, float], list[Judged]] = {}
     for judged in judged_rows(compared):
-        by_station.setdefault(judged[0].where, []).append(judged)
-    shown = {(stage.name, value) for stage in compared.scene.stages for value in stage.shown}
-    return tuple(tuple(rows) for where, rows in by_station.items() if where in shown or where == [*by_station][-1])
+        by_station.setdefault(judged.row.where, []).append(judged)
+    shown = {(stage.name, value) for stage in compared.scene.stages for value in stage.shown} | {*[*by_station][-1:]}
+    return tuple(tuple(rows) for where, rows in by_station.items() if where in shown)
 
 
-def row_units(scene: Scene, rows: Iterable[Row]) -> Units:
-    """Displayed units of the values of rows, by SI unit; round-off counts as zero."""
+def row_units(scene: Scene, rows: Iterable[Row]) -> Mapping[str, tuple[float, str]]:
+    """Size and name of the displayed units of rows, by SI unit; round-off counts as zero."""
     sizes = ((row, norm(row.probe.quantity, value)) for row in rows for value in (row.cprbm, row.fea))
     return display_units(scene, ((row.unit, 0.0 if size < ROUND_OFF * row.scale else size) for row, size in sizes))
 
 
-def share(row: Row, value: float | None, digits: int = 3) -> str | None:
+def share(row: Row, size: float, digits: int = 3) -> str | None:
     """A size in the row's unit as a share of the row's denominator; round-off is 0; None without a size."""
-    if value is None or math.isnan(value):
-        return None
-    return percent(row.fraction(0.0 if abs(value) < ROUND_OFF * row.scale else value), digits)
+    floored = 0.0 if abs(size) < ROUND_OFF * row.scale else size
+    return None if math.isnan(size) else percent(row.fraction(floored), digits)
 
 
 def judgement(judged: Judged) -> str:
@@ -72,146 +80,161 @@ def judgement(judged: Judged) -> str:
     return word.value if reason is None else f"{word.value} ({reason.value})"
 
 
-def _share_column(header: str, size: object, digits: int = 3) -> Column[Judged]:
-    """Column of a size of rows: the name of an attribute of the row, or of the bounds after ``bounds.``."""
-    owner, _, name = str(size).rpartition(".")
-
-    def value(judged: Judged) -> str | None:
-        record = judged[0].bounds if owner else judged[0]
-        return None if record is None else share(judged[0], getattr(record, name), digits)
-
-    return Column(header, value)
+_PROBE = Column[Any]("probe", "row.probe.name")
+_WORD = Column("word", judgement)
 
 
-def _value_columns(units: Units, headers: Mapping[str, str]) -> list[Column[Judged]]:
-    """Probe, unit, and values of a row by the name of the row's attribute, with their headers."""
+def _shares(paths: Mapping[str, str]) -> list[Column[Any]]:
+    """Columns of sizes of rows as shares, by header; the items of the table have a ``row``."""
+    return columns_of(lambda item, size: share(item.row, size), paths)
 
-    def value(name: str, header: str) -> Column[Judged]:
-        def text(at: Judged) -> str | None:
-            row, values = at[0], getattr(at[0], name)
-            return None if values is None else vector(values, units[row.unit][0], ROUND_OFF * row.scale)
 
-        return Column(header, text)
+def _values(scene: Scene, items: Sequence[Any], paths: Mapping[str, str]) -> list[Column[Any]]:
+    """Probe, unit, and columns of values by header; the ``items`` of the table have a ``row``."""
+    units = row_units(scene, (item.row for item in items))
 
-    return [
-        Column("probe", lambda at: at[0].probe.name),
-        Column("unit", lambda at: units[at[0].unit][1]),
-        *(value(name, header) for name, header in headers.items()),
-    ]
+    def text(item: Any, values: Array) -> str:  # noqa: ANN401
+        return vector(values, units[item.row.unit][0], ROUND_OFF * item.row.scale)
+
+    return [_PROBE, Column("unit", lambda item: units[item.row.unit][1]), *columns_of(text, paths)]
 
 
 def value_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
     """Values of one station."""
-    units = row_units(compared.scene, [row for row, *_ in rows])
-    title = at_station(compared.scene, *rows[0][0].where)
-    columns = [*_value_columns(units, _VALUES), _share_column("error", "difference"), Column("word", judgement)]
-    return table_of(f"Values at {title}", columns, rows)
+    columns = [*_values(compared.scene, rows, _VALUES), *_shares({"error": "row.difference"}), _WORD]
+    return table_of(f"Values at {at_station(compared.scene, *rows[0].row.where)}", columns, rows)
 
 
 def error_tables(compared: Comparison, last: Sequence[Judged]) -> tuple[Table, ...]:
     """Tables of the last station by quantity, with the largest error over all stations."""
-    if not last:
-        return ()
-    where = at_station(compared.scene, *last[0][0].where)
-    runs, tables = compared.runs, list[Table]()
-    units = row_units(compared.scene, [row for row, *_ in last])
-    worst = _largest_errors(compared)
+    scene, runs, tables = compared.scene, compared.runs, list[Table]()
+    counted = (judged.row for judged in judged_rows(compared) if judged.word is not None)
+    worst = _largest_by_probe((row, row.difference) for row in counted)
     absence = f" No exact values: {runs.exact_absence}" if runs.exact_absence else ""
-    notes = (
+    note = (
         f"CPRBM beside the finite elements, both in the theory {runs.theory}. Errors are fractions of the FEA's value, "
-        f"or of the probe's largest value where the value may vanish. Exact values are those in bending.{absence}",
+        f"or of the probe's largest value where the value may vanish. Exact values are those in bending.{absence}"
+    )
+    of_stresses = (
         "Largest magnitudes along the beam. The error is the largest difference anywhere a thickness or more from held "
         "ends and from ends of contacts. A beam of initial radius R has a true stress at its inner edge that is larger "
-        "by about t/(3R).",
+        "by about t/(3R)."
     )
+    columns = [
+        *_values(scene, last, _VALUES),
+        *_shares({"error": "row.difference", "error of max": "row.largest_difference"}),
+        Column("t/(3R)", lambda at: percent(bentness(scene.beams[at.row.probe.of]) / 3.0)
+               if at.row.probe.quantity in STRESSES else None),
+        Column("largest error", lambda at: worst.get(at.row.probe.name), lambda found: share(*found) or ""),
+        Column("at", lambda at: worst.get(at.row.probe.name), lambda found: at_station(scene, *found[0].where)),
+        _WORD,
+    ]  # fmt: skip
     for title, quantities in GROUPS:
-        rows = [judged for judged in last if judged[0].probe.quantity in quantities]
-        columns = [
-            *_value_columns(units, _VALUES),
-            _share_column("error", "difference"),
-            Column("error of max", lambda at: share(at[0], at[0].largest_difference)),
-            Column("t/(3R)", lambda at: _edge_factor(compared.scene, at[0])),
-            Column("largest error", lambda at: share(*worst[at[0].probe.name]) if at[0].probe.name in worst else None),
-            Column("at", lambda at: _where(compared.scene, worst.get(at[0].probe.name))),
-            Column("word", judgement),
-        ]
-        note = notes[1] if quantities is STRESSES else "" if tables else notes[0]
+        rows = [judged for judged in last if judged.row.probe.quantity in quantities]
         if rows:
-            tables.append(table_of(f"{title} at {where}", columns, rows, note))
+            explained = of_stresses if quantities is STRESSES else "" if tables else note
+            tables.append(table_of(f"{title} at {at_station(scene, *last[0].row.where)}", columns, rows, explained))
     return tuple(tables)
 
 
-def _largest_errors(compared: Comparison) -> dict[str, tuple[Row, float]]:
-    """Row with the largest fraction of its difference, by probe, over all rows with a word."""
-    found: dict[str, tuple[Row, float]] = {}
-    for row, word, _ in judged_rows(compared):
-        size = None if word is None else row.fraction(row.difference)
-        known = found.get(row.probe.name)
-        if size is not None and (known is None or size > (known[0].fraction(known[1]) or 0.0)):
-            found[row.probe.name] = row, row.difference
-    return found
-
-
-def _where(scene: Scene, found: tuple[Row, float] | None) -> str | None:
-    return None if found is None else at_station(scene, *found[0].where)
-
-
-def _edge_factor(scene: Scene, row: Row) -> str | None:
-    return percent(bentness(scene.beams[row.probe.of]) / 3.0) if row.probe.quantity in STRESSES else None
+def _largest_by_probe(sizes: Iterable[tuple[Row, float]]) -> dict[str, tuple[Row, float]]:
+    """Row and size with the largest fraction, by probe; of equal fractions the first."""
+    known = [(fraction, row, size) for row, size in sizes if (fraction := row.fraction(size)) is not None]
+    descending = sorted(known, key=lambda at: at[0], reverse=True)
+    return {row.probe.name: (row, size) for _, row, size in descending[::-1]}
 
 
 def verdict_table(rows: Sequence[Judged]) -> Table:
     """Differences of one station beside the stated uncertainties."""
-    columns = [
-        Column[Judged]("probe", lambda at: at[0].probe.name),
-        _share_column("difference", "difference"),
-        _share_column("stated", "bounds.total"),
-        _share_column("u CPRBM", "bounds.cprbm"),
-        _share_column("u FEA", "bounds.fea"),
-        _share_column("round-off", "bounds.round_off"),
-        _share_column("theory", "theory"),
-        Column("word", judgement),
-    ]
+    paths = {
+        "difference": "row.difference",
+        "stated": "row.bounds.total",
+        "u CPRBM": "row.bounds.cprbm",
+        "u FEA": "row.bounds.fea",
+        "round-off": "row.bounds.round_off",
+        "theory": "row.theory",
+    }
     note = (
         "The difference must stay within the stated uncertainty, which follows from further discretisations of each "
         "solver. Theory: the step of the CPRBM to the other theory. Fractions as in the tables of errors."
     )
-    return table_of("Differences and stated uncertainties", columns, rows, note)
+    return table_of("Differences and stated uncertainties", [_PROBE, *_shares(paths), _WORD], rows, note)
 
 
 def theory_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
     """Values of one station in both theories; without rows where the CPRBM has no value in the other theory."""
     runs = compared.runs
-    units = row_units(compared.scene, [row for row, *_ in rows])
-    chain = (("other", runs.other_theory), ("cprbm", runs.theory))
-    headers = {name: f"CPRBM in {theory}" for name, theory in chain} | {"fea": f"FEA in {runs.theory}"}
-    columns = [*_value_columns(units, headers), _share_column("theory", "theory")]
+    paths = {f"CPRBM in {runs.other_theory}": "row.other", f"CPRBM in {runs.theory}": "row.cprbm"}
+    paths[f"FEA in {runs.theory}"] = "row.fea"
+    columns = [*_values(compared.scene, rows, paths), *_shares({"theory": "row.theory"})]
     note = "Theory: distance of the CPRBM's values in both theories, in the formulation auto."
-    return table_of("Both theories", columns, [at for at in rows if at[0].other is not None], note)
+    return table_of("Both theories", columns, [at for at in rows if at.row.other is not None], note)
 
 
 def exact_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
     """True errors of one station beside the stated uncertainties, and counts over all stations."""
-    found = {row.probe.name: tuple(true_errors(row)) for row, *_ in rows}
-    items = [(name, errors) for name, errors in found.items() if errors]
-
-    def columns(place: int, solver: str) -> list[Column[tuple[str, tuple[ErrorRatio, ...]]]]:
-        return [
-            Column(f"error {solver}", lambda at: share(at[1][place].row, at[1][place].true)),
-            Column(f"stated {solver}", lambda at: share(at[1][place].row, at[1][place].stated)),
-            Column(f"ratio {solver}", lambda at: at[1][place].ratio, number),
-            Column(f"position {solver}", lambda at: at[1][place].word),
-        ]
-
-    ratios, counts = error_ratios(compared.rows), []
-    for solver, name in zip(SOLVERS, ("CPRBM", "FEA"), strict=True):
+    columns, ratios, counts = [Column[Any]("probe", "CPRBM.row.probe.name")], error_ratios(compared.rows), []
+    for solver, name in zip(SOLVERS, _SOLVERS, strict=True):
         mine = tally(ratios, solver)
         over = "" if mine.over is None else f", median of stated over true {number(mine.over)}"
         counts.append(f"{name} within the stated error in {mine.within} of {mine.rows} rows{over}")
+        sizes = {f"error {name}": f"{name}.true", f"stated {name}": f"{name}.stated"}
+        columns += columns_of(lambda found, size: share(found["CPRBM"].row, size), sizes)
+        columns += [Column(f"ratio {name}", f"{name}.ratio", number), Column(f"position {name}", f"{name}.word")]
     return table_of(
         "True errors in bending, beside the exact answer",
-        [Column("probe", lambda at: at[0]), *columns(0, "CPRBM"), *columns(1, "FEA")],
-        items,
+        columns,
+        [errors for at in rows if (errors := dict(zip(_SOLVERS, true_errors(at.row), strict=False)))],
         f"Over all stations: {'; '.join(counts)}. A ratio is the true error over the stated error with round-off. A "
         f"ratio above 1 is beyond the statement; above {EXACT_FACTOR:g} the row differs.",
+    )
+
+
+def paper_table(compared: Comparison) -> Table:
+    """Distances of the CPRBM's values in ``paper`` from the values in ``auto`` at the same N, over all stations."""
+    scene, runs = compared.scene, compared.runs
+    found = [(row, size) for row in compared.rows if (size := contact_model(runs, row)) is not None]
+    last = found[-1][0].where if found else ("", 0.0)
+    worst = _largest_by_probe(found)
+    at_last = {row.probe.name: (row, size) for row, size in found if row.where == last}
+
+    def text(distance: tuple[Row, float]) -> str:
+        row, fraction = distance[0], distance[0].fraction(distance[1]) or 0.0
+        return with_unit(scene, distance[1], row.unit, 3) if fraction > MANY_TIMES else percent(fraction)
+
+    columns = [
+        Column[str]("probe", str),
+        Column("largest distance", worst.get, text),
+        Column("at", worst.get, lambda distance: at_station(scene, *distance[0].where)),
+        Column(f"at {at_station(scene, *last)}" if found else "", at_last.get, text),
+    ]
+    paper = runs.paper if runs.formulations is None else runs.formulations[0]
+    note = "Distances of the CPRBM's values at the same N; they take no part in the verdict. Fractions above tenfold "
+    note += "stand as distances." + ("" if paper is None else _paper_note(scene, paper))
+    names = dict.fromkeys(row.probe.name for row, _ in found)
+    return table_of("The formulation paper beside auto", columns, names, note)
+
+
+def _paper_note(scene: Scene, paper: Answer) -> str:
+    """Notes and end of the answer in ``paper``."""
+    note = f" In paper: {'; '.join(paper.notes)}." if paper.notes else ""
+    asked = [(stage.name, value) for stage in scene.stages for value in stage.stations]
+    if not paper.completed and len(paper.stations) < len(asked):
+        before = at_station(scene, *asked[len(paper.stations)])
+        note += f" It ended before {before}: {paper.sentence or paper.ending.value}."
+    return note
+
+
+def solid_table(compared: Comparison) -> Table:
+    """Rows of the last station beside the solid."""
+    thirds = thirds_of(compared)
+    last = [one for one in thirds if one.row.where == thirds[-1].row.where]
+    off = {"u solid": "uncertainty", "CPRBM off": "cprbm", "FEA off": "fea"}
+    off[f"CPRBM in {compared.runs.other_theory} off"] = "other"
+    values = {"CPRBM": "row.cprbm", "FEA": "row.fea", "solid": "solid"}
+    return table_of(
+        "The beam theories beside a solid, at the last station",
+        [*_values(compared.scene, last, values), *_shares(off)],
+        last,
+        "The solid's values are extrapolated from its meshes; distances are measured from these values.",
     )

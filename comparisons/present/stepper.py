@@ -8,33 +8,30 @@ symbol  meaning
 ======  ===========================================================================
 X, Y    place in the picture, whose longer side is ``WIDE``; Y grows downwards
 ε       largest distance of a drawn line from the line through all points
-κ, h    curvature of a line, and distance of kept points: h = √(8 ε/κ)
 ======  ===========================================================================
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
+import shapely
 
 from comparisons.case import Comparison
-from comparisons.display_units import display_units, load_text
 from comparisons.formats import number, vector
 from comparisons.geometry import length, points
 from comparisons.present.columns import NOTHING
-from comparisons.present.figures import colour_unit
-from comparisons.present.picture import LEAST, Arrow, Bounds, Kind, View, bounds_of, view_of
-from comparisons.present.row_tables import judged_rows, share
+from comparisons.present.figures import colour_unit, view_title
+from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, view_of
+from comparisons.present.row_tables import Judged, judged_rows, row_units, share
 from comparisons.present.strips import Strip
 from comparisons.present.table import with_minus
-from comparisons.quantities import norm, unit_of
-from comparisons.stations import station_of
 from comparisons.verdict.rows import ROUND_OFF
-from cprbm_scene import Probe, Scene, StationAnswer
+from cprbm_scene import StationAnswer
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES
 
@@ -47,8 +44,11 @@ HEADERS = ("probe", "CPRBM", "FEA", "error", "word")
 _MARGIN = 0.1  # beside the mechanism, over its longer side
 _THINNEST = 2.5  # least drawn thickness
 _EPSILON = 0.2
-_LONGEST, _HEAD, _TURN = 110.0, 11.0, 26.0  # the longest arrow, an arrow's head, radius of a moment's arrow
+_HEAD, _TURN = 11.0, 26.0  # an arrow's head, radius of a moment's arrow
 _MARKS: tuple[Kind, ...] = ("weld", "pin", "pivot")
+
+Placing = Callable[[Array], Array]
+"""Function from places (k, 2), m, to places in the picture."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ class Stepper:
 
     Attributes:
         width, height: of the picture.
-        still: data of still paths by class.
+        rest: data of the path of the beams at rest.
         moving: classes of the moving paths, in the order of the stations' data.
         points: names beside points.
         names: probes and units of the table's lines.
@@ -68,7 +68,7 @@ class Stepper:
 
     width: float
     height: float
-    still: Mapping[str, str]
+    rest: str
     moving: tuple[str, ...]
     points: tuple[str, ...]
     names: tuple[tuple[str, str], ...]
@@ -85,149 +85,104 @@ class Stepper:
 
 def stepper(compared: Comparison) -> Stepper | None:
     """The common stations of both answers; None without a common station."""
-    scene, pairs = compared.scene, list(_pairs(compared))
-    if not pairs:
+    scene, beams = compared.scene, compared.scene.beams
+    reached = {(at.stage, at.value): at for at in compared.runs.cprbm[0].stations}
+    common = [at for at in compared.runs.reference.stations if (at.stage, at.value) in reached]
+    if not common:
         return None
-    views = [view_of(scene, fea) for _, fea in pairs]
+    views = [view_of(scene, station) for station in common]
     bounds = bounds_of(scene, views, "bending_stress")
-    place = _Placing(bounds.low - _MARGIN * bounds.size, bounds.high + _MARGIN * bounds.size)
-    probes = [probe for probe in scene.probes if probe.quantity not in STRESSES]
-    words = {
-        (row.probe.name, *row.where): (
-            share(row, row.difference) or NOTHING,
-            word.value if word else NOTHING,
-            row.scale,
-        )
-        for row, word, _ in judged_rows(compared)
-    }
-    units = _units(scene, probes, pairs)
+    margin = _MARGIN * bounds.size
+    corner = np.array([bounds.low[0] - margin, bounds.high[1] + margin])
+    sides = bounds.high - bounds.low + 2.0 * margin
+    scale = WIDE / float(np.max(sides))
+
+    def place(places: Array) -> Array:
+        return np.asarray((places - corner) * (scale, -scale))
+
+    names = [probe.name for probe in scene.probes if probe.quantity not in STRESSES]
+    rows = {(at.row.probe.name, *at.row.where): at for at in judged_rows(compared)}
+    units = row_units(scene, compared.rows)
+    of_probe = {row.probe.name: units[row.unit][1] for row in compared.rows}
     labels = _labels(views[-1], place)
     stations, moving = [], dict[str, str]()
-    for (cprbm, fea), view in zip(pairs, views, strict=True):
-        moving = dict(_moving(view, cprbm, bounds, place))
-        cells = tuple(_cells(probe, (cprbm, fea), units[probe.name][0], words) for probe in probes)
-        spots = tuple("{:g} {:g}".format(*np.round(place(view.points[point][None])[0])) for point in labels.values())
-        stations.append((_title(scene, fea), tuple(moving.values()), spots, cells))
-    rest = (points(beam.curve, np.linspace(0.0, length(beam.curve), 121)) for beam in scene.beams.values())
+    for view in views:
+        where = view.station.stage, view.station.value
+        moving = dict(_moving(view, reached[where], bounds, place))
+        cells = tuple(_cells(rows.get((name, *where)), units) for name in names)
+        spots = tuple("{:g} {:g}".format(*np.round(place(view.points[point]))) for point in labels.values())
+        stations.append((view_title(scene, view), tuple(moving.values()), spots, cells))
+    rest = (points(beam.curve, np.linspace(0.0, length(beam.curve), 121)) for beam in beams.values())
     factor, unit = colour_unit(scene, "bending_stress", bounds.most)
     return Stepper(
-        float(round(place.size[0])),
-        float(round(place.size[1])),
-        {"rest": "".join(line(place(each)) for each in rest)},
+        float(round(sides[0] * scale)),
+        float(round(sides[1] * scale)),
+        "".join(line(place(each)) for each in rest),
         tuple(moving),
         tuple(labels),
-        tuple((probe.name, units[probe.name][1]) for probe in probes),
+        tuple((name, of_probe.get(name, "")) for name in names),
         tuple(stations),
-        tuple(name for name, beam in scene.beams.items() if beam.thinnest * place.scale < _THINNEST),
+        tuple(name for name, beam in beams.items() if beam.thinnest * scale < _THINNEST),
         f"{number(bounds.most / factor)} {unit}" if bounds.most else "",
     )
 
 
-class _Placing:
-    """Places (k, 2), m, as places in the picture."""
-
-    def __init__(self, low: Array, high: Array) -> None:
-        self.corner = np.array([low[0], high[1]])
-        self.scale = WIDE / float(np.max(high - low))
-        self.size = (high - low) * self.scale
-
-    def __call__(self, places: Array) -> Array:
-        return np.asarray((places - self.corner) * (self.scale, -self.scale))
-
-
-def _pairs(compared: Comparison) -> Iterator[tuple[StationAnswer, StationAnswer]]:
-    for fea in compared.runs.reference.stations:
-        try:
-            yield station_of(compared.runs.cprbm[0], fea.stage, fea.value), fea
-        except KeyError:  # the CPRBM did not reach the station
-            continue
-
-
-def _moving(view: View, cprbm: StationAnswer, bounds: Bounds, place: _Placing) -> Iterator[tuple[str, str]]:
+def _moving(view: View, cprbm: StationAnswer, bounds: Bounds, place: Placing) -> Iterator[tuple[str, str]]:
     """Class and data of every moving path at a station."""
-    areas = {kind: "".join(line(place(part.points), closed=part.closed) for part in view.of(kind))
-             for kind in ("rigid", "edge", "body")}  # fmt: skip
-    yield from (("rigid", areas["rigid"]), ("edge", areas["edge"]))
+    edges, lines = view.of("edge"), (np.stack([shape.x, shape.y], axis=1) for shape in cprbm.shapes.values())
     shades = [shade for strip in view.strips.values() for shade in _shades(strip, bounds, place)]
+    yield "rigid", "".join(line(place(part.area), closed=True) for part in edges)
+    yield "edge", "".join(line(place(part.points), closed=part.closed) for part in edges)
     for shade in range(SHADES):
         yield f"shade{shade}", "".join(path for found, path in shades if found == shade)
-    yield "body", areas["body"]
+    yield "body", "".join(line(place(part.points), closed=part.closed) for part in view.of("body"))
     yield "pin", "".join(dots(place(part.points)) for part in view.of(*_MARKS))
-    lines = (np.stack([shape.x, shape.y], axis=1) for shape in cprbm.shapes.values())
     yield "cprbm", "".join(line(place(each)) for each in lines)
     yield "zone", "".join(dots(place(part.points)) for part in view.of("contact"))
     for kind in ("push", "load"):
-        yield kind, "".join(_arrow(each, bounds, place) for each in view.arrows if each.kind == kind)
+        yield kind, "".join(_arrow(each, bounds.arrow(each), place) for each in view.arrows_of(kind))
 
 
-def _shades(strip: Strip, bounds: Bounds, place: _Placing) -> Iterator[tuple[int, str]]:
+def _shades(strip: Strip, bounds: Bounds, place: Placing) -> Iterator[tuple[int, str]]:
     """Areas of a beam by number of the colour."""
-    middle, half = place(strip.line), 0.5 * np.maximum(strip.thickness * place.scale, _THINNEST)
-    across = half[:, None] * strip.normal * (1.0, -1.0)
-    shares = strip.bending_stress / bounds.most if bounds.most else np.zeros(len(strip.s))
+    half = np.maximum(0.5 * strip.thickness, 0.5 * _THINNEST / _scale(place))[:, None] * strip.normal
+    edges = place(strip.line + half), place(strip.line - half)
+    shares = strip.bending_stress / (bounds.most or 1.0)
     colours = np.rint((1.0 + shares) * (SHADES - 1) / 2.0).astype(int)
     for colour, found in groupby(range(len(colours) - 1), key=lambda piece: colours[piece]):
         pieces = list(found)
         run = slice(pieces[0], pieces[-1] + 2)
-        yield int(colour), line(np.concatenate([(middle + across)[run], (middle - across)[run][::-1]]), closed=True)
+        yield int(colour), line(np.concatenate([edges[0][run], edges[1][run][::-1]]), closed=True)
 
 
-def _labels(view: View, place: _Placing) -> dict[str, str]:
+def _scale(place: Placing) -> float:
+    """Size of a metre in the picture."""
+    return float(np.diff(place(np.array([[0.0, 0.0], [1.0, 0.0]]))[:, 0])[0])
+
+
+def _labels(view: View, place: Placing) -> dict[str, str]:
     """A point by the text beside it; points in one place share a text."""
-    found: dict[tuple[float, float], list[str]] = {}
+    found: dict[tuple[float, ...], list[str]] = {}
     for name, at in view.points.items():
-        x, y = np.round(place(at[None])[0]).tolist()
-        found.setdefault((x, y), []).append(name)
+        found.setdefault(tuple(np.round(place(at)).tolist()), []).append(name)
     return {", ".join(names): names[0] for names in found.values()}
 
 
-def _units(
-    scene: Scene, probes: Sequence[Probe], pairs: Sequence[tuple[StationAnswer, StationAnswer]]
-) -> dict[str, tuple[float, str]]:
-    """Displayed unit of every probe, the same for all probes with the same SI unit."""
-    last = next(stage for stage in scene.stages if stage.name == pairs[-1][1].stage)
-    names = {probe.name: unit_of(scene, probe, last) for probe in probes}
-    sizes = (
-        (names[probe.name], norm(probe.quantity, at.values[probe.name]))
-        for probe in probes
-        for pair in pairs
-        for at in pair
-    )
-    units = display_units(scene, sizes)
-    return {name: units[unit] for name, unit in names.items()}
-
-
-def _cells(
-    probe: Probe,
-    pair: tuple[StationAnswer, StationAnswer],
-    factor: float,
-    words: Mapping[tuple[str, str, float], tuple[str, str, float]],
-) -> tuple[str, ...]:
-    """Texts of a probe at a station: both values, difference and word."""
-    asked = probe.asked_in(pair[1].stage)
-    error, word, scale = words.get((probe.name, pair[1].stage, pair[1].value), (NOTHING, NOTHING, 0.0))
-    texts = (vector(at.values[probe.name], factor, ROUND_OFF * scale) if asked else NOTHING for at in pair)
-    return (*map(with_minus, texts), error, word)
-
-
-def _title(scene: Scene, station: StationAnswer) -> str:
-    stage = next(each for each in scene.stages if each.name == station.stage)
-    return f"{stage.name}, {stage.steps} = {load_text(scene, stage.name, station.value)}"
+def _cells(judged: Judged | None, units: Mapping[str, tuple[float, str]]) -> tuple[str, ...]:
+    """Texts of a row: both values, difference and word."""
+    if judged is None:
+        return (NOTHING,) * 4
+    row, word, _ = judged
+    values = (vector(each, units[row.unit][0], ROUND_OFF * row.scale) for each in (row.cprbm, row.fea))
+    return (*map(with_minus, values), share(row, row.difference) or NOTHING, word.value if word else NOTHING)
 
 
 def line(places: Array, *, closed: bool = False) -> str:
     """Path through places (k, 2) of the picture, without places within a distance of ε."""
-    return "M" + "L".join(_pair(*each) for each in thinned(places)) + ("Z" if closed else "") if len(places) else ""
-
-
-def thinned(places: Array) -> Array:
-    """Places (m, 2) of a line within about ε: the distances of the kept places are √(8 ε/κ)."""
-    way = np.diff(places, axis=0)
-    size = np.hypot(*way.T)
-    turn = np.abs(np.diff(np.unwrap(np.arctan2(way[:, 1], way[:, 0]))))
-    steps = np.cumsum(np.sqrt(turn * np.maximum(size[1:], size[:-1]) / (8.0 * _EPSILON)))
-    kept = np.flatnonzero(np.diff(np.floor(steps), prepend=0.0)) + 1
-    return places[[0, *kept.tolist(), len(places) - 1]]
+    kept = (
+        shapely.get_coordinates(shapely.simplify(shapely.linestrings(places), _EPSILON)) if len(places) > 1 else places
+    )
+    return "M" + "L".join(_pair(*each) for each in kept) + ("Z" if closed else "") if len(kept) else ""
 
 
 def dots(places: Array) -> str:
@@ -235,13 +190,12 @@ def dots(places: Array) -> str:
     return "".join(f"M{_pair(*each)}h0" for each in places)
 
 
-def _arrow(arrow: Arrow, bounds: Bounds, place: _Placing) -> str:
+def _arrow(arrow: Arrow, vector: Array | None, place: Placing) -> str:
     """Arrow of a force with the head at the place of action, or round the place for a moment."""
-    tip, size, most = place(arrow.place[None])[0], float(np.hypot(*arrow.force)), bounds.force[arrow.kind]
-    path = ""
-    if size > LEAST * most > 0.0:
-        way = _LONGEST / most * arrow.force * (1.0, -1.0)
-        path += line(np.stack([tip - way, tip])) + _head(tip, way)
+    tip, path = place(arrow.middle), ""
+    if vector is not None:
+        tail = place(arrow.middle - vector)
+        path += line(np.stack([tail, tip])) + _head(tip, tip - tail)
     if arrow.moment:
         angles = np.linspace(-0.75 * np.pi, 0.75 * np.pi, 25) * np.sign(arrow.moment)
         ring = tip + _TURN * np.stack([np.cos(angles), -np.sin(angles)], axis=1)

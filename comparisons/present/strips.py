@@ -62,6 +62,10 @@ class Strip:
         """M (n,), N·m."""
         return self.bending_stress * self.width * self.thickness**2 / 6.0
 
+    def places(self, u: Array) -> Array:
+        """Places (k, 2), m, of the neutral line at fractions ``u`` (k,) of the arc length."""
+        return np.stack([np.interp(u * self.s[-1], self.s, each) for each in self.line.T], axis=1)
+
     def layer(self, eta: float) -> Array:
         """Places (n, 2), m, at the height η."""
         return np.asarray(self.line + 0.5 * eta * self.thickness[:, None] * self.normal)

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable
+from typing import NamedTuple
 
 from rich import box
 from rich.cells import cell_len
@@ -34,7 +34,7 @@ _LONG = 24
 _SENTENCE = 60
 """Characters of a text longer than all numbers."""
 
-_NUMBER = re.compile(r"(?P<before>[+-]?\d+)(?P<behind>(?:\.\d+)?(?:e[+-]?\d+)?(?: %|°)?)")
+_NUMBER = re.compile(r"([+-]?\d+)((?:\.\d+)?(?:e[+-]?\d+)?(?: %|°)?)")
 _NUMERIC = re.compile(r"\(?[+-]?\d")
 _OTHERS = ("–", "open", "none", "all", "")
 """Further texts in a column of numbers."""
@@ -42,45 +42,36 @@ _OTHERS = ("–", "open", "none", "all", "")
 
 def screen_text(table: Table, *, width: int) -> str:
     """The table with terminal colours, at most ``width`` columns wide."""
-    columns = [list(column) for column in zip(table.headers, *table.rows, strict=True)]
-    whole = [max(map(cell_len, column)) for column in columns]
-    leading = 2 if table.headers[1:2] == ("unit",) else 1
-    parts = [dict(enumerate(whole))] if _total(whole) <= width else _split(columns, whole, leading, width)
-    texts = []
-    for place, widths in enumerate(parts):
+    columns, parts = [*zip(table.headers, *table.rows, strict=True)], []
+    for place, widths in enumerate(found := _split(columns, 2 if table.headers[1:2] == ("unit",) else 1, width)):
         grid = Grid(
             title=table.title if place == 0 else None,
-            caption=(table.note or None) if place == len(parts) - 1 else None,
+            caption=table.note if table.note and place == len(found) - 1 else None,
             title_justify="left",
             caption_justify="left",
             title_style="bold",
             box=box.SIMPLE_HEAD,
         )
         for column, size in widths.items():
-            justify = "left" if column == 0 else "right"
-            grid.add_column(Text(table.headers[column]), justify=justify, overflow="fold", width=size)  # type: ignore[arg-type]
-        for row in table.rows:
-            grid.add_row(*(_styled(row[column]) for column in widths))
-        texts.append(_printed(grid, width))
-    return "".join(texts)
+            grid.add_column(
+                Text(table.headers[column]), justify="right" if column else "left", overflow="fold", width=size
+            )
+        parts.append(_printed(grid, [[row[column] for column in widths] for row in table.rows], width))
+    return "".join(parts)
 
 
 def brief_lines(table: Table, *, width: int) -> list[str]:
     """Lines of the table without title and note, at most ``width`` columns wide: the first column folds."""
     grid = Grid(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
     for place, header in enumerate(table.headers):
-        justify = "left" if place == 0 or header == "word" else "right"
-        grid.add_column(header, justify=justify, overflow="fold", no_wrap=place > 0)  # type: ignore[arg-type]
-    for row in table.rows:
-        grid.add_row(*map(_styled, row))
-    return [line.rstrip() for line in _printed(grid, width).splitlines()]
+        left = place == 0 or header == "word"
+        grid.add_column(header, justify="left" if left else "right", overflow="fold", no_wrap=place > 0)
+    return [line.rstrip() for line in _printed(grid, table.rows, width).splitlines()]
 
 
-def _styled(cell: str) -> Text:
-    return Text(cell, style=STYLES.get(cell, ""))
-
-
-def _printed(grid: Grid, width: int) -> str:
+def _printed(grid: Grid, rows: Iterable[Iterable[str]], width: int) -> str:
+    for row in rows:
+        grid.add_row(*(Text(cell, style=STYLES.get(cell, "")) for cell in row))
     page = io.StringIO()
     # without a height a "dumb" terminal would have 80 columns whatever the width
     Console(file=page, width=width, height=25, force_terminal=True, color_system="standard").print(grid)
@@ -91,16 +82,18 @@ def _total(widths: Iterable[int]) -> int:
     return _EDGES + sum(width + _GAP for width in widths)
 
 
-def _least(column: list[str]) -> int:
+def _least(column: Iterable[str]) -> int:
     """Least width of a column: of long texts with spaces the longest word."""
     prose = (max(map(cell_len, text.split())) if cell_len(text) > _LONG and " " in text else cell_len(text)
              for text in column)  # fmt: skip
     return max(prose)
 
 
-def _split(columns: list[list[str]], whole: list[int], leading: int, width: int) -> list[dict[int, int]]:
+def _split(columns: list[tuple[str, ...]], leading: int, width: int) -> list[dict[int, int]]:
     """Widths by column for every part of a table; all parts begin with the ``leading`` columns."""
-    least = [_least(column) for column in columns]
+    whole, least = [max(map(cell_len, column)) for column in columns], [*map(_least, columns)]
+    if _total(whole) <= width:
+        return [dict(enumerate(whole))]
     lead = dict(enumerate(least[:leading]))
     lead[0] = min(lead[0], max(width - _total([*least[1:leading], max(least[leading:], default=0)]) - _GAP, 1))
     parts = [dict(lead)]
@@ -114,9 +107,8 @@ def _split(columns: list[list[str]], whole: list[int], leading: int, width: int)
     return parts
 
 
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """Cell on a page: ``before`` and ``behind`` the decimal point.
+class Cell(NamedTuple):
+    """Cell on a page: texts ``before`` and ``behind`` the decimal point.
 
     ``room`` is the width of the part behind the point in digits, 0 without such a part; ``words`` marks a column of
     words.
@@ -139,28 +131,18 @@ def html_cells(table: Table) -> list[list[Cell]]:
     return [list(row) for row in zip(*columns, strict=True)]
 
 
-def word_columns(table: Table) -> list[bool]:
-    """Whether a column has words, by column: no text begins with a number, or a text is a sentence."""
-    return [_has_words([row[place] for row in table.rows]) for place in range(len(table.headers))]
-
-
 def with_minus(text: str) -> str:
     """Text with true minus signs, as wide as a plus."""
     return re.sub(r"(?<![\w.])-(?=\d)", "−", text)
 
 
-def _has_words(texts: list[str]) -> bool:
-    return not any(map(_NUMERIC.match, texts)) or max(map(len, texts)) > _SENTENCE
-
-
 def _aligned(texts: list[str]) -> list[Cell]:
-    if _has_words(texts):
+    if not any(map(_NUMERIC.match, texts)) or max(map(len, texts)) > _SENTENCE:
         return [Cell(text, words=True) for text in texts]
-    found: list[Mapping[str, str] | None] = [match and match.groupdict() for match in map(_NUMBER.fullmatch, texts)]
-    if not all(match or text in _OTHERS for match, text in zip(found, texts, strict=True)):
-        return [Cell(with_minus(text)) for text in texts]
-    room = max(len(match["behind"]) for match in found if match)
+    found = [(text, match[1], match[2]) if (match := _NUMBER.fullmatch(text)) else (text, "", "") for text in texts]
+    whole = not all(before or text in _OTHERS for text, before, _ in found)
+    room = max(len(behind) for *_, behind in found)
     return [
-        Cell(with_minus(match["before"]), match["behind"], room) if match else Cell(text)
-        for text, match in zip(texts, found, strict=True)
+        Cell(with_minus(before), behind, room) if before and not whole else Cell(with_minus(text))
+        for text, before, behind in found
     ]

@@ -8,17 +8,15 @@ a single stage goes up; otherwise the stations count from 0.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Literal
+from typing import Literal, NamedTuple
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from comparisons.present.picture import Obstacle, View
-from comparisons.present.strips import Strip
+from comparisons.present.picture import View
 from cprbm_scene.answer import Array, Ints
 from cprbm_scene.statement import Scene
 
@@ -26,8 +24,7 @@ ACROSS = 4
 _BASE = [(0, 0), (1, 0), (1, 1), (0, 1)]  # along x(s), then to its left: counter-clockwise seen from +z
 
 
-@dataclass(frozen=True, slots=True)
-class Block:
+class Block(NamedTuple):
     """Cells of a ``kind``: ``places`` (k, 3), m, ``cells`` (c, corners), ``values`` (k,) or (k, 3) by name, SI."""
 
     kind: Literal["hexahedron", "vertex"]
@@ -42,63 +39,66 @@ def beam_block(view: View) -> Block:
     Values: ``displacement`` (k, 3), ``bending_stress`` of the place, positive in tension, ``combined_stress`` (the
     largest magnitude of the section), ``moment``, ``arc_length`` and ``beam``.
     """
-    return _joined([_beam(number, strip) for number, strip in enumerate(view.strips.values())])
+    blocks, eta = [], np.linspace(-1.0, 1.0, ACROSS + 1)
+    for number, strip in enumerate(view.strips.values()):
+        places = np.stack([strip.layer(each) for each in eta], axis=1)  # (n, ACROSS + 1, 2)
+        moved = places - np.stack([strip.rest_layer(each) for each in eta], axis=1)
+        values = {
+            "displacement": np.pad(moved, ((0, 0), (0, 0), (0, 1))),
+            "bending_stress": -eta * strip.bending_stress[:, None],
+            "combined_stress": strip.combined_stress[:, None],
+            "moment": strip.moment[:, None],
+            "arc_length": strip.s[:, None],
+            "beam": np.array([[float(number)]]),
+        }
+        blocks.append(_extruded(places, strip.width, values))
+    return _joined(blocks)
 
 
 def obstacle_block(view: View) -> Block | None:
-    """Rigid edges with their solid sides; None without rigid edges."""
-    blocks = [_obstacle(number, each) for number, each in enumerate(view.obstacles)]
+    """Rigid edges with their solid sides, as wide as the widest beam; None without rigid edges.
+
+    Pieces to a middle have two edges in a place.
+    """
+    wide, blocks = max(float(strip.width.max()) for strip in view.strips.values()), []
+    for number, part in enumerate(view.of("edge")):
+        sides = np.stack([part.points, part.solid], axis=1)  # (k, 2, 2)
+        along, inwards = sides[1, 0] - sides[0, 0], sides[0, 1] - sides[0, 0]
+        left = along[0] * inwards[1] > along[1] * inwards[0]
+        blocks.append(
+            _extruded(
+                sides if left else sides[:, ::-1], np.full(len(sides), wide), {"obstacle": np.array([[float(number)]])}
+            )
+        )
     return _joined(blocks) if blocks else None
 
 
 def force_block(view: View) -> Block | None:
     """Pressed places with ``contact_force`` (k, 3), N; None without stated forces."""
-    if not view.pushes:
+    pushes = view.arrows_of("push")
+    if not pushes:
         return None
-    flat, forces = (np.concatenate([getattr(push, name) for push in view.pushes]) for name in ("places", "forces"))
-    zero = np.zeros((len(flat), 1))
-    values = {"contact_force": np.concatenate([forces, zero], axis=1)}
-    return Block("vertex", np.concatenate([flat, zero], axis=1), np.arange(len(flat))[:, None], values)
+    places, forces = (np.pad(np.concatenate([getattr(push, name) for push in pushes]), ((0, 0), (0, 1)))
+                      for name in ("places", "forces"))  # fmt: skip
+    return Block("vertex", places, np.arange(len(places))[:, None], {"contact_force": forces})
 
 
-def _beam(number: int, strip: Strip) -> Block:
-    n, eta = len(strip.s), np.linspace(-1.0, 1.0, ACROSS + 1)
-    flat = np.stack([strip.layer(each) for each in eta], axis=1)  # (n, ACROSS + 1, 2)
-    moved = np.zeros((n, ACROSS + 1, 3))
-    moved[..., :2] = flat - np.stack([strip.rest_layer(each) for each in eta], axis=1)
-    i, j = (each.ravel() for each in np.meshgrid(np.arange(n - 1), np.arange(ACROSS), indexing="ij"))
-    values = {
-        "displacement": moved,
-        "bending_stress": -eta * strip.bending_stress[:, None],
-        "combined_stress": strip.combined_stress[:, None],
-        "moment": strip.moment[:, None],
-        "arc_length": strip.s[:, None],
-        "beam": np.full((n, 1), float(number)),
-    }
-    wide = {name: np.broadcast_to(each, (n, ACROSS + 1, *each.shape[2:])) for name, each in values.items()}
-    return Block(
-        "hexahedron",
-        _extruded(flat, np.broadcast_to(strip.width[:, None], (n, ACROSS + 1))),
-        np.stack([((i + di) * (ACROSS + 1) + j + dj) * 2 + k for k in (0, 1) for di, dj in _BASE], axis=1),
-        {name: np.repeat(each.reshape(-1, *each.shape[2:]), 2, axis=0) for name, each in wide.items()},
+def _extruded(places: Array, width: Array, values: Mapping[str, Array]) -> Block:
+    """Hexahedra between places (n, m, 2) at both ends of widths (n,), with values that broadcast to (n, m)."""
+    n, m, _ = places.shape
+    side = np.array([-0.5, 0.5]) * width[:, None, None]
+    space = np.concatenate(
+        [np.repeat(places[:, :, None], 2, axis=2), np.broadcast_to(side, (n, m, 2))[..., None]], axis=3
     )
-
-
-def _extruded(flat: Array, width: Array) -> Array:
-    """Places (n m 2, 3) at both ends of widths (n, m) of places (n, m, 2)."""
-    sides = [np.concatenate([flat, 0.5 * side * width[..., None]], axis=2) for side in (-1.0, 1.0)]
-    return np.stack(sides, axis=2).reshape(-1, 3)
-
-
-def _obstacle(number: int, obstacle: Obstacle) -> Block:
-    """Pieces of the outline with their solid sides as hexahedra; pieces to a middle have two edges in a place."""
-    flat = np.stack([obstacle.outline, obstacle.solid], axis=1)  # (k, 2, 2)
-    places = _extruded(flat, np.full(flat.shape[:2], obstacle.width))
-    i = np.arange(len(flat) - 1)
-    way, inwards = flat[1, 0] - flat[0, 0], flat[0, 1] - flat[0, 0]
-    base = _BASE if way[0] * inwards[1] > way[1] * inwards[0] else _BASE[::-1]
-    cells = np.stack([((i + di) * 2 + side) * 2 + k for k in (0, 1) for di, side in base], axis=1)
-    return Block("hexahedron", places, cells, {"obstacle": np.full(len(places), float(number))})
+    i, j = (each.ravel() for each in np.meshgrid(np.arange(n - 1), np.arange(m - 1), indexing="ij"))
+    cells = np.stack([((i + di) * m + j + dj) * 2 + k for k in (0, 1) for di, dj in _BASE], axis=1)
+    wide = {
+        name: np.broadcast_to(each, (n, m, *each.shape[2:])).reshape(-1, *each.shape[2:])
+        for name, each in values.items()
+    }
+    return Block(
+        "hexahedron", space.reshape(-1, 3), cells, {name: np.repeat(each, 2, axis=0) for name, each in wide.items()}
+    )
 
 
 def _joined(blocks: Sequence[Block]) -> Block:
@@ -136,8 +136,10 @@ def series(scene: Scene, views: Sequence[View], path: Path) -> Iterator[tuple[Pa
     Raises:
         ImportError: meshio is not installed.
     """
-    folder, lines = path.parent / path.stem, []
-    for number, (time, view) in enumerate(zip(_times(scene, views), views, strict=True)):
+    folder, lines, times = path.parent / path.stem, [], [view.station.value for view in views]
+    if len(scene.stages) > 1 or any(later <= earlier for earlier, later in pairwise(times)):
+        times = [float(number) for number in range(len(views))]
+    for number, (time, view) in enumerate(zip(times, views, strict=True)):
         blocks = {"beams": beam_block(view), "obstacles": obstacle_block(view), "contacts": force_block(view)}
         for part, (name, block) in enumerate(blocks.items()):
             if block is not None:
@@ -147,10 +149,3 @@ def series(scene: Scene, views: Sequence[View], path: Path) -> Iterator[tuple[Pa
                 lines.append(f'    <DataSet timestep="{time!r}" part="{part}" name="{name}" file={source}/>\n')
     head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
     yield path, f"{head}  <Collection>\n{''.join(lines)}  </Collection>\n</VTKFile>\n".encode()
-
-
-def _times(scene: Scene, views: Sequence[View]) -> list[float]:
-    values = [view.station.value for view in views]
-    if len(scene.stages) == 1 and all(later > earlier for earlier, later in pairwise(values)):
-        return values
-    return [float(number) for number in range(len(values))]

@@ -12,7 +12,7 @@ from comparisons import cases
 from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
 from comparisons.crew import ALONE, Crew
-from comparisons.pairing import Solvers, exact_answer, paired
+from comparisons.pairing import Solvers, exact_if_covered, paired
 from comparisons.verdict.calibration import ErrorRatio, Tally, error_ratios, tally
 from comparisons.verdict.completeness import complete_part
 from comparisons.verdict.runs import SOLVERS, Solver
@@ -89,7 +89,7 @@ def with_piece(found: Calibration, piece: Piece, solvers: Solvers, crew: Crew = 
         SceneError: a solver refuses the question.
     """
     scene = piece.scene
-    whole = (solvers.exact or exact_answer)(scene, Choices(theory="bending"))
+    whole = (solvers.exact or exact_if_covered)(scene, Choices(theory="bending"))
     exact = complete_part(scene, whole)
     asked = sum(len(stage.stations) for stage in scene.stages)
     known = len(exact.stations)

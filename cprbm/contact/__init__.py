@@ -6,13 +6,14 @@
 * :mod:`cprbm.contact.corners`, :mod:`cprbm.contact.edges`: corners of rigid solids, places at corners;
 * :mod:`cprbm.contact.fixed`: joints, ends and corners at the nearest feet;
 * :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
-* :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.own_pin`, :mod:`cprbm.contact.candidates`: contacts of a scene.
-* :mod:`cprbm.contact.law`: gaps that another law measures;
+* :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.candidates`: contacts of a scene, gaps that another law measures;
 * :mod:`cprbm.contact.contacts`: places and closed set of a state.
 """
 
 from cprbm.contact.candidates import (
+    Columns,
     Geometry,
+    Law,
     contact_geometry,
     copied,
     fixed_places,
@@ -42,7 +43,6 @@ from cprbm.contact.gap import (
     gap_row,
     local_indices,
 )
-from cprbm.contact.law import Columns, Law
 from cprbm.contact.pairs import Pair
 from cprbm.contact.settling import (
     BOX_TESTS,

@@ -10,12 +10,16 @@ point contacts that stay at the corners, with the feet on the beam.
 
 The side of two beams is the side at the least distance as drawn.  In self-contact a place lies before the foot, so
 that no gap counts twice; only the beam's end is a place as well.
+
+The formulation ``paper`` measures the gap of two beams by a fitted boundary (:mod:`cprbm.paper`), a law of its own.
+The places of such a contact are places like others; the law writes their gaps and the border columns.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -23,12 +27,49 @@ from cprbm.chain import Mechanism
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
 from cprbm.contact.fixed import FREE, Ends, Sites, movable, places_at_feet
 from cprbm.contact.gap import Places, gap_frame
-from cprbm.contact.law import Law
 from cprbm.contact.pairs import Pair, contact_pairs
 from cprbm.contact.settling import settle
 from cprbm_scene import FreeEnd, Scene, WeldedEnd
 from cprbm_scene.answer import Array, Flags, Ints
 from cprbm_scene.freedoms import FREEDOMS, Freedoms
+
+
+class Columns(NamedTuple):
+    """Border columns of closed places: columns of forces first, then columns of local motions.
+
+    Attributes:
+        values: of the rows with a force of their own (forces,).
+        negative: number of negative eigenvalues of the local motions' block.
+        diagonal, beside: block of the columns: diagonal, and entry beside the column before (columns,).
+        entry_column, entry_index, entry_value: entries by column, unknown and value.
+    """
+
+    values: Array
+    negative: int
+    diagonal: Array
+    beside: Array
+    entry_column: Ints
+    entry_index: Ints
+    entry_value: Array
+
+
+class Law(Protocol):
+    """A contact law for some pairs of curves."""
+
+    def measures(self, places: Places) -> Flags:
+        """Places that the law measures; the last of all places."""
+
+    def write_gaps(self, z: Array, places: Places, gaps: Array) -> None:
+        """Write the gaps of the law's places at a state."""
+
+    def columns(self, z: Array, places: Places, closed: Flags, gradient: Array) -> Columns:
+        """Columns of all places marked ``closed``; adds the gradient of all −F λ to ``gradient``."""
+
+    def force(self, z: Array, places: Places, k: int) -> Array:
+        """Force (2,) on a place of the law."""
+
+    def invalid(self, z: Array, places: Places, closed: Flags) -> str:
+        """Reason why the law does not hold at a state; empty if it holds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,18 +123,16 @@ class Geometry:
         return bool(on_edge(self.arrays, self.possible).any())
 
 
-def contact_geometry(m: Mechanism) -> Geometry | None:
-    """Geometry of a mechanism's contacts, None without contacts.
+def contact_geometry(m: Mechanism) -> Geometry:
+    """Geometry of a mechanism's contacts.
 
     Adds the nodes of rigid curves and the rows of beams pinned on their edge to the mechanism.
     """
-    if not m.scene.contacts:
-        return None
     curves, pairs = contact_pairs(m)
     arrays = curve_arrays(curves)
     ends = _ends(m, curves)
     possible, node = _possible(arrays, ends, pairs)
-    columns = np.array([(pair.first, pair.second) for pair in pairs], dtype=np.int64)
+    columns = np.array([(pair.first, pair.second) for pair in pairs], dtype=np.int64).reshape(-1, 2)
     return Geometry(curves, pairs, arrays, ends, possible, node, columns)
 
 
@@ -149,8 +188,8 @@ def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:
 
     Parallel beams lie left and right of each other, antiparallel beams both left or both right.
     """
-    sides = np.array([(pair.side, pair.side) for pair in geometry.pairs], dtype=float)
-    unknown = np.array([pair.side == 0 and not pair.itself for pair in geometry.pairs])
+    sides = np.array([(pair.side, pair.side) for pair in geometry.pairs], dtype=float).reshape(-1, 2)
+    unknown = np.array([pair.side == 0 and not pair.itself for pair in geometry.pairs], dtype=bool)
     if not unknown.any():
         return sides
     places = fixed_places(geometry, z, np.ones(sides.shape), unknown, counters)
@@ -188,7 +227,7 @@ def _ends(m: Mechanism, curves: list[Curve]) -> Ends:
             if not isinstance(joint, FreeEnd):
                 body[k, side] = number[m.scene.body_of(joint.point)]
                 welded[k, side] = isinstance(joint, WeldedEnd)
-    return Ends(body, welded, np.array([not curve.beam for curve in curves]))
+    return Ends(body, welded, np.array([not curve.beam for curve in curves], dtype=bool))
 
 
 def _bodies_at_rest(scene: Scene) -> list[str]:

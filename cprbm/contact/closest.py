@@ -13,9 +13,9 @@ The closest point minimises R − T(η): Newton's method on
 
     R (R − T)' = (C − x)·C' − R T',    R (R − T)'' ≈ |C'|² + (C − x)·C'' − R T''.
 
-A step ends at the border of a piece, and the search goes on in the next piece.  The search rests at the ends of an open curve, and at a convex corner of a
-polyline or of the thickness.  There the steps of both pieces lead to the corner, and the closest point does not move
-along the curve.
+A step ends at the border of a piece, and the search goes on in the next piece.  The search rests at the ends of an
+open curve, and at a convex corner of a polyline or of the thickness.  There the steps of both pieces lead to the
+corner, and the closest point does not move along the curve.
 """
 
 from __future__ import annotations
@@ -45,34 +45,6 @@ PASSED_OVER = 1e-9
 
 TURNED_BACK = 2.6
 """Turn of a beam between two places, rad, from which the beam may touch itself: nearly half a turn."""
-
-
-@compiled
-def write_weights(curves: CurveArrays, piece: int, xi: float, order: int, weights: Array) -> None:  # pragma: no cover
-    """Write the real and imaginary parts (2, STENCIL) of the weights, or of a derivative by ξ."""
-    a, b, c, d = 1.0, xi, xi * xi, xi * xi * xi
-    if order == 1:
-        a, b, c, d = 0.0, 1.0, 2.0 * xi, 3.0 * xi * xi
-    elif order == 2:
-        a, b, c, d = 0.0, 0.0, 2.0, 6.0 * xi
-    for i in range(STENCIL):
-        w, v = curves.real[piece, i], curves.imaginary[piece, i]
-        weights[0, i] = a * w[0] + b * w[1] + c * w[2] + d * w[3]
-        weights[1, i] = a * v[0] + b * v[1] + c * v[2] + d * v[3]
-
-
-@compiled
-def curve_point(
-    z: Array, curves: CurveArrays, piece: int, xi: float, order: int, weights: Array
-) -> tuple[float, float]:  # pragma: no cover
-    """C, C' or C''; the weights stay in ``weights``."""
-    write_weights(curves, piece, xi, order, weights)
-    x = y = 0.0
-    for i in range(STENCIL):
-        node = curves.stencil[piece, i]
-        x += weights[0, i] * z[node] - weights[1, i] * z[node + 1]
-        y += weights[1, i] * z[node] + weights[0, i] * z[node + 1]
-    return x, y
 
 
 @compiled
@@ -107,6 +79,15 @@ def curve_jet(
         k += a * zx - b * zy
         m += b * zx + a * zy
     return x, y, u, v, k, m
+
+
+@compiled
+def curve_point(
+    z: Array, curves: CurveArrays, piece: int, xi: float, order: int, weights: Array
+) -> tuple[float, float]:  # pragma: no cover
+    """C, or C' of the ``order`` 1; ``weights`` (2, STENCIL) is scratch space."""
+    x, y, u, v, _, _ = curve_jet(z, curves, piece, xi, weights, weights)
+    return (x, y) if order == 0 else (u, v)
 
 
 @compiled
@@ -283,22 +264,13 @@ def curve_boxes(z: Array, curves: CurveArrays) -> Array:  # pragma: no cover
 
     A point of a piece is at most max |C''|/8 away from a point of the chord; C'' is linear along a piece.
     """
-    boxes = np.empty((curves.first.size, 4))
+    boxes, weights = np.empty((curves.first.size, 4)), np.empty((2, STENCIL))
     for curve in range(curves.first.size):
         box = boxes[curve]
         box[:2], box[2:] = np.inf, -np.inf
         for piece in range(curves.first[curve], curves.last[curve] + 1):
-            ax = ay = bx = by = kx = ky = mx = my = 0.0
-            for i in range(STENCIL):
-                node, p, q = curves.stencil[piece, i], curves.real[piece, i], curves.imaginary[piece, i]
-                zx, zy = z[node], z[node + 1]
-                ax, ay = ax + p[0] * zx - q[0] * zy, ay + q[0] * zx + p[0] * zy
-                u, v = p[0] + p[1] + p[2] + p[3], q[0] + q[1] + q[2] + q[3]
-                bx, by = bx + u * zx - v * zy, by + v * zx + u * zy
-                u, v = 2.0 * p[2], 2.0 * q[2]
-                kx, ky = kx + u * zx - v * zy, ky + v * zx + u * zy
-                u, v = u + 6.0 * p[3], v + 6.0 * q[3]
-                mx, my = mx + u * zx - v * zy, my + v * zx + u * zy
+            ax, ay, _, _, kx, ky = curve_jet(z, curves, piece, 0.0, weights, weights)
+            bx, by, _, _, mx, my = curve_jet(z, curves, piece, 1.0, weights, weights)
             room = sqrt(max(kx * kx + ky * ky, mx * mx + my * my)) / 8.0
             room += max(curves.thickness[piece], curves.thickness[piece] + curves.thickening[piece])
             box[0], box[1] = min(box[0], min(ax, bx) - room), min(box[1], min(ay, by) - room)

@@ -16,9 +16,9 @@ The spline spreads a point force over the nodes of a few links.  The chain of fo
     Σ M_i² h/EI + Σ L_j Q_j² h²/(12 EI)
 
 in place of s³/(3 EI), and with shear Σ L_j Q_j²/GA in place of s/GA.  A point force makes a kink F/GA in the neutral
-line, and the spline has none.  The differences depend on ξ alone: a polynomial of degree six on every piece, the same on all
-pieces but the half links at the beam's ends.  A half link beyond a clamp or a pin has nearly no compliance of its own,
-a half link at a free end more; both follow from a cantilever loaded near its two ends.
+line, and the spline has none.  The differences depend on ξ alone: a polynomial of degree six on every piece, the same
+on all pieces but the half links at the beam's ends.  A half link beyond a clamp or a pin has nearly no compliance of its
+own, a half link at a free end more; both follow from a cantilever loaded near its two ends.
 """
 
 from __future__ import annotations

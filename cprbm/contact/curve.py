@@ -92,6 +92,19 @@ class Curve:
         return bool(self.arcs[-1] == 0.0)
 
 
+NO_PIECES = Curve(
+    name="",
+    stencil=np.zeros((0, STENCIL), dtype=np.int64),
+    weights=np.zeros((0, STENCIL, CUBIC_POWERS), dtype=complex),
+    arcs=np.zeros(1),
+    half_thickness=np.zeros(1),
+    lost=np.zeros((0, POWERS)),
+    angles=np.zeros(0, dtype=np.int64),
+    corner=np.zeros(0, dtype=np.int64),
+)
+"""A curve without pieces: the arrays of a scene without contacts have shapes too."""
+
+
 class CurveArrays(NamedTuple):
     """Pieces of all curves, for the compiled kernels.
 
@@ -119,22 +132,23 @@ class CurveArrays(NamedTuple):
 def curve_arrays(curves: Sequence[Curve]) -> CurveArrays:
     """Arrays of all curves, in the order of the curves."""
     count = np.array([curve.pieces for curve in curves], dtype=np.int64)
-    weights = np.concatenate([curve.weights for curve in curves])
+    every = [NO_PIECES, *curves]
+    weights = np.concatenate([curve.weights for curve in every])
     return CurveArrays(
         first=np.cumsum(count) - count,
         last=np.cumsum(count) - 1,
-        is_point=np.array([curve.is_point for curve in curves]),
-        closed=np.array([curve.closed for curve in curves]),
-        stencil=np.concatenate([curve.stencil for curve in curves]),
+        is_point=np.array([curve.is_point for curve in curves], dtype=bool),
+        closed=np.array([curve.closed for curve in curves], dtype=bool),
+        stencil=np.concatenate([curve.stencil for curve in every]),
         real=np.ascontiguousarray(weights.real),
         imaginary=np.ascontiguousarray(weights.imag),
-        arc=np.concatenate([curve.arcs[:-1] for curve in curves]),
-        span=np.concatenate([np.diff(curve.arcs) for curve in curves]),
-        thickness=np.concatenate([curve.half_thickness[:-1] for curve in curves]),
-        thickening=np.concatenate([np.diff(curve.half_thickness) for curve in curves]),
-        lost=np.concatenate([curve.lost for curve in curves]),
-        angle=np.concatenate([curve.angles for curve in curves]),
-        corner=np.concatenate([curve.corner for curve in curves]),
+        arc=np.concatenate([curve.arcs[:-1] for curve in every]),
+        span=np.concatenate([np.diff(curve.arcs) for curve in every]),
+        thickness=np.concatenate([curve.half_thickness[:-1] for curve in every]),
+        thickening=np.concatenate([np.diff(curve.half_thickness) for curve in every]),
+        lost=np.concatenate([curve.lost for curve in every]),
+        angle=np.concatenate([curve.angles for curve in every]),
+        corner=np.concatenate([curve.corner for curve in every]),
     )
 
 

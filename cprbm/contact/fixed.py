@@ -77,25 +77,6 @@ def picked(places: Places, which: Ints) -> Places:  # pragma: no cover
 
 
 @compiled
-def _both(places: Places, others: Places) -> Places:  # pragma: no cover
-    """Both groups of places, in this order."""
-    return Places(
-        np.concatenate((places.pair, others.pair)),
-        np.concatenate((places.curve, others.curve)),
-        np.concatenate((places.piece, others.piece)),
-        np.concatenate((places.xi, others.xi)),
-        np.concatenate((places.other, others.other)),
-        np.concatenate((places.foot, others.foot)),
-        np.concatenate((places.eta, others.eta)),
-        np.concatenate((places.at_point, others.at_point)),
-        np.concatenate((places.side, others.side)),
-        np.concatenate((places.moves, others.moves)),
-        np.concatenate((places.shares, others.shares)),
-        np.concatenate((places.force, others.force)),
-    )
-
-
-@compiled
 def on_end_body(curves: CurveArrays, ends: Ends, places: Places, k: int, end: int) -> bool:  # pragma: no cover
     """Whether the foot lies on, or beside a joint with, the body of the start (0) or end (1) of the place's curve."""
     other, own = places.other[k], ends.body[places.curve[k], end]
@@ -218,8 +199,8 @@ def contact_places(
     closed: Flags,
     apart: Places,
     counters: Ints,
-) -> tuple[Places, Flags]:  # pragma: no cover
-    """Fixed places at the nearest feet, behind these the moving places of ``old``; marks of the closed places.
+) -> tuple[Places, Ints, Flags]:  # pragma: no cover
+    """Fixed places at the nearest feet, numbers of the moving places of ``old``, and marks of the closed among both.
 
     Known places keep force and state.  A new place of a beam in self-contact has the present side, and a new place
     beyond the end of another beam too.
@@ -260,4 +241,4 @@ def contact_places(
         if curves.angle[fixed.piece[k]] < 0:
             fixed.side[k] = corner_sides[curve]
     marks[count:] = closed[moving]
-    return _both(fixed, picked(old, moving)), marks
+    return fixed, moving, marks

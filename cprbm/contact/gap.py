@@ -123,14 +123,12 @@ class Row(NamedTuple):
 
     Attributes:
         value: g + F c, which a closed place makes zero.
-        gap: g as it is.
         by_force: derivative of the value by F.
         qq, qe, ee, shift: coefficients of the Hessian of λ, qq q² + 2 qe q e + ee e² + shift λ_ξu².
         slope, curvature, slope_by_force: λ_ξ, λ_ξξ, λ_ξF.
     """
 
     value: float
-    gap: float
     by_force: float
     qq: float
     qe: float
@@ -227,13 +225,13 @@ def gap_row(
         _add(vectors[TURN], at_b, weights[3], f.nx, f.ny, 1.0)
     if not places.moves[k]:
         vectors[COUPLING] = vectors[GRADIENT]
-        return Row(f.gap, f.gap, 0.0, f.qq, f.qe, f.ee, 0.0, f.slope, f.curvature, 0.0)
+        return Row(f.gap, 0.0, f.qq, f.qe, f.ee, 0.0, f.slope, f.curvature, 0.0)
     if f.curvature == 0.0:
         for i in range(LOCAL):
             foot = f.foot_q * vectors[TANGENT, i] + f.foot_e * vectors[TURN, i]
             vectors[COUPLING, i] = vectors[GRADIENT, i] + 0.5 * force * f.foot_lost * foot
         by_force = f.lost + force * f.by_force
-        return Row(f.gap + force * f.lost, f.gap, by_force, f.qq, f.qe, f.ee, 0.0, 0.0, 0.0, 0.0)
+        return Row(f.gap + force * f.lost, by_force, f.qq, f.qe, f.ee, 0.0, 0.0, 0.0, 0.0)
     _add(vectors[SHIFT], 0, weights[2], f.nx, f.ny, 1.0)
     lean = f.slope_by_force
     for i in range(LOCAL):
@@ -244,7 +242,7 @@ def gap_row(
         vectors[COUPLING, i] = vectors[GRADIENT, i] + force * (foot - vectors[SHIFT, i] * lean / f.curvature)
     value = f.gap + force * f.lost - f.slope * (f.slope + force * lean) / f.curvature
     by_force = f.lost + force * (f.by_force - lean * lean / f.curvature)
-    return Row(value, f.gap, by_force, f.qq, f.qe, f.ee, -1.0 / f.curvature, f.slope, f.curvature, lean)
+    return Row(value, by_force, f.qq, f.qe, f.ee, -1.0 / f.curvature, f.slope, f.curvature, lean)
 
 
 @compiled

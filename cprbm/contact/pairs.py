@@ -1,30 +1,55 @@
-"""Curves of a scene's contacts, and pairs of curves.
+"""Curves of a scene's contacts, pairs of curves, and angle stops of beams pinned on an edge.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+β        opening: angle from an edge's direction at the pin to the direction of the beam
+=======  ====================================================================================
 
 A place lies on the first curve of a pair, the foot on the second; the ends of a second beam and the corners of a rigid
 curve are places too.
 A beam lies on the side +1 (left) or −1 (right) of a rigid curve, as the scene says.  The side of two beams is 0 here;
 the state as drawn decides, :mod:`cprbm.contact.candidates`.
+
+At an own pin the beam has no gap: the pin lies on the edge, or half the beam's thickness above.  The edge limits the
+angle of the beam and holds the beam by a moment, like a stop.  With the edge's direction away from the pin and the beam
+on the left, β ≥ 0.  Where the edge runs on behind the pin, the angle from the beam to the rest of the edge is limited
+in the same way.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
+from math import tau
+from typing import Literal
 
 import numpy as np
 
-from cprbm.chain import Mechanism
+from cprbm.chain import Form, Mechanism, Row
 from cprbm.contact.corners import Corner, corner_curve, part_of, sharp_bends, sharp_corners, sides_behind, with_marks
 from cprbm.contact.curve import NO_SIDES, Curve, Frames, beam_curve
-from cprbm.contact.own_pin import pin_rows
 from cprbm_scene import BeamContact, CircleContact, FunctionContact, HalfPlaneContact, LineContact, SelfContact
+from cprbm_scene.answer import Array
 from cprbm_scene.curve_records import shape_of
-from cprbm_scene.statement import EllipseContact, RigidContact, SplineContact
+from cprbm_scene.statement import EdgeContact, EllipseContact, PinnedEnd, RigidContact, SplineContact
 
 PIECES = 256
 """Pieces of a smooth edge.  The error is κ³ h⁴/384: 2e-7 of the longer axis at the tip of an ellipse of 3 to 1."""
 
 REACH = 10.0
 """Half length of a half-plane's edge, and length of a solid's sides, over the longest beam."""
+
+
+ON_EDGE = 1e-6
+"""Distance of a pin from the edge, over the beam's length, of a pin on the edge: coordinates are rounded."""
+
+AT_CORNER = 1e-9
+"""Distance of a pin from an end of a piece, over the piece's length, below which the piece leads one way only."""
+
+STRAIGHT = 1e-5
+"""Opening below 2π, rad, that counts as zero: rounded coordinates of a beam that lies on the edge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,3 +148,39 @@ def _smooth(
     return frames.smooth_edge(
         name, contact.body, points, tangents, shape_of(contact.curve).length / m.units.length, sides
     )
+
+
+def pin_rows(m: Mechanism, name: str, contact: EdgeContact, points: Array, side: int) -> Iterator[Row]:
+    """Rows of the angles between a contact's beam and the edge through ``points`` (k, 2), at pins on the edge."""
+    chain, record = m.chains[contact.beam], m.scene.beams[contact.beam]
+    ends: tuple[tuple[Literal["start", "end"], int], ...] = (("start", 0), ("end", -1))
+    for end, link in ends:
+        joint = getattr(record, end)
+        if not isinstance(joint, PinnedEnd) or m.scene.body_of(joint.point) != contact.body:
+            continue
+        pin = m.units.place(m.scene.place_of(joint.point))
+        turned = m.angle(contact.beam, link) - m.rotation(contact.body)
+        above = 0.5 * float(chain.section.thickness(chain.arcs[[link]])[0]) if contact.thick else 0.0
+        behind, ahead = _directions(pin, points, side * above, ON_EDGE * chain.length)
+        for direction, sign in ((ahead, side), (behind, -side)):
+            if direction is not None:
+                opening = (sign * (chain.leaving_angle(end) - float(np.arctan2(direction[1], direction[0])))) % tau
+                opening -= tau if opening > tau - STRAIGHT else 0.0
+                yield Row(f"{name}.pin", turned * float(sign) + Form(opening), driven=False, limit=True)
+
+
+def _directions(pin: Array, points: Array, above: float, near: float) -> tuple[Array | None, Array | None]:
+    """Directions from a pin back and on along an edge; None beyond an end of the edge, and for a pin off the edge.
+
+    A beam with thickness lies on the edge with the pin half the thickness ``above``, positive on the left.
+    """
+    behind: Array | None = None
+    ahead: Array | None = None
+    for a, b in pairwise(points):
+        chord = b - a
+        left = np.array([-chord[1], chord[0]]) / np.hypot(*chord)
+        share = float((pin - a) @ chord / (chord @ chord))
+        if np.hypot(*(a + min(1.0, max(0.0, share)) * chord + above * left - pin)) < near:
+            ahead = chord if share < 1.0 - AT_CORNER else ahead
+            behind = -chord if share > AT_CORNER else behind
+    return behind, ahead

@@ -1,8 +1,20 @@
-"""The assembly: ends drawn apart from their points go to the points, before the first stage.
+"""The way to the first state: ends drawn apart from their points, and bodies that contacts alone hold.
 
-Three parts: moments grow on the free ends; the ends go straight to their points; the moments vanish.
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+s        displacement or rotation of a body with a single motion, zero as drawn
+μ, f     force and value of the row of the load that the first stage steps
+g        least gap
+=======  ====================================================================================
+
+The assembly has three parts: moments grow on the free ends; the ends go straight to their points; the moments vanish.
 The rows of the ends have a prescribed force in the first part and a prescribed value in the others.  Stops act in the
 last part.
+
+No force resists s of a body that contacts alone hold: the motion is neutral as drawn.  The load moves the body in the
+sense in which μ f falls, until a contact closes at g = 0.  From there on the contact holds the body.  A row prescribes
+s on the way, and is then free.
 """
 
 from __future__ import annotations
@@ -12,21 +24,32 @@ from dataclasses import replace
 
 import numpy as np
 
-from cprbm.chain import apart_ends, stop_angle
-from cprbm.continuation.closing import drawn_names, pressing_names
+from cprbm.chain import Mechanism, Row, apart_ends, stop_angle
+from cprbm.continuation.closing import CLOSED, drawn_names, kept_open, least_gap, pressing_names
 from cprbm.continuation.driver import Driver, StepError
-from cprbm.continuation.landing import landed
+from cprbm.continuation.limits import located
 from cprbm.continuation.path import Way
-from cprbm.equilibrium.newton import NotConvergedError
+from cprbm.equilibrium.contact_set import NotConvergedError
 from cprbm.equilibrium.rank import repeated_rows
-from cprbm.equilibrium.solving import equilibrium
+from cprbm.equilibrium.solving import Solved, equilibrium
 from cprbm.equilibrium.system import State, System, rest_state
-from cprbm.settings import Settings
+from cprbm.settings import Settings, loose_bodies
 from cprbm_scene import Ending, Mistake, SceneError
 from cprbm_scene.answer import Array, Flags
+from cprbm_scene.statement import SlidingBody
 
 PASSED = 1e-6
 """Turn, rad, by which the assembled state may be beyond a stop's limit."""
+
+
+SHORTEST = 1e-3
+"""First way in a search for a contact, longest beams or rad; every further way is twice as long."""
+
+DOUBLINGS = 11
+"""Ways of a search: the last leads two lengths of the longest beam far."""
+
+FIRST_LOAD = 1e-3
+"""Part of the first station's load under which the contact takes over the body."""
 
 
 def assembled(system: System, settings: Settings) -> Driver:
@@ -111,3 +134,56 @@ def _forbidden(system: System, z: Array) -> Iterator[Mistake]:
                 )
                 allowed = "limits that the assembled beam keeps, or other moments"
                 yield Mistake(f"stops.{name}.{key}", found, allowed, scene.file)
+
+
+def landing_rows(m: Mechanism) -> Iterator[Row]:
+    """Rows that prescribe s of the loose bodies."""
+    for name in loose_bodies(m.scene) if m.scene.contacts else ():
+        body = m.scene.bodies[name]
+        if isinstance(body, SlidingBody):
+            along = np.array(body.along) / np.hypot(*body.along)
+            yield Row(f"landing.{name}", m.displacement(next(iter(body.points)), (float(along[0]), float(along[1]))))
+        else:
+            yield Row(f"landing.{name}", m.rotation(name))
+
+
+def landed(system: System, first: Solved, iterations: int) -> Solved:
+    """The state in which contacts hold all loose bodies, under a small part of the first load.
+
+    Raises:
+        NotConvergedError: a motion stays neutral, or a state on the way was not found.
+    """
+    for number, row in enumerate(system.mechanism.rows):
+        if row.name.startswith("landing."):
+            first = _landed(system, first, number, iterations)
+    return first
+
+
+def _landed(system: System, first: Solved, row: int, iterations: int) -> Solved:
+    m, name = system.mechanism, system.mechanism.rows[row].name.removeprefix("landing.")
+    stage = m.scene.stages[0]
+    load = m.row(stage.steps)
+    every = frozenset(range(len(system.geometry.pairs)))
+
+    def moved(s: float, pairs: frozenset[int]) -> Solved:
+        target = first.state.target.copy()
+        target[row] = s
+        return equilibrium(system, kept_open(replace(first.state, target=target), pairs), iterations)
+
+    pushed = m.rows[load].unit * stage.stations[0] if not first.state.driven[load] else 0.0
+    work = pushed * float((moved(SHORTEST, every).values - moved(-SHORTEST, every).values)[load])
+    if work == 0.0:
+        raise NotConvergedError(f"body '{name}' is neutral: no contact and no load holds the body")
+    sense = -np.sign(work)
+
+    def gap(s: float) -> float:
+        solved = moved(sense * s, every)
+        return min(least_gap(system.geometry, solved.state.z, solved.state.contacts, pair) for pair in every) + CLOSED
+
+    far = next((way for way in SHORTEST * 2.0 ** np.arange(DOUBLINGS) if gap(way) < 0.0), None)
+    if far is None:
+        raise NotConvergedError(f"body '{name}' is neutral: '{stage.steps}' moves the body into no contact")
+    touching = moved(sense * far * located(lambda share: gap(share * far)), frozenset())
+    target, driven = touching.state.target.copy(), touching.state.driven.copy()
+    target[row], driven[row], target[load] = 0.0, False, FIRST_LOAD * pushed
+    return equilibrium(system, replace(touching.state, target=target, driven=driven), iterations)

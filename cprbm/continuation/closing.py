@@ -7,6 +7,7 @@ g        least gap of an open pair of curves
 F        sum of the contact forces of a closed pair
 =======  ====================================================================================
 
+The gap of a pair may be least between two joints; a moving place without a force finds the minimum.
 The first closing is located on states with the pair kept open, by values and slopes of g along the tangent:
 g = −CLOSED there, so that the active set closes the pair in the least gap.  An opening is the zero of F, continued by
 −g where the pair is open.
@@ -20,12 +21,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.contact import TOUCHING, taken, touching_as_drawn
+from cprbm.contact import TOUCHING, Contacts, Geometry, taken, touching_as_drawn
 from cprbm.continuation.limits import located, located_by_slopes
 from cprbm.continuation.path import tangent
-from cprbm.equilibrium.contact_gaps import least_gap
-from cprbm.equilibrium.newton import NotConvergedError, Solved
-from cprbm.equilibrium.solving import at_state
+from cprbm.equilibrium.contact_set import NotConvergedError, with_fixed_places
+from cprbm.equilibrium.neighbours import least_between
+from cprbm.equilibrium.solving import Solved, at_state
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
 
@@ -52,17 +53,27 @@ class ContactChange(NamedTuple):
     first: int
 
 
+def least_gap(geometry: Geometry, z: Array, contacts: Contacts, pair: int) -> float:
+    """Least gap of an open pair, between joints too; inf if the curves are far apart."""
+    full = with_fixed_places(geometry, z, replace(contacts, kept_open=frozenset()))
+    gaps = full.gaps(geometry, z)
+    mine = gaps[full.places.pair == pair]
+    least = float(mine.min(initial=np.inf))
+    if geometry.joints_alone:
+        return least
+    known = full.places, full.closed, gaps, pair, contacts.counters
+    return min(least, least_between(z, geometry.arrays, geometry.sites, *known))
+
+
 def pressing(solved: Solved) -> frozenset[int]:
     """Numbers of the closed pairs."""
     contacts = solved.state.contacts
-    return frozenset() if contacts is None else frozenset(contacts.places.pair[contacts.closed].tolist())
+    return frozenset(contacts.places.pair[contacts.closed].tolist())
 
 
 def pressing_names(solved: Solved) -> frozenset[str]:
     """Names of the contacts that press, at an own pin too."""
     geometry, rows = solved.system.geometry, solved.system.mechanism.rows
-    if geometry is None:
-        return frozenset()
     pins = {row.name.removesuffix(".pin") for row, closed in zip(rows, solved.state.driven, strict=True) if closed}
     return frozenset(pair.name for k, pair in enumerate(geometry.pairs) if k in pressing(solved) or pair.name in pins)
 
@@ -70,8 +81,6 @@ def pressing_names(solved: Solved) -> frozenset[str]:
 def drawn_names(system: System, state: State) -> frozenset[str]:
     """Names of the contacts that touch in a state as drawn: such contacts neither close nor open later."""
     geometry, contacts = system.geometry, state.contacts
-    if geometry is None or contacts is None:
-        return frozenset()
     at_ends = touching_as_drawn(geometry, state.z, contacts)
     gaps = {pair: least_gap(geometry, state.z, contacts, pair) for pair in range(len(geometry.pairs))}
     return frozenset(geometry.pairs[pair].name for pair, gap in gaps.items() if pair in at_ends or gap < TOUCHING)
@@ -79,15 +88,12 @@ def drawn_names(system: System, state: State) -> frozenset[str]:
 
 def touches(solved: Solved) -> bool:
     """True if open places touch: the state has no two-sided tangent."""
-    contacts = solved.state.contacts
-    return contacts is not None and bool(np.any(np.abs(solved.gaps[~contacts.closed]) < TOUCHING))
+    return bool(np.any(np.abs(solved.gaps[~solved.state.contacts.closed]) < TOUCHING))
 
 
 def kept_open(state: State, pairs: frozenset[int]) -> State:
     """The state with open pairs, which stay open in an equilibrium."""
     contacts = state.contacts
-    if contacts is None:
-        return state
     kept = ~np.isin(contacts.places.pair, list(pairs))
     places, closed = taken(contacts.places, kept), contacts.closed[kept]
     apart = taken(contacts.places, ~kept & ~contacts.closed) if pairs else contacts.apart
@@ -96,8 +102,7 @@ def kept_open(state: State, pairs: frozenset[int]) -> State:
 
 def may_close(state: State) -> State:
     """The state with pairs that are free to close again."""
-    contacts = state.contacts
-    return state if contacts is None else replace(state, contacts=replace(contacts, kept_open=frozenset(), apart=None))
+    return replace(state, contacts=replace(state.contacts, kept_open=frozenset(), apart=None))
 
 
 class Pressed(NamedTuple):
@@ -109,21 +114,18 @@ class Pressed(NamedTuple):
     def places(self, solved: Solved) -> Flags:
         """The closed places in a state."""
         contacts = solved.state.contacts
-        if contacts is None:
-            return np.zeros(0, dtype=bool)
         joint = (contacts.places.piece == self.piece) | (self.piece < 0)
         return np.asarray(contacts.pressing(self.pair) & joint)
 
     def force(self, solved: Solved) -> float:
         """Sum of the contact forces."""
-        contacts = solved.state.contacts
-        return 0.0 if contacts is None else float(contacts.places.force[self.places(solved)].sum())
+        return float(solved.state.contacts.places.force[self.places(solved)].sum())
 
 
 def pressing_joints(solved: Solved) -> list[Pressed]:
     """Closed joints where all places are joints; else empty."""
     geometry, contacts = solved.system.geometry, solved.state.contacts
-    if geometry is None or contacts is None or not geometry.joints_alone:
+    if not geometry.joints_alone:
         return []
     pair, piece = contacts.places.pair[contacts.closed], contacts.places.piece[contacts.closed]
     return [Pressed(*each) for each in zip(pair.tolist(), piece.tolist(), strict=True)]
@@ -141,7 +143,6 @@ def without(solved: Solved, lifted: Pressed) -> Solved:
         NotConvergedError: the Hessian is singular.
     """
     state, contacts = solved.state, solved.state.contacts
-    assert contacts is not None
     closed = contacts.closed & ~lifted.places(solved)
     return at_state(solved.system, replace(state, contacts=replace(contacts, closed=closed)))
 
@@ -214,6 +215,4 @@ def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> lis
 def _gap(solved: Solved, pair: int, z: Array | None = None) -> float:
     """g at a state, or at other unknowns ``z``; a pair without places is far apart."""
     geometry, state = solved.system.geometry, solved.state
-    if geometry is None or state.contacts is None:
-        raise NotConvergedError("the scene has no contacts")
     return least_gap(geometry, state.z if z is None else z, state.contacts, pair)

@@ -26,9 +26,9 @@ import numpy as np
 
 from cprbm.continuation.limits import with_stops
 from cprbm.continuation.path import potential
+from cprbm.equilibrium.contact_set import NotConvergedError
 from cprbm.equilibrium.factors import Springs
-from cprbm.equilibrium.newton import NotConvergedError, Solved
-from cprbm.equilibrium.solving import at_state
+from cprbm.equilibrium.solving import Solved, at_state
 from cprbm.equilibrium.stability import softest
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags

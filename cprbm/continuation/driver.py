@@ -32,15 +32,22 @@ from cprbm.continuation.closing import (
     may_close,
     pressing_names,
 )
-from cprbm.continuation.critical import CriticalPoint, contact_ends, critical_point, opened
+from cprbm.continuation.critical import (
+    ASKED,
+    CriticalPoint,
+    contact_ends,
+    critical_point,
+    locked_beam,
+    opened,
+    taut_value,
+)
 from cprbm.continuation.descent import descend
 from cprbm.continuation.jumps import jumped
 from cprbm.continuation.limits import StopChange, changed, first_event
-from cprbm.continuation.locking import ASKED, locked_beam, taut_value
 from cprbm.continuation.path import Reached, Way, turned
 from cprbm.equilibrium.certificate import certify
-from cprbm.equilibrium.newton import NotConvergedError, Solved
-from cprbm.equilibrium.solving import equilibrium
+from cprbm.equilibrium.contact_set import NotConvergedError
+from cprbm.equilibrium.solving import Solved, equilibrium
 from cprbm.equilibrium.stability import softest
 from cprbm.equilibrium.system import State, System
 from cprbm.settings import Settings
@@ -233,7 +240,7 @@ class Driver:
             name = rows[change.row].name.rpartition(".")[0]
         else:
             state = kept_open(before.state, frozenset() if change.closes else change.pairs)
-            name = "" if geometry is None else geometry.pairs[change.first].name
+            name = geometry.pairs[change.first].name
         try:
             after = self._equilibrium(state)
         except NotConvergedError as failure:

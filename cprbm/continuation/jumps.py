@@ -19,7 +19,7 @@ import numpy as np
 
 from cprbm.continuation.closing import pressing_joints, touches
 from cprbm.continuation.path import potential, power, power_rate, tangent
-from cprbm.equilibrium.newton import Solved
+from cprbm.equilibrium.solving import Solved
 from cprbm_scene.answer import Array
 
 BENT = 0.5

@@ -19,9 +19,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cprbm.equilibrium.contact_set import NotConvergedError
 from cprbm.equilibrium.factors import Springs
-from cprbm.equilibrium.newton import NotConvergedError, Solved
-from cprbm.equilibrium.solving import equilibrium
+from cprbm.equilibrium.solving import Solved, equilibrium
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from cprbm.chain import add_row_gradient, row_values, strain_energy
 from cprbm.contact import lost_at
-from cprbm.equilibrium.newton import Solved
+from cprbm.equilibrium.solving import Solved
 from cprbm.equilibrium.system import State, System, hidden_forces
 from cprbm_scene.answer import Array
 
@@ -65,10 +65,8 @@ def potential(system: System, state: State) -> float:
 
 def _point_energy(system: System, state: State) -> float:
     """Energy Σ c F²/2 of the compliance c that the chain lacks under point contacts."""
-    contacts = state.contacts
-    if system.geometry is None or contacts is None:
-        return 0.0
-    arrays, places, energy = system.geometry.arrays, contacts.places, 0.0
+    contacts, arrays = state.contacts, system.geometry.arrays
+    places, energy = contacts.places, 0.0
     for k in np.flatnonzero(contacts.closed & places.moves).tolist():
         lost = lost_at(arrays, places.piece[k], places.xi[k], 0) + lost_at(arrays, places.foot[k], places.eta[k], 0)
         energy += 0.5 * lost * float(places.force[k]) ** 2

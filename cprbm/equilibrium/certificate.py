@@ -19,13 +19,15 @@ from math import sqrt
 
 import numpy as np
 
+from cprbm.chain import add_row_gradient
+from cprbm.contact import on_edge
 from cprbm.equilibrium.columns import contact_terms
-from cprbm.equilibrium.contact_gaps import contact_measures
-from cprbm.equilibrium.measures import residuals, resultants, sizes
-from cprbm.equilibrium.newton import Solved
+from cprbm.equilibrium.iteration import beside_points
+from cprbm.equilibrium.solving import Solved
 from cprbm.equilibrium.stability import softest
+from cprbm.equilibrium.system import System
 from cprbm_scene import Certificate, Ending
-from cprbm_scene.answer import Flags
+from cprbm_scene.answer import Array, Flags
 
 EPSILON = float(np.finfo(float).eps)
 
@@ -72,19 +74,17 @@ def certify(
         with_curvature: whether the smallest curvature is computed; inertia alone tells whether the state is a minimum.
     """
     system, state = solved.system, solved.state
-    turned, bend, strain, moment = sizes(state.z, system.numbers, system.lean)
+    turned, bend, strain, moment = _sizes(system, state.z)
     scale = max(moment, SMALLEST_LOAD)
     stiffest = float(system.joints.stiffness.max())
-    contacts = state.contacts
+    contacts, law = state.contacts, system.geometry.law
     shortest = float(system.metric.min())
-    pressed = contacts is not None and contacts.closed.any()
-    turns = turned + ((PLACES + 1.0 / shortest) / shortest if pressed else 0.0)
+    turns = turned + ((PLACES + 1.0 / shortest) / shortest if contacts.closed.any() else 0.0)
     floor = 4.0 * EPSILON * (stiffest * turns + sqrt(len(system.metric)) * scale) / scale
-    unbalanced, apart = residuals(solved.gradient, system.equations)
-    residual = unbalanced / scale
-    contact = contact_measures(solved)
-    violation = max(apart, contact.violation)
-    complementarity = max(_complementarity(solved, acting), contact.pull) / scale
+    gradient, (apart, overlap, pull) = np.abs(solved.gradient), contact_measures(solved)
+    residual = float(gradient[~system.equations].max()) / scale
+    violation = max(float(gradient[system.equations].max()), apart)
+    complementarity = max(_complementarity(solved, acting), pull) / scale
     force, couple = (size / scale for size in _resultants(solved))
     curvature = softest(solved).curvature if with_curvature else float("nan")
     balance_limit = max(BALANCE, 100.0 * floor)
@@ -92,7 +92,7 @@ def certify(
         (residual, max(tolerance, floor), Ending.NOT_CERTIFIED, "the residual is {:.1e}, allowed {:.1e}"),
         (violation, max(tolerance, LEAST_VIOLATION), Ending.NOT_CERTIFIED, OPEN),
         (complementarity, PULL, Ending.NOT_CERTIFIED, "a stop or contact pulls or is passed by {:.1e}, allowed {:.1e}"),
-        (contact.overlap, OVERLAPS, Ending.BEAMS_CROSSED, "an open contact overlaps by {:.1e} beams, allowed {:.1e}"),
+        (overlap, OVERLAPS, Ending.BEAMS_CROSSED, "an open contact overlaps by {:.1e} beams, allowed {:.1e}"),
         (bend, LARGEST_BEND, Ending.TURNED_TOO_FAR, BENT),
         (strain, LARGEST_STRAIN, Ending.TURNED_TOO_FAR, STRAINED),
         (force, balance_limit, Ending.NOT_CERTIFIED, "ΣF is {:.1e} of the largest force, allowed {:.1e}"),
@@ -100,14 +100,14 @@ def certify(
         (float(solved.lost), 0.0, Ending.NOT_A_MINIMUM, "the energy falls in {:.0f} independent directions"),
     )
     failures = [(ending, text.format(found, most)) for found, most, ending, text in checks if not found <= most]
-    if system.geometry is not None and system.geometry.law is not None and contacts is not None:
-        invalid = system.geometry.law.invalid(state.z, contacts.places, contacts.closed)
+    if law is not None:
+        invalid = law.invalid(state.z, contacts.places, contacts.closed)
         failures += [(Ending.LEFT_BOUNDARY, invalid)] if invalid else []
     certificate = Certificate(
         residual=residual,
         residual_floor=floor,
         violation=violation,
-        penetration=contact.overlap,
+        penetration=overlap,
         complementarity=complementarity,
         force_balance=force,
         moment_balance=couple,
@@ -125,11 +125,50 @@ def _complementarity(solved: Solved, acting: Flags) -> float:
     return float(np.max(pulls, initial=0.0))
 
 
+def _sizes(system: System, z: Array) -> tuple[float, float, float, float]:
+    """Largest angle of a link, turn of a joint, and share of a link's normal force in 12 EI/h²; largest moment.
+
+    Moments are moments of joints, of forces on their links, and of rows.
+    """
+    links, joints, theta = system.links, system.joints, z[system.angles]
+    x, y = z[links.first + 2], z[links.first + 3]
+    turns = np.abs(theta[joints.before + 1] - theta[joints.before] - joints.rest)
+    strains = np.abs(system.lean * (x * np.cos(theta) + y * np.sin(theta)))
+    moments = [links.length * np.hypot(x, y), joints.stiffness * turns, np.abs(z[system.rows.first :])]
+    largest = (float(each.max()) for each in (np.abs(theta), turns, strains, np.concatenate(moments)))
+    return next(largest), next(largest), next(largest), next(largest)
+
+
 def _resultants(solved: Solved) -> tuple[float, float]:
     """Resultant force and moment of the forces of all rows on nodes and bodies."""
     system, z, contacts = solved.system, solved.state.z, solved.state.contacts
     acting = np.zeros(system.size)
-    if system.geometry is not None and system.geometry.law is not None and contacts is not None:
+    if system.geometry.law is not None:
         # a law along an axis leaves a moment
         acting += contact_terms(system.geometry, z, contacts.places, contacts.closed)[1]
-    return resultants(z, system.numbers, system.arms, acting)
+    add_row_gradient(z, system.rows, z[system.rows.first :], acting)
+    index, origin = system.arms
+    forces = np.array([acting[index], acting[index + 1]])
+    x, y = origin.T + np.array([z[index], z[index + 1]])
+    moment = x @ forces[1] - y @ forces[0] + acting[system.turns].sum()
+    return float(np.hypot(*forces.sum(axis=1))), abs(float(moment))
+
+
+def contact_measures(solved: Solved) -> tuple[float, float, float]:
+    """Largest violation of a closed place, overlap of an open place, and pull of a closed place, in units.
+
+    Joints within a piece of a point contact, and the compliance that the chain lacks there, are no overlaps.  Places
+    with a shared force overlap by the sum of both gaps.
+    """
+    geometry, contacts = solved.system.geometry, solved.state.contacts
+    places, closed = contacts.places, contacts.closed
+    beside, depth = beside_points(geometry.arrays, places, closed)
+    gaps, leaders = solved.gaps.copy(), np.arange(len(closed)) + places.shares
+    follows = places.shares != 0
+    np.add.at(gaps, leaders[follows], solved.gaps[follows])
+    thick = geometry.arrays.thickness[places.piece] + geometry.arrays.thickness[places.foot] > 0.0
+    corner = on_edge(geometry.arrays, places)
+    free = ~closed & ~follows & ~beside & (~places.moves | corner) & (thick | ~places.at_point)
+    overlap = float(np.max(-gaps[free] - depth[free], initial=0.0))
+    violation = float(np.abs(solved.contact_values).max(initial=0.0))
+    return violation, overlap, float(np.max(-places.force[closed], initial=0.0))

@@ -34,6 +34,7 @@ from cprbm.contact import (
     taken,
 )
 from cprbm.equilibrium.contact_set import (
+    NotConvergedError,
     Touched,
     arc_of,
     near_contacts,
@@ -44,7 +45,6 @@ from cprbm.equilibrium.contact_set import (
 from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.iteration import OVERLAP, beside_points
 from cprbm.equilibrium.neighbours import ISOLATED, LIGHT, as_point, given_up, short_runs
-from cprbm.equilibrium.newton import NotConvergedError
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
 
@@ -55,19 +55,15 @@ RETRIES = 2
 """First solves, after which light joints open, and a moving place that has become joints may move again."""
 
 
-def touched_equilibrium(
-    system: System,
-    geometry: Geometry,
-    start: State,
-    contacts: Contacts,
-    iterations: int,
-    springs: Springs | None = None,
-) -> Touched:
+def touched_equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Touched:
     """Equilibrium near a state under the state's targets, with settled places of contact.
 
     Raises:
         NotConvergedError: no equilibrium was found, the places do not settle, or a beam passed through itself.
     """
+    geometry, contacts = system.geometry, start.contacts
+    if not geometry.pairs:
+        return solve_set(system, start, iterations, springs)
     corners = corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters)
     kept = contacts.closed | contacts.places.moves
     places, closed = taken(contacts.places, kept), contacts.closed[kept]
@@ -77,7 +73,7 @@ def touched_equilibrium(
     old = contacts.places if not contacts.kept_open else _of_all_pairs(geometry, before, contacts)
     for number in range(ROUNDS):
         try:
-            solved = solve_set(system, geometry, start, contacts, iterations, springs)
+            solved = solve_set(system, replace(start, contacts=contacts), iterations, springs)
         except NotConvergedError:
             moves = contacts.places.moves & ~on_edge(geometry.arrays, contacts.places)
             if not moves.any():

@@ -24,6 +24,7 @@ from cprbm.contact import (
     Places,
     contact_places,
     copied,
+    joined,
     matched,
     near_pairs,
     on_edge,
@@ -34,7 +35,7 @@ from cprbm.contact import (
 )
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.complementary import closed_forces
-from cprbm.equilibrium.factors import Factors, SingularError, Springs, factors_of, new_work, pulls, solved_border
+from cprbm.equilibrium.factors import SingularError, Springs, factors_of, new_work, pulls, solved_border
 from cprbm.equilibrium.iteration import (
     begin_by_law,
     begin_iteration,
@@ -45,9 +46,17 @@ from cprbm.equilibrium.iteration import (
 )
 from cprbm.equilibrium.linear import Numbers, Work, reduced_system
 from cprbm.equilibrium.neighbours import ISOLATED
-from cprbm.equilibrium.newton import NotConvergedError, has_converged
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
+
+CLOSE = 1e-9
+"""Correction of angles (rad) and positions (longest beam) whose square is below round-off."""
+
+ROUNDED = 1e-6
+"""Largest correction that round-off leaves on the finest meshes."""
+
+SHRINKING = 0.25
+"""Ratio of corrections above which an iteration below ``ROUNDED`` no longer converges: round-off is reached."""
 
 FREE_CHANGES = 12
 """Iterations in which all places with a wrong sign change."""
@@ -65,16 +74,27 @@ Linear = tuple[Array, Numbers, Flags, Array, Array, Array, Work]
 Settling = tuple[CurveArrays, Places, Flags, Array, Array, Array, Ints]
 
 
+class NotConvergedError(Exception):
+    """Newton's method found no equilibrium; ``locked`` names the contradicted row."""
+
+    def __init__(self, reason: str, locked: str = "") -> None:
+        super().__init__(reason)
+        self.locked = locked
+
+
 @dataclass(frozen=True, eq=False)
 class Touched:
-    """An equilibrium with contacts: state, contacts, factors, gaps and curvatures of the places, iterations."""
+    """An equilibrium: state, gaps and curvatures of the places, number of iterations."""
 
     state: State
-    contacts: Contacts
-    factors: Factors
     gaps: Array
     curvatures: Array
     iterations: int
+
+    @property
+    def contacts(self) -> Contacts:
+        """Places and closed set of the state."""
+        return self.state.contacts
 
 
 def near_contacts(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
@@ -91,8 +111,8 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     kept_open[list(contacts.kept_open)] = True
     apart = taken(old, np.zeros(0, dtype=np.int64)) if contacts.apart is None else contacts.apart
     sides = contacts.sides, contacts.corner_sides, kept_open, old, contacts.closed, apart
-    places, closed = contact_places(z, geometry.arrays, geometry.sites, *sides, contacts.counters)
-    return replace(contacts, places=places, closed=closed)
+    places, moving, closed = contact_places(z, geometry.arrays, geometry.sites, *sides, contacts.counters)
+    return replace(contacts, places=joined(places, taken(old, moving)), closed=closed)
 
 
 def passed_through(
@@ -115,27 +135,19 @@ def passed_through(
     return bool(np.any(np.einsum("ij,ij->i", first[seen], second[number[seen]]) < 0.0))
 
 
-def solve_set(
-    system: System,
-    geometry: Geometry,
-    start: State,
-    contacts: Contacts,
-    iterations: int,
-    springs: Springs | None = None,
-) -> Touched:
+def solve_set(system: System, start: State, iterations: int, springs: Springs | None = None) -> Touched:
     """Equilibrium near a state under the state's targets, and the set of closed places.
 
     Args:
-        system, geometry: the mechanism and its contacts.
-        start: state with targets.
-        contacts: places at the start; not changed.
+        system: the mechanism.
+        start: state with targets; not changed.
         iterations: largest number of Newton iterations.
         springs: springs on the links' angles, of a descent.
 
     Raises:
         NotConvergedError: no equilibrium was found, the set of closed places returns, or a point becomes a length.
     """
-    z, driven = start.z.copy(), start.driven
+    geometry, contacts, z, driven = system.geometry, start.contacts, start.z.copy(), start.driven
     z[system.rows.first :][~driven] = start.target[~driven] * ~start.repeated[~driven]
     m, work, curves = system.numbers, new_work(system), geometry.arrays
     places, closed = copied(contacts.places), contacts.closed.copy()
@@ -171,8 +183,13 @@ def solve_set(
         last = size
         if arrived and not changed and _stays(geometry, z, settling):
             settled = replace(contacts, places=places, closed=closed)
-            return Touched(replace(start, z=z), settled, factors, gaps, curvatures, iteration)
+            return Touched(replace(start, z=z, contacts=settled), gaps, curvatures, iteration)
     raise NotConvergedError(f"{iterations} iterations did not converge")
+
+
+def has_converged(size: float, last: float) -> bool:
+    """Whether a correction of this size after the ``last`` is as small as it gets."""
+    return size < CLOSE or SHRINKING * last < size < ROUNDED
 
 
 def _stays(geometry: Geometry, z: Array, settling: Settling) -> bool:

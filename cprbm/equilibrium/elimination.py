@@ -26,7 +26,7 @@ rest is the number of independent directions with falling energy.
 
 from __future__ import annotations
 
-from math import cos, isfinite, sin
+from math import cos, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -113,51 +113,6 @@ def factor_chains(beams: Beams, blocks: Blocks, pivot: Array, ratio: Array) -> i
 
 
 @compiled
-def solve_chain(
-    beams: Beams, beam: int, blocks: Blocks, pivot: Array, ratio: Array, x: Array
-) -> None:  # pragma: no cover
-    """Solve A x = b in place; ``x`` holds the unknowns of a chain."""
-    m, start = beams.links[beam], beams.first_link[beam]
-    C, K = blocks.coupling, blocks.compliance
-    nx, ny = x[5 * m], x[5 * m + 1]
-    # the force n_j takes the place of p_{j+1} until the positions are known
-    for j in range(m - 1, -1, -1):
-        i = 5 * j
-        x[i + 5], x[i + 6] = nx, ny
-        c = C[start + j]
-        x[i + 4] -= c[1, 0] * nx + c[1, 1] * ny
-        if j > 0:
-            x[i - 1] -= c[0, 0] * nx + c[0, 1] * ny
-        if j < m - 1:
-            x[i + 9] -= c[2, 0] * nx + c[2, 1] * ny
-        nx += x[i]
-        ny += x[i + 1]
-    for j in range(1, m):
-        x[5 * j + 4] -= ratio[start + j] * x[5 * j - 1]
-    x[5 * m - 1] *= pivot[start + m - 1]
-    for j in range(m - 2, -1, -1):
-        x[5 * j + 4] = x[5 * j + 4] * pivot[start + j] - ratio[start + j + 1] * x[5 * j + 9]
-    px, py = nx / beams.springs[beam, 0], ny / beams.springs[beam, 1]
-    x[0], x[1] = px, py
-    bx, by = 0.0, 0.0
-    for j in range(m):
-        i = 5 * j
-        nx, ny = x[i + 5], x[i + 6]
-        c, k = C[start + j], K[start + j]
-        px += x[i + 2] - k[1, 0, 0] * nx - k[1, 0, 1] * ny - c[1, 0] * x[i + 4]
-        py += x[i + 3] - k[1, 1, 0] * nx - k[1, 1, 1] * ny - c[1, 1] * x[i + 4]
-        if j > 0:
-            px -= k[0, 0, 0] * bx + k[0, 0, 1] * by + c[0, 0] * x[i - 1]
-            py -= k[0, 1, 0] * bx + k[0, 1, 1] * by + c[0, 1] * x[i - 1]
-        if j < m - 1:
-            fx, fy = x[i + 10], x[i + 11]
-            px -= k[2, 0, 0] * fx + k[2, 0, 1] * fy + c[2, 0] * x[i + 9]
-            py -= k[2, 1, 0] * fx + k[2, 1, 1] * fy + c[2, 1] * x[i + 9]
-        x[i + 2], x[i + 3], x[i + 5], x[i + 6] = nx, ny, px, py
-        bx, by = nx, ny
-
-
-@compiled
 def _sum_forces(coupling: Array, m: int, x: Array) -> Array:  # pragma: no cover
     """Resultants (2, columns) at the first node; the force n_j takes the place of p_{j+1}, θ loses the forces' part."""
     force, count = x[5 * m : 5 * m + 2].copy(), x.shape[1]
@@ -219,7 +174,7 @@ def solve_columns(
 ) -> None:  # pragma: no cover
     """Solve A X = B in place; ``x`` (unknowns, columns) belongs to a chain.
 
-    The steps are those of :func:`solve_chain`, with all columns in the inner loops, which the processor does at once.
+    All columns are in the inner loops, which the processor does at once.
     """
     m, start = beams.links[beam], beams.first_link[beam]
     end = start + m
@@ -259,19 +214,15 @@ def border_block(z: Array, rows: RowArrays, driven: Flags, border: Border, G: Ar
 def reached_chains(beams: Beams, border: Border, columns: Columns) -> Reached:  # pragma: no cover
     """Chains that the columns of rows and closed places reach, X zero."""
     count, entries = beams.first.size, columns.entry_index.size
-    entry_beam, entry_slot = np.full(entries, -1), np.full(entries, -1)
-    slot = np.full((count, columns.diagonal.size), -1)
-    beam = reach = 0
+    entry_beam, entry_slot = np.searchsorted(beams.first, columns.entry_index, "right") - 1, np.full(entries, -1)
+    slot, reach = np.full((count, columns.diagonal.size), -1), 0
     for t in range(entries):
-        i, c = columns.entry_index[t], columns.entry_column[t]
-        if i < border.first:
-            while i < beams.first[beam]:
-                beam -= 1
-            while beam + 1 < count and beams.first[beam + 1] <= i:
-                beam += 1
-            entry_beam[t] = beam
+        beam, c = entry_beam[t], columns.entry_column[t]
+        if columns.entry_index[t] < border.first:
             reach += slot[beam, c] < 0
             slot[beam, c] = 0
+        else:
+            entry_beam[t] = -1
     begin, offset = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
     column = np.empty(border.column.size + reach, np.int64)
     for beam in range(count):
@@ -338,58 +289,3 @@ def eliminate(
             local = columns.entry_index[t] - beams.first[beam]
             _subtract_product(reached, beam, reached.entry_slot[t], local, columns.entry_value[t], G)
     return negative, reached
-
-
-@compiled
-def negative_pivots(factored: Array, order: Ints) -> int:  # pragma: no cover
-    """Number of negative eigenvalues of LAPACK's factors after Bunch and Kaufman; −1 if a pivot is not finite."""
-    negative, doubles = 0, 0
-    for i in range(order.size):
-        if not isfinite(factored[i, i]):
-            return -1
-        if order[i] < 0:
-            doubles += 1
-        elif factored[i, i] < 0.0:
-            negative += 1
-    return negative + doubles // 2
-
-
-@compiled
-def reduce_load(
-    beams: Beams,
-    blocks: Blocks,
-    pivot: Array,
-    ratio: Array,
-    driven: Flags,
-    border: Border,
-    columns: Columns,
-    reached: Reached,
-    load: Array,
-    reduced: Array,
-) -> None:  # pragma: no cover
-    """Solve all chains for a load in place, and subtract B times the solution from the border's load."""
-    for beam in range(beams.first.size):
-        first, size = beams.first[beam], 2 + PER_LINK * beams.links[beam]
-        solve_chain(beams, beam, blocks, pivot, ratio, load[first : first + size])
-    for t in range(border.entry_beam.size):
-        beam, r = border.entry_beam[t], border.entry_row[t]
-        if r < 0 or driven[r]:
-            value = border.entry_value[t] * load[beams.first[beam] + border.entry_local[t]]
-            reduced[border.column[border.begin[beam] + border.entry_slot[t]]] -= value
-    for t in range(columns.entry_index.size):
-        if reached.entry_beam[t] >= 0:
-            reduced[border.size + columns.entry_column[t]] -= columns.entry_value[t] * load[columns.entry_index[t]]
-
-
-@compiled
-def restore(beams: Beams, reached: Reached, solution: Array, load: Array) -> None:  # pragma: no cover
-    """Subtract X times the border's solution from the chains' part."""
-    for beam in range(beams.first.size):
-        column = reached.column[reached.begin[beam] : reached.begin[beam + 1]]
-        y, at, first = solution[column], reached.offset[beam], beams.first[beam]
-        for i in range(2 + PER_LINK * beams.links[beam]):
-            value = load[first + i]
-            for q in range(y.size):
-                value -= reached.solved[at + q] * y[q]
-            load[first + i] = value
-            at += y.size

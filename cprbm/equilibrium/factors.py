@@ -13,8 +13,7 @@ from scipy.linalg.lapack import dsytrf, dsytrs
 
 from cprbm.chain import empty_blocks
 from cprbm.contact import Columns
-from cprbm.equilibrium.elimination import negative_pivots
-from cprbm.equilibrium.linear import NO_COLUMNS, Bordered, Numbers, Work, linearise, solve_system
+from cprbm.equilibrium.linear import NO_COLUMNS, Bordered, Work, linearise, reduced_load, restored
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -54,20 +53,17 @@ class Factors:
     order: Ints
     lost: int
 
-    @property
-    def arrays(self) -> tuple[Numbers, Work, Flags, Bordered, Array, Ints]:
-        """The arrays for the kernels."""
-        return self.system.numbers, self.work, self.driven, self.bordered, self.factored, self.order
-
     def solve(self, load: Array) -> Array:
         """Solution (size,) of the Hessian's system; closed places stay closed, prescribed multipliers unchanged."""
         return self.solve_both(load, np.zeros(0))[0]
 
     def solve_both(self, load: Array, values: Array) -> tuple[Array, Array]:
         """Solution (size,), and changes of the contact forces (forces,) for loads of their rows (at most forces,)."""
-        size, solution = self.system.border.size, np.array(load)
-        within = solve_system(*self.arrays, values, solution)
-        return solution, within[size : size + len(self.bordered.columns.values)]
+        m, bordered, solution = self.system.numbers, self.bordered, np.array(load)
+        reduced = reduced_load(m, self.work, self.driven, bordered, values, solution)
+        within = solved_border(self.factored, self.order, reduced)
+        restored(m.beams, m.border, bordered.reached, within, solution)
+        return solution, within[m.border.size : m.border.size + len(bordered.columns.values)]
 
 
 def new_work(system: System) -> Work:
@@ -122,8 +118,9 @@ def factors_of(system: System, driven: Flags, work: Work, bordered: Bordered) ->
         SingularError: no number is left to divide by.
     """
     factored, order = factored_border(bordered.border)
-    of_border, columns = negative_pivots(factored, order), bordered.columns
-    if of_border < 0:
-        raise SingularError("the border has a pivot of zero")
+    pivots, blocks, columns = factored.diagonal(), order < 0, bordered.columns
+    if not np.isfinite(pivots).all():
+        raise SingularError("the border has a pivot without a limit")
+    of_border = int(np.count_nonzero(~blocks & (pivots < 0.0))) + int(np.count_nonzero(blocks)) // 2
     equalities = int(np.count_nonzero(driven)) + len(columns.values) + columns.negative
     return Factors(system, driven, work, bordered, factored, order, bordered.negative + of_border - equalities)

@@ -1,7 +1,7 @@
 """The linear system of a Newton iteration: chains, rows and closed places, compiled.
 
-A call assembles the gradient and the Hessian and eliminates the chains.  LAPACK factors the border after Bunch and
-Kaufman (a block of two has a single negative eigenvalue); a second call restores the chains' part of the solution.
+A call assembles the gradient and the Hessian and eliminates the chains.  LAPACK factors the border,
+:mod:`cprbm.equilibrium.factors`; a second call restores the chains' part of the solution.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ import numpy as np
 
 from cprbm.chain import Blocks, Joints, Links, RowArrays, add_row_gradient, evaluate_chains, row_values
 from cprbm.chain.compiled import compiled
+from cprbm.chain.mechanism import PER_LINK
 from cprbm.contact import Columns
-from cprbm.equilibrium.elimination import Beams, Border, Reached, border_block, eliminate, reduce_load, restore
+from cprbm.equilibrium.elimination import Beams, Border, Reached, border_block, eliminate, solve_columns
 from cprbm_scene.answer import Array, Flags, Ints
 
 LARGEST_TURN = 0.5
@@ -92,7 +93,7 @@ def reduced_load(
     m: Numbers, work: Work, driven: Flags, bordered: Bordered, values: Array, load: Array
 ) -> Array:  # pragma: no cover
     """Load of the border; solves the chains in place. ``values`` (at most forces,) are the load of the forces."""
-    border = m.border
+    beams, border, columns, reached = m.beams, m.border, bordered.columns, bordered.reached
     reduced = np.zeros(len(bordered.border))
     for i in range(border.first, load.size):
         reduced[i - border.first] = load[i]
@@ -100,58 +101,32 @@ def reduced_load(
         if not driven[r]:
             reduced[border.rows + r] = 0.0
     reduced[border.size : border.size + values.size] = values
-    columns, reached = bordered.columns, bordered.reached
-    reduce_load(m.beams, work.blocks, work.pivot, work.ratio, driven, border, columns, reached, load, reduced)
+    for beam in range(beams.first.size):
+        first, size = beams.first[beam], 2 + PER_LINK * beams.links[beam]
+        solve_columns(beams, beam, work.blocks, work.pivot, work.ratio, load[first : first + size].reshape((-1, 1)))
+    for t in range(border.entry_beam.size):
+        beam, r = border.entry_beam[t], border.entry_row[t]
+        if r < 0 or driven[r]:
+            value = border.entry_value[t] * load[beams.first[beam] + border.entry_local[t]]
+            reduced[border.column[border.begin[beam] + border.entry_slot[t]]] -= value
+    for t in range(columns.entry_index.size):
+        if reached.entry_beam[t] >= 0:
+            reduced[border.size + columns.entry_column[t]] -= columns.entry_value[t] * load[columns.entry_index[t]]
     return reduced
 
 
 @compiled
 def restored(beams: Beams, border: Border, reached: Reached, solution: Array, load: Array) -> None:  # pragma: no cover
-    """Turn the chains' solution ``load`` into the solution of the whole system, in place."""
-    restore(beams, reached, solution, load)
+    """Turn the chains' solution ``load`` into the whole solution, in place; ``solution`` belongs to the border."""
+    for beam in range(beams.first.size):
+        column = reached.column[reached.begin[beam] : reached.begin[beam + 1]]
+        y, at, first = solution[column], reached.offset[beam], beams.first[beam]
+        for i in range(first, first + 2 + PER_LINK * beams.links[beam]):
+            for q in range(y.size):
+                load[i] -= reached.solved[at + q] * y[q]
+            at += y.size
     for i in range(border.first, load.size):
         load[i] = solution[i - border.first]
-
-
-@compiled
-def solve_factored(factored: Array, order: Ints, x: Array) -> None:  # pragma: no cover
-    """Solve the border's system in place, from LAPACK's factors U D Uᵀ after Bunch and Kaufman (dsytrf, dsytrs)."""
-    k = order.size - 1
-    while k >= 0:
-        last, pair = k, order[k] < 0
-        k -= 1 if pair else 0
-        at = abs(order[last]) - 1
-        x[k], x[at] = x[at], x[k]
-        for i in range(k):
-            x[i] -= factored[i, last] * x[last] + (factored[i, k] * x[k] if pair else 0.0)
-        if pair:
-            beside = factored[k, last]
-            a, b, u, v = factored[k, k] / beside, factored[last, last] / beside, x[k] / beside, x[last] / beside
-            x[k], x[last] = (b * u - v) / (a * b - 1.0), (a * v - u) / (a * b - 1.0)
-        else:
-            x[k] /= factored[k, k]
-        k -= 1
-    k = 0
-    while k < order.size:
-        last = k + 1 if order[k] < 0 else k
-        for i in range(k):
-            x[k] -= factored[i, k] * x[i]
-            if last > k:
-                x[last] -= factored[i, last] * x[i]
-        at = abs(order[k]) - 1
-        x[k], x[at] = x[at], x[k]
-        k = last + 1
-
-
-@compiled
-def solve_system(
-    m: Numbers, work: Work, driven: Flags, bordered: Bordered, factored: Array, order: Ints, values: Array, load: Array
-) -> Array:  # pragma: no cover
-    """Solve the whole system in place; the border's solution. ``values`` (at most forces,) load the rows of forces."""
-    within = reduced_load(m, work, driven, bordered, values, load)
-    solve_factored(factored, order, within)
-    restored(m.beams, m.border, bordered.reached, within, load)
-    return within
 
 
 @compiled

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import lstsq
 
 from cprbm.chain import add_row_gradient
-from cprbm.equilibrium.newton import Solved
+from cprbm.equilibrium.solving import Solved
 from cprbm_scene.answer import Array
 
 

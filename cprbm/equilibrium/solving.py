@@ -1,4 +1,4 @@
-"""Equilibria with and without contacts, and repeated rows.
+"""Equilibria, and repeated rows.
 
 The active set decides about contacts (:mod:`cprbm.equilibrium.contact_points`).  A solved equilibrium has the factors
 and the gradient of the final state, the closed places included.
@@ -6,20 +6,56 @@ and the gradient of the final state, the closed places included.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from cprbm.chain import row_values
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.contact_points import touched_equilibrium
-from cprbm.equilibrium.factors import SingularError, Springs, factorise
-from cprbm.equilibrium.linear import NO_COLUMNS
-from cprbm.equilibrium.newton import NotConvergedError, Solved, newton
+from cprbm.equilibrium.contact_set import NotConvergedError
+from cprbm.equilibrium.factors import Factors, SingularError, Springs, factorise
 from cprbm.equilibrium.rank import repeated_rows
 from cprbm.equilibrium.system import State, System
+from cprbm_scene.answer import Array
 
 REPEATED = 1e-9
 """Largest violation of a row that repeats others, in units of length or rad."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """An equilibrium, the Hessian's factors and the gradient there, and the number of Newton iterations.
+
+    The gradient belongs to the unknowns; ``contact_values`` are the values of the closed places' rows.
+    """
+
+    system: System
+    state: State
+    factors: Factors
+    gradient: Array
+    iterations: int
+    contact_values: Array
+
+    @property
+    def lost(self) -> int:
+        """Number of independent directions with falling energy."""
+        return self.factors.lost
+
+    @cached_property
+    def gaps(self) -> Array:
+        """Gaps of all places of contact."""
+        return self.state.contacts.gaps(self.system.geometry, self.state.z)
+
+    def response(self, load: Array) -> Array:
+        """Change (size,) of the unknowns under a ``load`` (size,), the closed places kept closed."""
+        return self.factors.solve(load)
+
+    @cached_property
+    def values(self) -> Array:
+        """f of all rows."""
+        return np.asarray(row_values(self.state.z, self.system.rows))
 
 
 def equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Solved:
@@ -53,10 +89,8 @@ def _near(system: System, start: State, iterations: int, springs: Springs | None
     Raises:
         NotConvergedError: no equilibrium was found.
     """
-    if system.geometry is None or start.contacts is None:
-        return newton(system, start, iterations, springs)
-    touched = touched_equilibrium(system, system.geometry, start, start.contacts, iterations, springs)
-    return at_state(system, replace(touched.state, contacts=touched.contacts), springs, touched.iterations)
+    touched = touched_equilibrium(system, start, iterations, springs)
+    return at_state(system, touched.state, springs, touched.iterations)
 
 
 def at_state(system: System, state: State, springs: Springs | None = None, iterations: int = 0) -> Solved:
@@ -65,9 +99,7 @@ def at_state(system: System, state: State, springs: Springs | None = None, itera
     Raises:
         NotConvergedError: the Hessian is singular.
     """
-    columns, pressing, contacts = NO_COLUMNS, np.zeros(system.size), state.contacts
-    if system.geometry is not None and contacts is not None:
-        columns, pressing = contact_terms(system.geometry, state.z, contacts.places, contacts.closed)
+    columns, pressing = contact_terms(system.geometry, state.z, state.contacts.places, state.contacts.closed)
     try:
         factors, gradient = factorise(system, state, springs, columns)
     except SingularError as singular:

@@ -18,10 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm.chain.compiled import compiled
-from cprbm.equilibrium.linear import Bordered, Numbers, Work, solve_system
-from cprbm.equilibrium.newton import Solved
-from cprbm_scene.answer import Array, Flags, Ints
+from cprbm.equilibrium.solving import Solved
+from cprbm_scene.answer import Array
 
 ACCURACY = 1e-6
 """Relative accuracy of a curvature: it judges and extrapolates, and no result contains it."""
@@ -29,8 +27,8 @@ ACCURACY = 1e-6
 STIFF = 1e-3
 """Share of the stiffest spring's compliance below which a compliance is round-off: no direction is free."""
 
-VECTORS = 60
-"""Most Lanczos vectors: the softest mode is well apart from the others, and five to ten are enough."""
+VECTORS = 6
+"""Lanczos vectors before a restart: the softest mode is well apart from the others."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,59 +41,25 @@ class Mode:
 
 def softest(solved: Solved) -> Mode:
     """Smallest curvature and mode at a state; infinite if no direction is free."""
+    from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh  # scenes that end at once load no ARPACK
+
     system = solved.system
-    root = np.sqrt(system.metric)
-    start = root * (1.0 + np.cumsum(system.metric))
-    sense = -1.0 if solved.lost else 1.0
-    value, vector = _largest(*solved.factors.arrays, root, start / np.linalg.norm(start), sense)
-    if not np.isfinite(value):
-        return Mode(value, np.zeros(system.size))
+    root, count = np.sqrt(system.metric), len(system.metric)
+
+    def response(vector: Array) -> Array:
+        load = np.zeros(system.size)
+        load[system.angles] = root * vector
+        return solved.response(load)
+
+    compliance = LinearOperator((count, count), matvec=lambda x: root * response(x.ravel())[system.angles], dtype=float)
+    start, largest = root * (1.0 + np.cumsum(system.metric)), "SA" if solved.lost else "LA"
+    try:
+        found = eigsh(compliance, k=1, which=largest, v0=start, ncv=min(VECTORS, count), tol=ACCURACY)
+    except ArpackNoConvergence:
+        return Mode(float("nan"), np.zeros(system.size))
+    value, vector = float(found[0][0]), found[1][:, 0]
     stiffest = float(np.max(np.maximum(system.metric[:-1], system.metric[1:]))) / float(np.max(system.joints.stiffness))
     if abs(value) <= STIFF * stiffest:
         return Mode(float("inf"), np.zeros(system.size))
-    load = np.zeros(system.size)
-    load[system.angles] = root * vector
-    change = solved.response(load)
-    largest = float(np.abs(change[system.angles]).max())
-    return Mode(1.0 / value, change / largest)
-
-
-@compiled
-def _largest(
-    m: Numbers,
-    work: Work,
-    driven: Flags,
-    bordered: Bordered,
-    factored: Array,
-    order: Ints,
-    root: Array,
-    start: Array,
-    sense: float,
-) -> tuple[float, Array]:  # pragma: no cover
-    """Eigenvalue of √M S √M that is largest in a ``sense``, and eigenvector, by Lanczos's method; nan if not found."""
-    most = min(VECTORS, root.size)
-    basis, T, x = np.zeros((most + 1, root.size)), np.zeros((most, most)), np.zeros(root.size)
-    basis[0] = start
-    for k in range(most):
-        load = np.zeros(m.rows.first + driven.size)
-        for j in range(root.size):
-            load[m.angles[j]] = root[j] * basis[k, j]
-        solve_system(m, work, driven, bordered, factored, order, np.zeros(0), load)
-        for j in range(root.size):
-            x[j] = root[j] * load[m.angles[j]]
-        T[k, k] = np.sum(basis[k] * x)
-        for _ in range(2):
-            for i in range(k + 1):
-                x -= np.sum(basis[i] * x) * basis[i]
-        rest = np.sqrt(np.sum(x * x))
-        values, vectors = np.linalg.eigh(T[: k + 1, : k + 1].copy())
-        at = k if sense > 0.0 else 0
-        if rest * abs(vectors[k, at]) <= ACCURACY * abs(values[at]) or k + 1 == root.size:
-            found = np.zeros(root.size)
-            for i in range(k + 1):
-                found += vectors[i, at] * basis[i]
-            return values[at], found
-        basis[k + 1] = x / rest
-        if k + 1 < most:
-            T[k, k + 1], T[k + 1, k] = rest, rest
-    return np.nan, x
+    change = response(vector)
+    return Mode(1.0 / value, change / float(np.abs(change[system.angles]).max()))

@@ -17,7 +17,6 @@ from cprbm.chain.mechanism import PER_LINK
 from cprbm.contact import Contacts, Geometry, open_contacts
 from cprbm.equilibrium.elimination import Beams, Border
 from cprbm.equilibrium.linear import Numbers
-from cprbm.equilibrium.measures import Arms
 from cprbm_scene.answer import Array, Flags, Ints
 
 
@@ -36,7 +35,7 @@ class System:
         hidden: flexibility (rows, rows) of loads at places of beams without the chain's share.
         lean: shear compliance β of the links, for the odd moment of their elements.
         lengthening: whether links have an axial compliance.
-        geometry: curves and pairs of the contacts, None without contacts.
+        geometry: curves and pairs of the contacts.
     """
 
     mechanism: Mechanism
@@ -55,7 +54,7 @@ class System:
     hidden: Array
     lean: Array
     lengthening: bool
-    geometry: Geometry | None = None
+    geometry: Geometry
 
     @property
     def size(self) -> int:
@@ -77,14 +76,14 @@ class System:
         return found
 
     @cached_property
-    def arms(self) -> Arms:
-        """Nodes, carried nodes and bodies, on which forces act."""
+    def arms(self) -> tuple[Ints, Array]:
+        """Points on which forces act: index of the displacement along x (points,), place as drawn (points, 2)."""
         m, nodes = self.mechanism, np.concatenate([self.nodes[:, 0], self.carried])
         index = np.concatenate([nodes, list(m.bodies.values())]).astype(np.int64)
         origin = np.zeros((len(index), 2))
         for k, name in enumerate(m.bodies):
             origin[len(nodes) + k] = m.reference(name)
-        return Arms(index, origin)
+        return index, origin
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,14 +94,14 @@ class State:
     driven: Flags
     target: Array
     repeated: Flags
-    contacts: Contacts | None = None
+    contacts: Contacts
 
     def multipliers(self, system: System) -> Array:
         """μ of all rows."""
         return self.z[system.rows.first :]
 
 
-def system_of(mechanism: Mechanism, geometry: Geometry | None = None) -> System:
+def system_of(mechanism: Mechanism, geometry: Geometry) -> System:
     """Number a mechanism with all rows, those of the contacts included."""
     links, joints = link_arrays(mechanism)
     rows = row_arrays(mechanism)
@@ -151,8 +150,7 @@ def rest_state(system: System) -> State:
     rows = system.mechanism.rows
     z = np.concatenate([system.mechanism.rest, np.zeros(len(rows))])
     driven = np.array([row.driven for row in rows], dtype=bool)
-    contacts = None if system.geometry is None else open_contacts(system.geometry, z)
-    return State(z, driven, np.zeros(len(rows)), np.zeros(len(rows), dtype=bool), contacts)
+    return State(z, driven, np.zeros(len(rows)), np.zeros(len(rows), dtype=bool), open_contacts(system.geometry, z))
 
 
 def _beams(m: Mechanism) -> Beams:

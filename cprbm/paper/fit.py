@@ -111,19 +111,11 @@ def fitted(z: Array, b: Boundary) -> Fit:  # pragma: no cover
         turns[x, i], turns[y, i] = -ny, nx
     low, high = points[0].min(), points[0].max()
     middle, width = 0.5 * (low + high), 0.5 * (high - low)
-    normal, load = np.zeros((size, size)), np.zeros(size)
     for i in range(n):
         write_basis(points[0, i], middle, width, V[i])
-        for r in range(size):
-            load[r] += V[i, 0, r] * points[1, i]
-            for s in range(size):
-                normal[r, s] += V[i, 0, r] * V[i, 0, s]
-    inverse, q = np.empty((size, size)), np.zeros(size)
-    inverse[:] = np.linalg.inv(normal)
-    for r in range(size):
-        for s in range(size):
-            q[r] += inverse[r, s] * load[s]
-    return Fit(points, offsets, turns, V, inverse, q, middle, width)
+    values = np.ascontiguousarray(V[:, 0])
+    inverse = np.ascontiguousarray(np.linalg.inv(values.T @ values))
+    return Fit(points, offsets, turns, V, inverse, inverse @ (values.T @ points[1]), middle, width)
 
 
 @compiled

@@ -20,7 +20,7 @@ from cprbm.chain import Mechanism
 from cprbm.chain.rows import ends_of
 from cprbm.contact import Geometry, fixed_places, near_pairs, new_counters, settle, sides_at_rest
 from cprbm.equilibrium.columns import contact_terms
-from cprbm.equilibrium.newton import Solved
+from cprbm.equilibrium.solving import Solved
 from cprbm.paper.contacts import FittedLaw, beyond_ends
 from cprbm.paper.fit import Boundary, fitted
 from cprbm_scene.answer import Array
@@ -115,8 +115,6 @@ def _beside_pins(solved: Solved) -> list[str]:
     """Contacts with a rigid edge whose joint beside the beam's own pin presses."""
     geometry, contacts, m = solved.system.geometry, solved.state.contacts, solved.system.mechanism
     found: list[str] = []
-    if geometry is None or contacts is None:
-        return found
     for number, pair in enumerate(geometry.pairs):
         record = m.scene.contacts[pair.name]
         if isinstance(record, EdgeContact):
@@ -131,7 +129,7 @@ def _beside_pins(solved: Solved) -> list[str]:
 def _pressed_boundaries(solved: Solved) -> list[tuple[Boundary, str, Array]]:
     """Boundaries with closed joints, names of the contacts, and gradients (size,) of the contacts' −F λ."""
     geometry, contacts = solved.system.geometry, solved.state.contacts
-    if geometry is None or contacts is None or not isinstance(geometry.law, FittedLaw):
+    if not isinstance(geometry.law, FittedLaw):
         return []
     law, z, places = geometry.law, solved.state.z, contacts.places
     every = zip(law.boundaries, law.names, map(contacts.pressing, law.pairs), strict=True)

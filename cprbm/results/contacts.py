@@ -104,7 +104,7 @@ def contact_ends(view: View, contact: str) -> list[float]:
     """Arc lengths on the first beam at which the first zone begins and the last zone ends; empty without contact."""
     geometry, found = view.solved.system.geometry, view.pressed[contact]
     pins = [view.end(beam, end)[0] for beam, end, _ in pin_moments(view, contact)]
-    if geometry is None or (not found and not pins):
+    if not found and not pins:
         return []
     heavy = NEGLIGIBLE * max((float(np.hypot(*each.forces[0])) for each in found), default=0.0)
     found = [each for each in found if np.hypot(*each.forces[0]) >= heavy]
@@ -127,7 +127,6 @@ def contact_ends(view: View, contact: str) -> list[float]:
 def _zone_end(view: View, geometry: Geometry, pair: int, outermost: float, *, sense: float) -> float:
     """e beyond the ``outermost`` force, in the ``sense`` of growing or falling arc lengths."""
     contacts = view.solved.state.contacts
-    assert contacts is not None
     places = contacts.places
     mine = (places.pair == pair) & (places.curve == geometry.pairs[pair].first) & ~places.moves & ~contacts.closed
     arcs = geometry.arrays.arc[places.piece] + places.xi * geometry.arrays.span[places.piece]

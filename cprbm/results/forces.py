@@ -111,7 +111,7 @@ def _contacts(view: View) -> Iterator[PointForce]:
     """Forces of all contacts on beams and bodies, and moments at own pins."""
     geometry = view.solved.system.geometry
     for name, contact in view.scene.contacts.items():
-        if geometry is not None and geometry.law is not None and isinstance(contact, BeamContact):
+        if geometry.law is not None and isinstance(contact, BeamContact):
             yield from _spread_forces(view, name, geometry)
             continue
         targets = (contact.beams[0], getattr(contact, "body", contact.beams[-1]))
@@ -125,7 +125,6 @@ def _contacts(view: View) -> Iterator[PointForce]:
 def _spread_forces(view: View, contact: str, geometry: Geometry) -> Iterator[PointForce]:
     """Forces on nodes and moments on links of both beams of a contact that a law measures."""
     contacts = view.solved.state.contacts
-    assert contacts is not None
     pair = next(k for k, each in enumerate(geometry.pairs) if each.name == contact)
     pull = contact_terms(geometry, view.z, contacts.places, contacts.pressing(pair))[1]
     for beam in view.scene.contacts[contact].beams:

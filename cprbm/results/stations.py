@@ -8,9 +8,8 @@ from dataclasses import dataclass, field, replace
 
 from cprbm.chain import add_rows, mechanism_of
 from cprbm.contact import contact_geometry
-from cprbm.continuation.assembly import assembled
+from cprbm.continuation.assembly import assembled, landing_rows
 from cprbm.continuation.driver import ContactEvent, Driver, Passed, StepError
-from cprbm.continuation.landing import landing_rows
 from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.system import System, system_of
@@ -74,7 +73,7 @@ class Run:
         add_rows(mechanism)
         mechanism.rows.extend(landing_rows(mechanism))
         geometry = contact_geometry(mechanism)
-        if self.settings.formulation == "paper" and geometry is not None:
+        if self.settings.formulation == "paper" and geometry.pairs:
             refuse_contacts(self.scene)
             every, geometry = geometry, paper_geometry(mechanism, geometry, self.settings.degree)
             self.inspection = Inspection(mechanism, every)

@@ -24,8 +24,8 @@ import numpy as np
 from cprbm.chain import BeamChain, Mechanism, hidden_angles
 from cprbm.contact import STENCIL, gap_frame
 from cprbm.continuation.path import potential
-from cprbm.equilibrium.newton import Solved
 from cprbm.equilibrium.sharing import shared_multipliers
+from cprbm.equilibrium.solving import Solved
 from cprbm.equilibrium.system import hidden_forces
 from cprbm_scene import Scene
 from cprbm_scene.answer import Array
@@ -212,8 +212,6 @@ class View:
 
     def _closed_places(self) -> Iterator[tuple[str, Pressed]]:
         geometry, contacts, z = self.solved.system.geometry, self.solved.state.contacts, self.z
-        if geometry is None or contacts is None:
-            return
         arrays, places, law = geometry.arrays, contacts.places, geometry.law
         by_law = None if law is None else law.measures(places)
         weights = np.empty((4, 2, STENCIL))

@@ -51,7 +51,7 @@ def system_of_case(case):
     m = mechanism_of(scene, counts, "bending", corrected=False)
     add_rows(m)
     every = contact_geometry(m)
-    system = system_of(m, None if every is None else paper_geometry(m, every, 4))
+    system = system_of(m, paper_geometry(m, every, 4) if every.pairs else every)
     target = np.zeros(len(m.rows))
     for stage in scene.stages:
         row = m.row(stage.steps)

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -14,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from comparisons import cases
-from comparisons.cli.main import run
+from comparisons.cli.main import commands, run
 from comparisons.pairing import Solvers
 from cprbm_scene import Ending
 from tests.verdict.jumping import FORWARD, Jumping
@@ -32,13 +33,6 @@ def ended(solver, ending=Ending.STEP_TOO_SMALL):
     return answer
 
 
-def test_list_has_a_line_for_every_case(capsys):
-    assert run(["list"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines] == list(cases.names())
-    assert "hinge" in cases.names()
-
-
 def test_compare_ends_with_0_if_all_agree(right, capsys):
     assert run(["compare", "hinge"], right) == 0
     captured = capsys.readouterr()
@@ -46,8 +40,10 @@ def test_compare_ends_with_0_if_all_agree(right, capsys):
     assert captured.err == ""
 
 
-@pytest.mark.parametrize(("option", "there"), [([], True), (["--exact"], True), (["--no-exact"], False)])
-@pytest.mark.parametrize("command", ["compare", "converge"])
+@pytest.mark.parametrize(
+    ("command", "option", "there"),
+    [("compare", [], True), ("compare", ["--no-exact"], False), ("converge", ["--exact"], True)],
+)
 def test_the_exact_reference_is_asked_by_a_rule_or_by_an_option(command, option, there, capsys):
     sizes = ["-n", "8", "--elements", "8"] if command == "compare" else ["--sizes", "4,8,16"]
     run([command, "tapered", *sizes, *option, "--json", "-"])
@@ -178,168 +174,6 @@ def test_a_solver_answers_in_the_theory_of_its_options(hinge, right, solver, opt
     assert row[solver] == pytest.approx(0.9 * row["station"] * (1.0 + error + THEORY[theory]), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (["compare", "hinge", "-n", "0"], "found '0'"),
-        (["solve", "hinge", "-n", "-3"], "found '-3'"),
-        (["solve", "hinge", "-n", "forty"], "found 'forty'"),
-        (["solve", "hinge", "-n", "4.5"], "found '4.5'"),
-        (["solve", "hinge", "-n", "10000"], "from 1 to 9999"),
-        (["solve", "hinge", "-n", "beam1=0,beam2=3"], "found '0'"),
-        (["solve", "hinge", "-n", "beam1=3,beam1=4"], "once for each beam"),
-        (["solve", "hinge", "-n", "beam1=3,"], "once for each beam"),
-        (["solve", "hinge", "-n", "beam1=3"], "beam1, beam2"),
-        (["solve", "hinge", "-n", "beam1=3,beam9=3"], "beam1, beam2"),
-        (["compare", "hinge", "--elements", "0"], "found '0'"),
-        (["compare", "hinge", "--penetration", "nan"], "found 'nan'"),
-        (["compare", "hinge", "--penetration", "0"], "found '0'"),
-        (["compare", "hinge", "--kinematics", "timoshenko"], "timoshenko"),
-        (["compare", "hinge", "--formulation", "mine"], "mine"),
-        (["solve", "hinge", "--solver", "ansys"], "ansys"),
-        (["compare"], "CASE"),
-        (["compare", "no-such-case"], "hinge"),
-        (["compare", "no/such/file.toml"], "no/such/file.toml"),
-        (["solve", "."], "built-in case"),
-        (["dance"], "dance"),
-        (["solve", "hinge", "--colour"], "--colour"),
-    ],
-)
-def test_a_wrong_question_is_a_paragraph_and_2(right, capsys, arguments, said):
-    assert run(arguments, right) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert said in captured.err
-    assert captured.err.startswith("cprbm: ")
-    assert captured.err.count("\n") == 1
-
-
-def test_every_mistake_of_a_scene_is_told_in_a_line_of_its_own(right, capsys, tmp_path):
-    text = HINGE.read_text("utf-8")
-    file = tmp_path / "bad.toml"
-    file.write_text(text.replace("poisson_ratio", "poison_ratio").replace("width = 0.008", "width = -1.0"), "utf-8")
-    assert run(["compare", str(file)], right) == 2
-    said = capsys.readouterr().err
-    first, *lines = said.splitlines()
-    assert first == "cprbm: The question is wrong."
-    # the misspelt key, the one that is missing by it, and the width of either beam
-    assert len(lines) == 4
-    assert all(line.startswith(f"  {file}: ") for line in lines)
-    for part in ("poison_ratio", "beams.beam1.width: found -1.0", "beams.beam2.width: found -1.0"):
-        assert sum(part in line for line in lines) == 1
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
-        ('thickness = "= t"', "thicknes = 0.002", "beams.beam1.thicknes"),
-        ('thickness = "= t"', "thickness = -0.002", "beams.beam1.thickness"),
-        ("youngs_modulus = 2.3e9", "youngs_modulus = nan", "materials.abs.youngs_modulus"),
-        ('end = { joint = "weld", point = "B" }', 'end = { joint = "weld", point = "D" }', "beams.beam1.end"),
-        ('(t + gap)/2"], direction', '(t + gap)/2 + 0.0005"], direction', "beams.beam1"),
-        ("[bodies.AC]", "[bodies.AC", "TOML"),
-        ('body = "BD"', 'body = "AC"', "loads.M.body"),
-        ('between = ["beam1", "beam2"]', 'between = ["beam1", "beam3"]', "contacts.contact.between"),
-        ("[contacts.contact.paper]", "[contacts.contact]", "TOML"),
-        (
-            "[contacts.contact.paper]",
-            '[contacts.again]\nkind = "beam-beam"\nbetween = ["beam2", "beam1"]\n[contacts.contact.paper]',
-            "contacts.again.between",
-        ),
-        ("[loads.M]", '[drives.d]\nkind = "rotation"\nbody = "BD"\n[loads.M]', "loads.M"),
-        (
-            "[loads.M]",
-            '[contacts.c]\nkind = "beam-circle"\nbeam = "beam1"\nbody = "AC"\ncenter = [0.026, 0.00125]\n'
-            "radius = 0.0005\n[loads.M]",
-            "contacts.c",
-        ),
-    ],
-    ids=[
-        "misspelt",
-        "negative",
-        "not finite",
-        "end meets nothing",
-        "off the circle",
-        "no TOML",
-        "on ground",
-        "no beam",
-        "one table twice",
-        "one pair twice",
-        "a load on what is driven",
-        "a circle inside a beam",
-    ],
-)
-def test_every_kind_of_wrong_scene_has_a_line_for_each_mistake_and_2(right, capsys, tmp_path, old, new, said):
-    text = HINGE.read_text("utf-8")
-    assert old in text
-    file = tmp_path / "wrong.toml"
-    file.write_text(text.replace(old, new, 1), "utf-8")
-    for command in ("solve", "compare"):
-        assert run([command, str(file)], right) == 2
-        captured = capsys.readouterr()
-        assert captured.out == ""
-        first, *lines = captured.err.splitlines()
-        assert first.startswith("cprbm: The question is wrong.")
-        assert all(line.startswith(f"  {file}: ") for line in lines)
-        assert str(file) in captured.err
-        assert said in captured.err
-
-
-def test_beams_that_overlap_at_the_start_are_a_paragraph_and_2(right, capsys, tmp_path):
-    """The gap between the edges is 0.5 mm: edges 0.6 mm further out on either side leave no gap but an overlap."""
-    file = tmp_path / "wrong.toml"
-    file.write_text(HINGE.read_text("utf-8").replace('thickness = "= t"', "thickness = 0.0032"), "utf-8")
-    assert run(["compare", str(file)], right) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    assert "contacts.contact" in said
-
-
-@pytest.mark.parametrize("content", [None, b'name = "\xff"'], ids=["not there", "no UTF-8"])
-def test_an_unreadable_file_is_a_paragraph_and_2(right, capsys, tmp_path, content):
-    file = tmp_path / "scene.toml"
-    if content is not None:
-        file.write_bytes(content)
-    assert run(["solve", str(file)], right) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    assert str(file) in said
-
-
-def test_a_later_scene_that_is_wrong_stops_the_first_from_being_solved(right, capsys, tmp_path):
-    def never(scene, choices):
-        pytest.fail("solved before every question was read")
-
-    assert run(["compare", "hinge", str(tmp_path / "none.toml")], Solvers(never, never)) == 2
-
-
-def test_two_scenes_of_one_name_are_refused(right, capsys, tmp_path):
-    file = tmp_path / "other.toml"
-    file.write_text(HINGE.read_text("utf-8"), "utf-8")
-    assert run(["compare", "hinge", str(file)], right) == 2
-    assert "hinge" in capsys.readouterr().err
-
-
-def test_a_place_that_cannot_be_written_is_a_sentence(right, capsys, tmp_path):
-    (tmp_path / "file").write_text("in the way", "utf-8")
-    assert run(["compare", "hinge", "--quiet", "--out", str(tmp_path / "file" / "r")], right) == 2
-    assert run(["solve", "hinge", "--quiet", "--json", str(tmp_path / "file" / "x.json")], right) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 2
-    assert "Cannot write" in said
-
-
-@pytest.mark.parametrize("command", ["solve", "compare"])
-def test_a_place_for_json_is_seen_to_before_anything_is_solved(capsys, tmp_path, command):
-    def unasked(scene, choices):
-        raise AssertionError("solved before the place was known to be wrong")
-
-    (tmp_path / "file").write_text("")
-    code = run([command, "hinge", "--json", str(tmp_path / "file" / "numbers.json")], Solvers(unasked, unasked))
-    assert code == 2
-    assert "Cannot write" in capsys.readouterr().err
-
-
 def test_runs_with_one_trouble_are_named_in_one_sentence(right, capsys):
     run(["compare", "hinge", "--quiet"], Solvers(ended(right.cprbm), right.fea))
     assert "cprbm, cprbm finer, cprbm beside: it ended early" in capsys.readouterr().out
@@ -360,13 +194,6 @@ def test_an_interruption_leaves_what_is_finished(right, capsys, tmp_path):
     assert 'id="hinge"' in (tmp_path / "r" / "index.html").read_text("utf-8")
     assert (tmp_path / "r" / "hinge" / "comparison.json").is_file()
     assert len(json.loads((tmp_path / "all.json").read_text("utf-8"))["cases"]) == 1
-
-
-def test_help_and_version_are_no_mistakes(capsys):
-    assert run(["--help"]) == 0
-    assert "compare" in capsys.readouterr().out
-    assert run(["compare", "--help"]) == 0
-    assert "--kinematics" in capsys.readouterr().out
 
 
 PROGRAM = "from comparisons.cli.program import main\nif __name__ == '__main__':\n    main()\n"
@@ -453,12 +280,6 @@ def test_the_version_is_a_line_whether_or_not_the_package_is_installed(capsys, m
     assert captured.err == ""
 
 
-def test_an_unknown_command_is_refused_with_those_that_there_are(capsys):
-    assert run(["compar", "hinge"]) == 2
-    said = capsys.readouterr().err
-    assert "found 'compar', no command of 'cprbm' (is 'compare' meant?); allowed: new, import, solve, compare" in said
-
-
 PRESTRESSED = (Path(cases.__file__).parent / "prestressed.toml").read_text("utf-8")
 FEW = re.sub(r"shown = .*\n", "", PRESTRESSED)
 FEW = re.sub(r"stations = \[\n    0\.0,.*?\]", "stations = [0.0, 0.5, 1.0, 1.5]", FEW, flags=re.DOTALL)
@@ -469,30 +290,6 @@ def asked_of(tmp_path, source):
     file = tmp_path / "prestressed.toml"
     file.write_text(source, "utf-8")
     return str(file)
-
-
-WRONG_ASSEMBLIES = {
-    "too short": (PRESTRESSED.replace("0.06]", "0.05]", 1), "a beam too short to reach 'B'"),
-    "no stations": (re.sub(r"stations = \[.*?\]", "stations = []", PRESTRESSED, flags=re.DOTALL), "stages[0].stations"),
-    "a stop in the way as drawn": (
-        PRESTRESSED.replace('["= -t/2", 0.06]', "[-0.02, 0.05]")
-        .replace("beam1 = 4.0, ", "")
-        .replace("most = 0.785398163397448", "most = -1.3", 1)
-        .replace("least = -0.785398163397448", "least = -1.4", 1),
-        "stops.stopB",
-    ),
-    "a limit above the other": (PRESTRESSED.replace("least = -0.78", "least = 0.79", 1), "less than the most"),
-}
-
-
-@pytest.mark.parametrize("wrong", WRONG_ASSEMBLIES)
-@pytest.mark.parametrize("command", ["solve", "compare", "converge"])
-def test_a_wrong_assembly_ends_with_2(tmp_path, capsys, command, wrong):
-    source, words = WRONG_ASSEMBLIES[wrong]
-    assert run([command, asked_of(tmp_path, source), "--quiet"]) == 2
-    captured = capsys.readouterr()
-    assert words in captured.err
-    assert captured.out == ""
 
 
 @pytest.mark.parametrize("command", ["solve", "compare"])
@@ -546,29 +343,72 @@ def test_help_shows_every_command_once_under_three_headings(capsys):
 
 
 def test_links_is_the_long_name_of_n(right, capsys):
-    """Both names give the same numbers; ``-n`` beside ``--tol`` is refused under either name."""
+    """Both names give the same numbers."""
     printed = []
     for name in ("-n", "--links"):
         assert run(["solve", "hinge", name, "10", "--json", "-"], solvers=right) == 0
         printed.append(re.sub(r'"seconds": [^,]+', "", capsys.readouterr().out))
     assert printed[0] == printed[1]
-    assert run(["solve", "hinge", "--links", "10", "--tol", "1%"], solvers=right) == 2
-    assert "--tol and -n" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [["compare", "no\x1b[35m.toml"], ["solve", "tapered", "--set", "\x1b[35m=3"], ["compare", "key.toml"],
-     ["import", "\x1b[35m.dxf", "--thickness", "1", "--width", "1"], ["\x1b[35m"]],
-    ids=["path", "parameter", "key", "drawing", "command"],
-)  # fmt: skip
-def test_no_control_character_of_a_file_or_argument_reaches_the_terminal(
-    arguments, right, monkeypatch, tmp_path, capsys
-):
-    (tmp_path / "key.toml").write_text('name = "a"\n["\\u001b[35m"]\na = 1\n', "utf-8")
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("click.utils.should_strip_ansi", lambda *given: False)  # as on a terminal
-    assert run(arguments, right) == 2
-    said = capsys.readouterr().err
-    assert "\x1b" not in said
-    assert "\\x1b[35m" in said
+MODULE = [sys.executable, "-m", "comparisons"]
+ENVIRONMENT = os.environ | {"PYTHONPATH": str(ROOT)}
+
+
+def completed(*words):
+    """What bash is given for the last of the words: kinds and values."""
+    asked = {"_CPRBM_COMPLETE": "bash_complete", "COMP_WORDS": " ".join(words), "COMP_CWORD": str(len(words) - 1)}
+    done = subprocess.run(MODULE, env=ENVIRONMENT | asked, capture_output=True, text=True, check=True)
+    return [tuple(line.split(",")) for line in done.stdout.splitlines()]
+
+
+def test_cases_and_files_are_offered_where_they_may_stand():
+    names = [("plain", name) for name in cases.names() if name.startswith("gripper")]
+    assert len(names) > 1
+    assert completed("cprbm", "solve", "gripper") == [("file", "gripper"), *names]
+    assert completed("cprbm", "solve", "al") == [("file", "al")]
+    assert completed("cprbm", "compare", "hinge", "al") == [("file", "al"), ("plain", "all")]
+
+
+def test_commands_and_options_are_offered():
+    assert completed("cprbm", "so") == [("plain", "solve")]
+    assert completed("cprbm", "bench", "hinge", "--method", "slsq") == [("plain", "slsqp")]
+
+
+def test_whatever_takes_a_case_offers_them():
+    asking = {
+        name: parameter
+        for name in commands.list_commands(None)
+        for parameter in commands.get_command(None, name).params
+        if "CASE" in (parameter.metavar or "")
+    }
+    assert {"solve", "compare", "report"} <= set(asking)
+    for name, parameter in asking.items():
+        context = commands.make_context("cprbm", [name, "--help"], resilient_parsing=True)
+        assert "wrapped" in [item.value for item in parameter.shell_complete(context, "wr")], name
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="no bash to ask")
+def test_a_real_bash_that_was_taught_completes(tmp_path):
+    program = tmp_path / "cprbm"
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m comparisons "$@"\n')
+    program.chmod(0o755)
+    script = f"""
+eval "$(_CPRBM_COMPLETE=bash_source {program})"
+COMP_WORDS=({program} view wra) COMP_CWORD=2
+_cprbm_completion {program} 2>/dev/null
+echo "${{COMPREPLY[@]}}"
+"""
+    path = f"{tmp_path}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        ["bash", "-c", script], env=ENVIRONMENT | {"PATH": path}, capture_output=True, text=True, check=True
+    )
+    assert done.stdout == "wrapped\n", done.stderr
+
+
+def test_the_program_is_a_module_too():
+    listed = subprocess.run([*MODULE, "list"], env=ENVIRONMENT, capture_output=True, text=True, check=True)
+    assert [line.split()[0] for line in listed.stdout.splitlines()] == list(cases.names())
+    wrong = subprocess.run([*MODULE, "nothing"], env=ENVIRONMENT, capture_output=True, text=True, check=False)
+    assert wrong.returncode == 2
+    assert wrong.stderr.startswith("cprbm: found 'nothing'")

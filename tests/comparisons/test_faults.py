@@ -4,6 +4,8 @@ import errno
 import filecmp
 import gzip
 import json
+import math
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -15,6 +17,7 @@ import pytest
 
 from comparisons import writing
 from comparisons.cli.main import run
+from comparisons.executor import WorkerDiedError, call_fresh
 from comparisons.pairing import Solvers
 from comparisons.present import page
 from tests.comparisons.killed import NAMES, QUESTION
@@ -132,7 +135,7 @@ def test_a_full_disk_at_any_write_is_a_sentence_and_leaves_whole_files(tmp_path,
         assert same_files(whole, out)
 
 
-@pytest.mark.parametrize("command", ["compare", "converge", "bench", "solve"])
+@pytest.mark.parametrize("command", ["bench", "solve"])
 def test_a_folder_that_takes_no_files_is_a_sentence_before_anything_is_solved(asked, capsys, command):
     """The folder of the system's own tables refuses whoever asks."""
 
@@ -242,3 +245,37 @@ def running(pid):
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except (FileNotFoundError, ProcessLookupError):
         return False
+
+
+def test_what_is_called_is_called_in_another_process():
+    assert call_fresh(os.getpid) != os.getpid()
+    assert call_fresh(math.hypot, 3.3, 5.6) == 6.5
+
+
+def test_what_it_raises_is_raised_here():
+    with pytest.raises(ValueError, match="math domain error"):
+        call_fresh(math.sqrt, -0.3)
+
+
+@pytest.mark.parametrize(("ends", "by", "with_"), [(os._exit, 139, 139), (signal.raise_signal, 9, -9)])
+def test_one_that_ends_by_force_is_told_of(ends, by, with_):
+    with pytest.raises(WorkerDiedError, match=f"ended with {with_}$"):
+        call_fresh(ends, by)
+
+
+def test_no_semaphores_are_needed(monkeypatch):
+    def refused(*_):
+        raise OSError(13, "Permission denied")
+
+    monkeypatch.setattr("multiprocessing.synchronize.SemLock.__init__", refused)
+    assert call_fresh(math.floor, 7.9) == 7
+
+
+def test_an_interrupt_ends_it(monkeypatch):
+    def interrupted(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("multiprocessing.connection.Connection.recv", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        call_fresh(signal.pause)
+    assert not multiprocessing.active_children()

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from comparisons.geometry import length, points, radius
+from comparisons.geometry import length, points
 from cprbm_scene import Arc, Line, Polynomial
 
 HALF = Arc(kind="arc", center=(0.0, 0.0), start=(-2.0, 0.0), end=(2.0, 0.0), direction="counterclockwise")
@@ -19,10 +19,9 @@ def test_length_is_the_circles():
     assert length(three_quarters) == pytest.approx(1.5 * math.pi, rel=1e-15)
 
 
-def test_a_line_has_pythagoras_length_and_no_curvature():
+def test_a_line_has_pythagoras_length():
     line = Line(kind="line", start=(1.0, 1.0), end=(4.0, 5.0))
     assert length(line) == 5.0
-    assert radius(line) == math.inf
     np.testing.assert_allclose(points(line, np.array([0.0, 2.5, 5.0])), [[1, 1], [2.5, 3], [4, 5]])
 
 
@@ -38,12 +37,9 @@ def test_points_go_clockwise():
 
 
 def test_a_parabola():
-    # reference: y = x²/2 has the arc length ½(x √(1 + x²) + arsinh x) from its vertex, where its radius is one
+    # reference: y = x²/2 has the arc length ½(x √(1 + x²) + arsinh x) from its vertex
     parabola = Polynomial(kind="polynomial", axis="x", coefficients=(0.0, 0.0, 0.5), range=(2.0, -1.0))
     to_vertex, beyond = (0.5 * (x * math.hypot(1.0, x) + math.asinh(x)) for x in (2.0, 1.0))
     assert length(parabola) == pytest.approx(to_vertex + beyond, rel=1e-14)
-    assert radius(parabola) == pytest.approx(1.0, rel=1e-12)
     found = points(parabola, np.array([0.0, to_vertex, to_vertex + beyond]))
     np.testing.assert_allclose(found, [[2, 2], [0, 0], [-1, 0.5]], atol=1e-13)
-    level = parabola.model_copy(update={"coefficients": (3.0, 0.0)})
-    assert radius(level) == math.inf

@@ -74,16 +74,20 @@ def test_a_table_is_sorted_by_its_headings_with_the_keyboard(tab):
     assert tab.run("document.activeElement.tagName") == "BUTTON"
 
 
-@pytest.mark.parametrize("width", WIDTHS)
-def test_nothing_is_wider_than_the_window(tab, width):
-    tab.seen(width, phone=width < 500)
-    assert tab.run("innerWidth") == width
-    assert tab.run("document.documentElement.scrollWidth") <= width
+def test_nothing_is_wider_than_the_window_and_text_of_figures_is_legible(tab):
     beyond = """[...document.querySelectorAll("body *")]
         .filter((each) => !each.closest(".scroll, .contents, pre, .skip"))
         .filter((each) => each.getBoundingClientRect().right > innerWidth + 1)
         .map((each) => each.outerHTML.slice(0, 90))"""
-    assert tab.run(beyond) == []
+    scales = """[...document.querySelectorAll("figure img")]
+        .map((each) => each.getBoundingClientRect().width / each.naturalWidth)"""
+    for width in WIDTHS:
+        tab.seen(width, phone=width < 500)
+        assert tab.run("innerWidth") == width
+        assert tab.run("document.documentElement.scrollWidth") <= width
+        assert tab.run(beyond) == []
+        # 11 points are 14.7 pixels; 9 pixels are the least legible size
+        assert min(tab.run(scales)) * 14.7 > 9.0
 
 
 def test_words_are_legible_in_the_light_and_in_the_dark(tab):

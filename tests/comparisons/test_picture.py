@@ -1,4 +1,4 @@
-"""The drawing list and the figures made of it: places of points and edges, curves, windows, names."""
+"""The drawing list and the figures: places of points and edges, forces, limits, curves and windows."""
 
 import math
 from dataclasses import replace
@@ -6,24 +6,31 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import cprbm
 from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.present import figures
 from comparisons.present.curves import curve_figures
-from comparisons.present.picture import view_of
-from comparisons.present.strips import left_of
-from cprbm_scene import Certificate, Shape, Stage, StationAnswer, scene_from
+from comparisons.present.picture import bounds_of, carried, outline_of, view_of, views_of
+from comparisons.present.strips import left_of, with_stresses
+from comparisons.present.vtu import force_block
+from cprbm_scene import (
+    Certificate,
+    CircleContact,
+    FunctionContact,
+    HalfPlaneContact,
+    LineContact,
+    Shape,
+    Stage,
+    StationAnswer,
+    scene_from,
+)
 from cprbm_scene.frozendict import frozendict
 from tests.cprbm_scene.editing import edited
 from tests.cprbm_scene.scenes import LINKAGE
 from tests.verdict.jumping import Jumping
-
-
-def curves_of(compared):
-    return curve_figures(compared.scene, compared.runs.reference, compared.runs.cprbm[0])
-
 
 RIGID = {"beam": "spring", "thick": False}
 EDGE = {**RIGID, "kind": "beam-line", "body": "rocker", "points": [[0.15, 0.0], [0.15, 0.1]], "side": "right"}
@@ -34,13 +41,17 @@ CURVE = {
 }  # fmt: skip
 
 
+def curves_of(compared):
+    return curve_figures(compared.scene, compared.runs.reference, compared.runs.cprbm[0])
+
+
 @pytest.fixture(scope="module")
 def linkage():
     return scene_from(edited(("contacts", {"edge": EDGE, "plane": PLANE, "curve": CURVE}), base=LINKAGE))
 
 
 @pytest.fixture(scope="module")
-def station(linkage):
+def station():
     """The rocker has turned by a right angle, clockwise, about its first point."""
     s = np.linspace(0.0, 1.0, 5)
     ends = {"spring": Shape(s, 0.2 + 0.05 * s, 0.0 * s)}
@@ -48,100 +59,147 @@ def station(linkage):
     return StationAnswer("load", 1.0, {}, ends, {}, Certificate(*[0.0] * 8, iterations=0), bodies=turned)
 
 
-def test_points_and_edges_move_with_their_bodies(linkage, station):
-    view = view_of(linkage, station)
-    first = np.array(next(iter(linkage.bodies["rocker"].points.values())))
-    for name, place in linkage.bodies["rocker"].points.items():
-        x, y = np.array(place) - first
-        assert view.points[name] == pytest.approx((first[0] + 0.01 + y, first[1] - x))
-    edge = next(each for each in view.obstacles if each.name == "edge")
-    for place, drawn in zip(edge.outline, EDGE["points"], strict=True):
-        x, y = np.array(drawn) - first
-        assert place == pytest.approx((first[0] + 0.01 + y, first[1] - x))
-    plane = next(each for each in view.obstacles if each.name == "plane")
-    assert plane.outline[:, 0] == pytest.approx([0.3, 0.3])
-
-
-def test_ends_of_beams_say_where_points_of_bodies_without_a_motion_are(linkage, station):
-    view = view_of(linkage, replace(station, bodies={}))
-    end = linkage.beams["spring"].end.point
-    assert view.points[end] == pytest.approx([0.25, 0.0])
-
-
-def test_normals_point_to_the_left():
-    assert left_of(np.array([[2.0, 0.0], [0.0, 3.0]])) == pytest.approx(np.array([[0.0, 1.0], [-1.0, 0.0]]))
-
-
-def case(every):
-    whole = cases.opened("prestressed")
-    stages = tuple(
-        stage.model_copy(update={"stations": stage.stations[::every], "shown": stage.stations[:1]})
-        for stage in whole.stages
-    )
-    return whole.model_copy(update={"stages": stages, "claims": ()})
+@pytest.fixture(scope="module")
+def solved():
+    """The hinge with stresses at all sections, and the views of all stations."""
+    scene = with_stresses(cases.opened("hinge"))
+    answer = cprbm.answer(scene, cprbm.Settings(links=19))
+    return scene, answer, views_of(scene, answer)
 
 
 @pytest.fixture(scope="module")
-def comparison():
-    scene = case(10)
+def jumping():
+    """The prestressed case at a tenth of its stations, by made-up solvers with jumps."""
+    whole = cases.opened("prestressed")
+    stages = tuple(
+        stage.model_copy(update={"stations": stage.stations[::10], "shown": stage.stations[:1]})
+        for stage in whole.stages
+    )
+    scene = whole.model_copy(update={"stages": stages, "claims": ()})
     return compare(scene, paired(scene, Choices(), Solvers(Jumping("cprbm"), Jumping("fea"))))
 
 
-def test_a_drive_that_goes_back_and_forth_has_its_curve(comparison):
-    (path,) = curves_of(comparison)
-    assert path.name == "path-alpha"
+def test_points_and_edges_move_with_their_bodies(linkage, station):
+    view = view_of(linkage, station)
+    first = np.array(next(iter(linkage.bodies["rocker"].points.values())))
+    edge, plane = (next(part for part in view.of("edge") if part.name == name) for name in ("edge", "plane"))
+    drawn = [*linkage.bodies["rocker"].points.values(), *EDGE["points"]]
+    moved = [*(view.points[name] for name in linkage.bodies["rocker"].points), *edge.points]
+    for place, found in zip(drawn, moved, strict=True):
+        x, y = np.array(place) - first
+        assert found == pytest.approx((first[0] + 0.01 + y, first[1] - x))
+    assert plane.points[:, 0] == pytest.approx([0.3, 0.3])
+    # without a stated motion the end of a beam says where the point of the body is
+    without = view_of(linkage, replace(station, bodies={}))
+    assert without.points[linkage.beams["spring"].end.point] == pytest.approx([0.25, 0.0])
+
+
+def test_a_body_turns_about_its_first_point():
+    scene = cases.opened("hinge")
+    (x, y), *_ = scene.bodies["BD"].points.values()
+    at = StationAnswer("load", 1.0, {}, {}, {}, None, bodies={"BD": np.array([0.02, -0.07, 0.5 * math.pi])})
+    # a quarter turn takes (0.7, 0) beside the first point to (0, 0.7)
+    assert carried(scene, at, "BD", np.array([[x + 0.7, y]]))[0] == pytest.approx([x + 0.02, y - 0.07 + 0.7])
+
+
+FREE = {"beam": "b", "body": "g"}
+BELOW = [
+    LineContact(kind="beam-line", points=((0.0, 0.0), (0.7, 0.0), (1.3, 0.0)), side="left", **FREE),
+    LineContact(kind="beam-line", points=((1.3, 0.0), (0.0, 0.0)), side="right", **FREE),
+    HalfPlaneContact(kind="beam-half-plane", point=(0.3, 0.0), normal=(0.0, 0.9), **FREE),
+    FunctionContact(kind="beam-function", axis="x", coefficients=(0.0, 0.0), range=(-0.3, 0.9), side="above", **FREE),
+]
+
+
+@pytest.mark.parametrize("contact", BELOW, ids=lambda contact: f"{contact.kind}")
+def test_the_solid_side_lies_behind_the_edge(contact):
+    outline, solid, closed = outline_of(contact, 3.0, 0.11)
+    assert not closed
+    assert outline[:, 1] == pytest.approx(0.0, abs=1e-15)
+    assert solid[:, 1] == pytest.approx(-0.11, rel=1e-12)
+
+
+def test_the_solid_side_of_a_function_of_y_of_a_corner_and_of_a_circle():
+    along_y = FunctionContact(
+        kind="beam-function", axis="y", coefficients=(0.3, 0.0), range=(0.0, 0.9), side="above", **FREE
+    )
+    outline, solid, _ = outline_of(along_y, 3.0, 0.11)
+    assert outline[:, 0] == pytest.approx(0.3)
+    assert solid[:, 0] == pytest.approx(0.19)  # the beam lies where x is larger
+    corner = LineContact(kind="beam-line", points=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0)), side="left", **FREE)
+    assert outline_of(corner, 3.0, 0.1)[1][1] == pytest.approx([1.1, -0.1])  # the same depth behind both pieces
+    circle = CircleContact(kind="beam-circle", center=(0.5, 0.4), radius=0.13, **FREE)
+    outline, solid, closed = outline_of(circle, 1.0, 0.1)
+    assert closed
+    assert np.hypot(*(outline - solid).T) == pytest.approx(0.13)
+    assert left_of(np.array([[2.0, 0.0], [0.0, 3.0]])) == pytest.approx(np.array([[0.0, 1.0], [-1.0, 0.0]]))
+
+
+def test_contact_forces_sum_to_the_probe_and_press_in_one_place(solved):
+    scene, answer, views = solved
+    pushes = views[-1].arrows_of("push")
+    (stated,) = answer.stations[-1].values["contact.force"]
+    assert [push.on for push in pushes] == ["beam1", "beam2"]
+    assert [push.size for push in pushes] == pytest.approx([stated, stated], rel=1e-9)
+    assert np.abs(force_block(views[-1]).values["contact_force"].sum(axis=0)).max() < 1e-9 * stated
+    assert force_block(views[0]) is None  # the contact is open
+    first, second = (push.middle for push in pushes)
+    assert math.dist(first, second) < 0.01 * scene.beams["beam1"].thickness
+
+
+def test_limits_span_the_shown_colours_and_arrows(solved):
+    scene, answer, views = solved
+    largest = max(np.abs(answer.stations[-1].values[f"{beam}.bending_stress"]).max() for beam in scene.beams)
+    bounds = bounds_of(scene, views, "bending_stress")
+    assert (bounds.least, bounds.most) == (-largest, largest)
+    assert bounds_of(scene, views, "combined_stress").least == 0.0
+    vectors = [bounds.arrow(push) for view in views for push in view.arrows_of("push")]
+    assert max(np.hypot(*vector) for vector in vectors if vector is not None) == pytest.approx(0.13 * bounds.size)
+
+
+def test_the_rays_of_a_stop_turn_with_its_body(jumping):
+    """The body of the stop turns by the angle of the station, and two of the four rays with it."""
+    scene = jumping.scene
+    last = next(at for at in jumping.runs.reference.stations if at.value > 1.57)
+    names = {name for name, body in scene.bodies.items() if "B" in body.points}
+    turned = replace(last, bodies=frozendict(dict.fromkeys(names, np.array([0.0, 0.0, last.value]))))
+    angles = []
+    for at in (turned, replace(last, bodies={})):
+        rays = [np.diff(part.points, axis=0)[0] for part in view_of(scene, at).of("stop")]
+        angles.append([math.degrees(math.atan2(y, x)) for x, y in rays])
+    differences = {round((after - before) % 360.0, 6) for after, before in zip(*angles, strict=True)}
+    assert differences <= {0.0, round(math.degrees(last.value), 6)}
+    assert len(angles[0]) == 4
+
+
+def test_a_drive_that_goes_back_and_forth_has_all_its_figures(jumping):
+    found = {figure.name: figure for figure in figures.comparison_figures(jumping)}
+    assert list(found) == ["shapes", "stations", "path-alpha", "reaction-alpha", "stress"]
+    assert "apart from its pin" in found["shapes"].caption
+    path = found["path-alpha"]
     assert path.caption.startswith("Reaction moment")
     assert "potential energy against alpha" in path.caption
     assert "Dashed: jumps" in path.caption
-    assert path.svg == next(curves_of(comparison)).svg
+    assert path.svg == next(curves_of(jumping)).svg
 
 
-def test_shown_stations_stand_beside_the_last(comparison):
-    found = figures.comparison_figures(comparison)
-    assert [figure.name for figure in found] == ["shapes", "stations", "path-alpha", "reaction-alpha", "stress"]
-    assert "apart from its pin" in found[0].caption
+def test_a_curve_needs_two_stations_and_may_go_back(hinge, right):
+    def of(*stages):
+        scene = hinge.model_copy(update={"stages": stages, "claims": ()})
+        return list(curves_of(compare(scene, paired(scene, Choices(), right))))
 
-
-def test_the_rays_of_a_stop_turn_with_its_body(comparison):
-    """At 90° the line from B to C points up, and 45° to either side of it is where the rays go."""
-    scene = comparison.scene
-    last = next(at for at in comparison.runs.reference.stations if at.value > 1.57)
-    names = {name for name, body in scene.bodies.items() if "B" in body.points}
-    turned = replace(last, bodies=frozendict(dict.fromkeys(names, np.array([0.0, 0.0, last.value]))))
-    rays = [np.diff(part.points, axis=0)[0] for part in view_of(scene, turned).of("stop")]
-    bases = [math.degrees(math.atan2(y, x)) for x, y in rays]
-    at_rest = [np.diff(part.points, axis=0)[0] for part in view_of(scene, replace(last, bodies={})).of("stop")]
-    before = [math.degrees(math.atan2(y, x)) for x, y in at_rest]
-    differences = {round((a - b) % 360.0, 6) for a, b in zip(bases, before, strict=True)}
-    assert differences <= {0.0, round(math.degrees(last.value), 6)}
-    assert len(rays) == 4
-
-
-def test_a_load_that_goes_back_has_the_curve_of_its_body(hinge, right):
-    back = Stage(name="back", steps="M", stations=(0.3, 0.1))
-    scene = hinge.model_copy(update={"stages": (*hinge.stages, back)})
-    (path,) = curves_of(compare(scene, paired(scene, Choices(), right)))
+    load = hinge.stages[0]
+    assert of(load.model_copy(update={"stations": (0.3,), "shown": (0.3,)})) == []
+    back = Stage(name="back", steps="M", stations=(0.1,))
+    (path,) = of(load.model_copy(update={"stations": (0.3, 0.6), "shown": (0.6,)}), back)
+    assert path.name == "path-M"
     assert path.caption.startswith("Rotation")
 
 
-def test_a_single_station_is_no_curve(hinge, right):
-    """A point has no curve, on axes that must have a length."""
-
-    def of(*stations):
-        stage = hinge.stages[0].model_copy(update={"stations": stations, "shown": stations[-1:]})
-        scene = hinge.model_copy(update={"stages": (stage,), "claims": ()})
-        return compare(scene, paired(scene, Choices(), right))
-
-    assert list(curves_of(of(0.3))) == []
-    assert [each.name for each in curves_of(of(0.3, 0.6))] == ["path-M"]
-
-
-def test_a_mechanism_that_draws_itself_together_is_shown_as_large_as_it_is(hinge, right):
-    """A window of the beams alone where the mechanism at rest is more than twice as large."""
-    answer = right.cprbm(hinge, Choices())
-    view = view_of(hinge, answer.stations[-1])
-    low, high = figures._extent(hinge, [view])
+def test_a_window_shows_the_beams_alone_where_the_rest_is_twice_as_large(solved):
+    scene, _, views = solved
+    low, high = figures.extent(scene, views[-1:])
     assert np.max(high - low) > 0.05
-    small = {name: replace(strip, line=0.02 * strip.line) for name, strip in view.strips.items()}
-    low, high = figures._extent(hinge, [replace(view, strips=small)])
+    small = {name: replace(strip, line=0.02 * strip.line) for name, strip in views[-1].strips.items()}
+    low, high = figures.extent(scene, [views[-1]._replace(strips=small)])
     assert np.max(high - low) < 0.003

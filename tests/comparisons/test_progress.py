@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from comparisons.cli.bars import Rounds, bar
 from comparisons.cli.main import run
-from comparisons.cli.output import Rounds, progress
 from comparisons.logs import PACKAGES, RUNS, level, steps_from
 
 ROOT = Path(__file__).parents[2]
@@ -124,7 +124,7 @@ def test_steps_are_heard_from_those_alone_who_are_listened_to():
 def test_through_rounds_of_any_length_a_bar_never_goes_back_nor_beyond_its_item(items, share):
     rounds, before = Rounds(share), 0.0
     for place, each in enumerate(items):
-        assert rounds.next_item() == place
+        assert rounds.begin(place) == place
         for whole in each:
             for done in range(1, whole + 1):
                 now = rounds.at(done, whole)
@@ -134,11 +134,11 @@ def test_through_rounds_of_any_length_a_bar_never_goes_back_nor_beyond_its_item(
 
 
 def test_one_round_goes_evenly_to_the_end():
-    rounds = Rounds(1.0)
-    rounds.next_item()
+    rounds = Rounds()
     assert [rounds.at(done, 4) for done in (1, 2, 3, 4)] == [0.25, 0.5, 0.75, 1.0]
 
 
 @pytest.mark.parametrize("shown", [True, False])
 def test_items_are_handed_on_as_they_are(shown):
-    assert list(progress([3, 1, 2], shown=shown)) == [3, 1, 2]
+    with bar(3, shown=shown) as progress:
+        assert list(progress.through([3, 1, 2])) == [3, 1, 2]

@@ -18,7 +18,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.plain import text_of
 from comparisons.present import curves, json_document
-from comparisons.present.reaction_tables import summary
+from comparisons.present.case_tables import summary
 from comparisons.reactions import (
     EQUILIBRIUM_ALLOWANCE,
     MESH_ALLOWANCE,

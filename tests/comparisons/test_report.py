@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections import Counter
 from dataclasses import dataclass, field, replace
 from html.parser import HTMLParser
 from itertools import count, pairwise
@@ -125,32 +126,23 @@ def test_all_parts_stand_in_the_folder_and_on_the_page(written):
     assert data["machine"]["python"]
 
 
-def test_the_page_is_well_formed_and_nothing_of_it_is_named_twice(written):
-    elements = Page(written[1]).elements
-    names = [attributes["id"] for _, attributes in elements if "id" in attributes]
+def test_the_page_is_well_formed_and_every_part_has_a_name(written):
+    parsed = Page(written[1])
+    names = [attributes["id"] for _, attributes in parsed.elements if "id" in attributes]
+    wanted = {link[1:] for _, attributes in parsed.elements if (link := attributes.get("href") or "").startswith("#")}
     assert len(names) == len(set(names))
-    wanted = {link[1:] for _, attributes in elements if (link := attributes.get("href") or "").startswith("#")}
     assert len(wanted) > 3
     assert wanted <= set(names)
-
-
-def test_every_figure_says_what_it_shows(written):
-    within = Page(written[1]).within
-    figures = [attributes for tag, attributes, _ in within if tag == "figure"]
-    drawn = [attributes for tag, attributes, around in within if tag in {"svg", "img"} and "figure" in around]
-    assert len(figures) == len(drawn) > 5
-    assert sum(tag == "figcaption" for tag, _, _ in within) == len(figures)
-    for attributes in drawn:
-        assert attributes.get("alt") or (attributes["role"] == "img" and len(attributes["aria-label"]) > 15)
-
-
-def test_headings_go_down_by_one_and_tables_have_captions_and_scopes(written):
-    within = Page(written[1]).within
-    levels = [int(tag[1]) for tag, _, _ in within if re.fullmatch("h[1-6]", tag)]
+    count = Counter(tag for tag, _, _ in parsed.within)
+    levels = [int(tag[1]) for tag, _, _ in parsed.within if re.fullmatch("h[1-6]", tag)]
     assert levels[0] == 1
     assert all(after - before <= 1 for before, after in pairwise(levels))
-    assert sum(tag == "caption" for tag, _, _ in within) == sum(tag == "table" for tag, _, _ in within) > 10
-    assert all(attributes.get("scope") in {"col", "row"} for tag, attributes, _ in within if tag == "th")
+    drawn = [attributes for tag, attributes, around in parsed.within if tag in {"svg", "img"} and "figure" in around]
+    assert count["figure"] == len(drawn) == count["figcaption"] > 5
+    assert all(each.get("alt") or (each["role"] == "img" and len(each["aria-label"]) > 15) for each in drawn)
+    captions = re.findall(r"<caption><span>([^<]*)</span>", written[1])
+    assert len(captions) == len(set(captions)) == count["caption"] == count["table"] > 10
+    assert all(attributes.get("scope") in {"col", "row"} for tag, attributes, _ in parsed.within if tag == "th")
 
 
 def test_the_page_asks_nothing_of_a_network(written):
@@ -352,7 +344,7 @@ def put(comparison, tmp_path_factory):
     return folder
 
 
-def test_the_folder_of_compare_holds_everything(put):
+def test_the_folder_of_compare_holds_everything_and_figures_carry_no_date(put, comparison):
     found = {str(path.relative_to(put)) for path in put.rglob("*") if path.is_file()}
     names = ("shapes", "stress", "path-M", "contact-forces")
     figures = {f"hinge/{name}.{kind}" for name in names for kind in ("svg", "png")}
@@ -363,9 +355,6 @@ def test_the_folder_of_compare_holds_everything(put):
     answers = read_answers(put / "hinge" / "answers.json.gz")
     assert len(answers) == 8
     assert {"cprbm paper", "cprbm shear"} <= answers.keys()
-
-
-def test_figures_are_the_same_bytes_every_time_and_carry_no_date(put, comparison):
     for figure in page.figures_of(comparison):
         assert (put / "hinge" / f"{figure.name}.svg").read_bytes() == figure.svg
         assert (put / "hinge" / f"{figure.name}.png").read_bytes() == figure.png
@@ -387,11 +376,6 @@ def test_the_page_of_compare_shows_verdict_claims_and_certificates(put):
         assert part in text.replace(" %", "\u00a0%"), part
 
 
-def test_no_table_of_a_page_stands_twice(written):
-    captions = re.findall(r"<caption><span>([^<]*)</span>", written[1])
-    assert len(captions) == len(set(captions)) > 10
-
-
 def test_a_case_that_did_not_complete_has_a_chapter_too(right):
     early = Solvers(MadeUp("cprbm", 0.0, until=2), right.fea)
     found = compare(cases.opened("hinge"), paired(cases.opened("hinge"), Choices(), early))
@@ -401,14 +385,11 @@ def test_a_case_that_did_not_complete_has_a_chapter_too(right):
     assert "UNDECIDED" in page.html(page.report_page([chapter]))
 
 
-def test_a_later_case_leaves_the_earlier_on_the_page(comparison):
+def test_a_page_has_all_chapters_or_the_section_of_a_study_alone(comparison):
     other = replace(comparison, scene=comparison.scene.model_copy(update={"name": "other"}))
     text = page.html(page.report_page([page.case_chapter(each, ()) for each in (comparison, other)]))
     assert '<article id="hinge"' in text
     assert '<article id="other"' in text
-
-
-def test_the_page_of_a_study_has_its_section_alone():
     text = page.html(page.Page("Study", "", further=[Section("Heading", ("A sentence.",), name="study")]))
     assert "<h2>Heading</h2>" in text
     assert 'href="study.json"' in text

@@ -43,13 +43,6 @@ def test_what_is_there_is_kept(tmp_path, capsys):
     assert path.read_text(encoding="utf-8") == "my own"
 
 
-@pytest.mark.parametrize("name", ["", "9lives", "a/b", "über", "x" * 65])
-def test_a_name_that_no_scene_may_have_is_refused(tmp_path, capsys, name):
-    assert run(["new", name, "--out", str(tmp_path)]) == 2
-    assert f"found {name!r}; allowed: letters" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
 def test_the_schema_is_one_and_stands_beside_the_scene(tmp_path, capsys):
     run(["new", "one", "--out", str(tmp_path)])
     capsys.readouterr()
@@ -60,9 +53,10 @@ def test_the_schema_is_one_and_stands_beside_the_scene(tmp_path, capsys):
     assert f"#:schema ./{SCHEMA}" in (tmp_path / "one.toml").read_text(encoding="utf-8").splitlines()[0]
 
 
-@pytest.mark.parametrize("name", cases.scenes())
-def test_every_built_in_scene_is_as_the_schema_says(name):
-    jsonschema.validate(cases._data(name), schema())
+def test_every_built_in_scene_is_as_the_schema_says():
+    assert len(cases.scenes()) > 5
+    for name in cases.scenes():
+        jsonschema.validate(cases._data(name), schema())
 
 
 @pytest.mark.parametrize(

@@ -11,9 +11,8 @@ import pytest
 from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.cli.main import run
+from comparisons.cli.main import commands, run
 from comparisons.cli.options import tolerance
-from comparisons.cli.solve_ import command
 from comparisons.crew import ALONE
 from comparisons.pairing import Solvers, solvers_of
 from comparisons.tolerances.limits import limits_of
@@ -104,8 +103,8 @@ def test_ends_of_a_zone_that_would_change_places_are_kept(hinge, right):
 
 @pytest.mark.parametrize(("text", "fraction"), [("0.1%", 1e-3), (" 0.1 % ", 1e-3), ("0.001", 1e-3), ("1e-3", 1e-3)])
 def test_a_tolerance_is_a_percentage_or_a_fraction(text, fraction):
-    context = click.Context(command)
-    assert tolerance(context, command.params[0], text) == pytest.approx(fraction)
+    solve = commands.commands["solve"]
+    assert tolerance(click.Context(solve), solve.params[0], text) == pytest.approx(fraction)
 
 
 def test_solve_says_in_json_how_n_was_found(right, capsys):

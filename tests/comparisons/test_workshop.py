@@ -19,10 +19,10 @@ ELSEWHERE = "is a developers' tool: it runs in a checkout of the repository, not
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory):
-    """The packages as a wheel holds them, in a folder without ``tests`` and ``benchmarks``."""
+    """The packages as a wheel holds them, without ``tests`` and ``benchmarks``, with the stored kernels."""
     folder = tmp_path_factory.mktemp("installed")
     for package in PACKAGES:
-        shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(ROOT / package, folder / package)
     return folder
 
 

@@ -7,7 +7,7 @@ import pytest
 
 import cprbm
 from cprbm.chain import mechanism_of
-from cprbm.paper.boundaries import fitted_boundary
+from cprbm.paper.contacts import fitted_boundary
 from cprbm.paper.fit import fitted
 from cprbm_scene import Ending, scene_from
 from tests.cprbm.scenes import hinge, hinge_data, turned

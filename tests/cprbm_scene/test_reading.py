@@ -264,6 +264,7 @@ def test_a_fixed_body_without_points_has_a_point_at_its_edge():
         ("loads/M/kind", "gravity", "is 'distributed' meant?"),
         ("gravity", 9.81, "is a load of kind 'distributed' meant?"),
         ("beams/beam1/weight", 1.0, "is a load of kind 'distributed' meant?"),
+        ("beams/beam1/friction", 0.3, "friction is not modelled"),
         ("contacts/contact/friction_coefficient", 0.3, "friction_coefficient is not modelled"),
         ("materials/abs/yield_stress", 4e7, "yield_stress is not modelled"),
         ("loads/M/kind", "temperature", "temperature is not modelled"),

@@ -71,8 +71,9 @@ def annotations(record):
 
 
 def silent_on(record):
-    """A record's numbers that its docstring does not name, and arrays without shapes."""
+    """Numbers of a record without a name in its docstring or a docstring of the field; arrays without shapes."""
     text = inspect.getdoc(record) or ""
+    text += " ".join(name for name, field in getattr(record, "model_fields", {}).items() if field.description)
     numbers = [name for name, annotation in annotations(record).items() if NUMERIC.search(annotation)]
     silent = [name for name in numbers if not re.search(rf"\b{name}\b", text)]
     if any(ARRAY.search(annotation) for annotation in annotations(record).values()) and not SHAPE.search(text):

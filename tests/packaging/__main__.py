@@ -34,8 +34,6 @@ QUICK = (
     "tests/comparisons/test_documents.py",
     "tests/comparisons/test_pairing.py",
     "tests/comparisons/test_report.py",
-    "tests/comparisons/test_tidy.py",
-    "tests/comparisons/test_verdict.py",
 )
 """Tests of every room that take minutes together, run under each Python with warnings as errors."""
 TEST_LIBRARIES = ("pytest", "hypothesis", "jsonschema")

@@ -1,41 +1,19 @@
-"""What a scene can say, row by row: a small scene for each, and which solvers answer it.
-
-``docs/features.md`` shows the same table; :mod:`tests.together.test_features` solves every cell.
-"""
+"""Small scenes for the records of a scene; :mod:`tests.together.feature_rows` states the solvers of each."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from math import cos, pi, sin
+from math import cos, sin
 from typing import Any
 
-Data = dict[str, Any]
+from tests.cprbm_scene.editing import edited
 
-SOLVERS = {"auto": "CPRBM `auto`", "paper": "CPRBM `paper`", "fea": "FE", "exact": "exact", "solid": "solid"}
-ALL = frozenset(SOLVERS)
-NOT_EXACT, BOTH = ALL - {"exact"}, frozenset({"auto", "fea"})
-NOT_SOLID, BEAMS, THREE = ALL - {"solid"}, NOT_EXACT - {"solid"}, BOTH | {"solid"}
+Data = dict[str, Any]
 
 LENGTH, THICKNESS, WIDTH, MODULUS = 0.1, 1.0e-3, 0.012, 2.0e9
 RIGIDITY = MODULUS * WIDTH * THICKNESS**3 / 12.0  # N·m²
 FORCE, MOMENT = RIGIDITY / LENGTH**2, RIGIDITY / LENGTH
 STRIP: Data = {"thickness": THICKNESS, "width": WIDTH, "material": "m"}
-
-
-@dataclass(frozen=True)
-class Feature:
-    """One row: the ``group`` and what is ``said``, a scene that says it, and who answers it."""
-
-    group: str
-    said: str
-    data: Data
-    solvers: frozenset[str] = ALL
-
-    @property
-    def cells(self) -> Mapping[str, bool]:
-        """Whether each solver answers."""
-        return {solver: solver in self.solvers for solver in SOLVERS}
 
 
 def weld(point: str) -> Data:
@@ -133,13 +111,6 @@ def sized(**sizes: Any) -> Data:
     return data
 
 
-def held(**changes: Any) -> Data:
-    """A beam whose tip is pinned to a body that holds it otherwise."""
-    data = cantilever()
-    data["beams"]["beam"]["end"] = pin("T")
-    return data | changes
-
-
 def ended(end: Data) -> Data:
     """An arc whose end is welded, pinned, or free, its load upon the beam."""
     data = cantilever(arc(1.5), asked=("R.reaction", "R.reaction_moment", "scene.potential_energy"))
@@ -222,6 +193,9 @@ def moved(contact: Data) -> Data:
 CIRCLE: Data = {"kind": "beam-circle", "center": [0.06, -0.012], "radius": 0.01}
 PLANE: Data = {"kind": "beam-half-plane", "point": [0.0, -0.012], "normal": [0.1, 1.0]}
 TABLE: Data = {"kind": "beam-line", "points": [[0.02, -0.01], [0.2, -0.012]], "side": "left"}
+INSIDE: Data = {"kind": "beam-circle", "center": [0.05, 0.0], "radius": 0.06, "side": "inside"}
+ELLIPSE: Data = {"kind": "beam-ellipse", "center": [0.05, -0.04], "semi_axes": [0.03, 0.02], "angle": 0.3}
+RAIL: Data = {"kind": "beam-spline", "points": [[0.0, -0.03], [0.05, -0.01], [0.1, -0.03]], "side": "left"}
 ROOF: Data = {"kind": "beam-line", "points": [[0.03, -0.03], [0.05, -0.003], [0.08, -0.03]], "side": "left"}
 BLOCK: Data = ROOF | {"points": [[0.05, -0.003], [0.08, -0.03], [0.03, -0.03], [0.05, -0.003]]}
 HILL: Data = {
@@ -240,6 +214,12 @@ def two_beams(**contact: Any) -> Data:
     hints = {"boundary": "arch", "related": {"arch": {"x": [0.04, 0.08]}, "beam": {"x": [0.045, 0.075]}}}
     data["contacts"] = {"c": {"kind": "beam-beam", "between": ["beam", "arch"], "paper": hints} | contact}
     return data
+
+
+def crossing() -> Data:
+    """The same beams in two planes: the cantilever passes the arch."""
+    data = two_beams() | {"contacts": {}, "may_cross": [["beam", "arch"]]}
+    return data | {"probes": probes("T.displacement", "R.reaction")}
 
 
 def two_tapered() -> Data:
@@ -315,86 +295,38 @@ def itself_tapered() -> Data:
     return data
 
 
-FEATURES = (
-    Feature("theory", "of the CPRBM: stretch, shear, without contacts", cantilever(theory="shear"), ALL),
-    Feature("beams", "line", cantilever()),
-    Feature("beams", "circular arc", cantilever(arc(0.5 * pi))),
-    Feature("beams", "polynomial y = f(x)", cantilever(POLYNOMIAL)),
-    Feature("beams", "polynomial x = f(y)", cantilever(POLYNOMIAL | {"axis": "y"})),
-    Feature("beams", "spline through points", cantilever(SPLINE)),
-    Feature(
-        "beams", "thickness that varies", sized(thickness={"at": [0.0, 0.4, 1.0], "values": [1.2e-3, 0.8e-3, 1e-3]})
-    ),
-    Feature("beams", "width that varies", sized(width={"at": [0.0, 0.4, 1.0], "values": [0.02, 0.009, 0.012]})),
-    Feature("joints", "weld", ended(weld("G"))),
-    Feature("joints", "pin", ended(pin("G"))),
-    Feature("joints", "free end", ended({"joint": "free"})),
-    Feature("joints", "pin between two bodies", linked(), NOT_EXACT),
-    Feature("bodies", "free in the plane", cantilever(asked=(*ASKED, "tip.rotation"))),
-    Feature("bodies", "on a pivot", pivoted(), NOT_EXACT),
-    Feature("bodies", "slide", sliding()),
-    Feature("bodies", "slide with rotation", sliding(turns=True)),
-    Feature("bodies", "stop at a pin", stopped(), NOT_EXACT),
-    Feature("loads", "force on a body", cantilever(loads={"F": DOWN | {"direction": [-1.0, -1.0]}})),
-    Feature("loads", "moment on a body", cantilever(loads={"M": {"kind": "moment", "body": "tip"}})),
-    Feature(
-        "loads",
-        "force at a point of a beam",
-        cantilever(loads={"F": {"kind": "beam_force", "beam": "beam", "at": 0.7, "direction": [1.0, -1.0]}}),
-    ),
-    Feature(
-        "loads",
-        "moment at a point of a beam",
-        cantilever(
-            arc(0.7),
-            loads={"M": {"kind": "beam_moment", "beam": "beam", "at": 0.63}},
-            asked=(*ASKED, "R.reaction_moment", "beam.bending_stress"),
-        ),
-        NOT_EXACT,
-    ),
-    Feature(
-        "loads",
-        "distributed load",
-        cantilever(loads={"q": {"kind": "distributed", "beam": "beam", "direction": [0.0, -1.0], "along": [0.2, 0.9]}}),
-    ),
-    Feature(
-        "drives",
-        "displacement",
-        cantilever(
-            drives={"d": {"kind": "displacement", "point": "T", "direction": [-0.2, -1.0]}},
-            asked=(*ASKED, "T.reaction"),
-        ),
-    ),
-    Feature(
-        "drives",
-        "rotation",
-        cantilever(drives={"r": {"kind": "rotation", "body": "tip"}}, asked=(*ASKED, "tip.reaction_moment")),
-    ),
-    Feature("contacts", "two beams by their edges", two_beams()),
-    Feature("contacts", "two beams as lines", two_beams(thick=False), NOT_SOLID),
-    Feature("contacts", "two beams by their edges, of thickness that varies", two_tapered(), THREE),
-    Feature("contacts", "circle", held_by(CIRCLE)),
-    Feature("contacts", "circle on a body that moves", moved(CIRCLE), NOT_EXACT),
-    Feature("contacts", "half-plane", held_by(PLANE), NOT_EXACT),
-    Feature("contacts", "line", held_by(TABLE), NOT_EXACT),
-    Feature("contacts", "polyline with a corner that stands out", held_by(ROOF), THREE),
-    Feature("contacts", "polyline that goes round", held_by(BLOCK), THREE),
-    Feature("contacts", "function", held_by(HILL), NOT_EXACT),
-    Feature("contacts", "half-plane on a body that moves", moved(PLANE), NOT_EXACT),
-    Feature("contacts", "polyline on a body that moves", moved(ROOF), THREE),
-    Feature("contacts", "function on a body that moves", moved(HILL), NOT_EXACT),
-    Feature("contacts", "beam pinned to what it touches, as a line", lying_on_its_pin(), BEAMS),
-    Feature("contacts", "beam pinned to what it touches, by its edge", lying_by_its_edge(), NOT_EXACT),
-    Feature("contacts", "beam with itself", itself(), THREE),
-    Feature("contacts", "beam with itself, of thickness that varies", itself_tapered(), THREE),
-    Feature("stages", "assembly first, by moments and pins", bowed(), NOT_EXACT),
-    Feature(
-        "probes",
-        "bending stress along a beam",
-        held_by(CIRCLE) | {"probes": probes("beam.bending_stress")},
-    ),
-    Feature("probes", "combined stress along a beam", pulled()),
-    Feature("probes", "reaction of a slide", slotted(), NOT_EXACT),
-    Feature("probes", "ends of a contact's zone", held_by(CIRCLE) | {"probes": probes("c.ends")}),
-    Feature("probes", "load at which a contact closes", held_by(CIRCLE) | {"probes": probes("c.closing_load")}),
-)
+def resting() -> Data:
+    """A slider with a round nose that a dead weight presses on a leaf spring: contact and load hold the slider."""
+    data = held_by(CIRCLE | {"center": [0.07, 0.0105]})
+    data["bodies"]["slider"] = {"motion": "slides", "along": [0.0, 1.0], "points": {"N": [0.07, 0.02]}}
+    return edited(("contacts/c/body", "slider"), ("loads/F/point", "N"), base=data)
+
+
+def three_points() -> Data:
+    """A strip without joints on two circles, which the nose of a driven punch presses down."""
+    data = held_by(CIRCLE) | {"probes": probes("c.force")}
+    data["bodies"] = {"wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}}}
+    data["bodies"]["punch"] = {"motion": "slides", "along": [0.0, 1.0], "points": {"P": [0.05, 0.02]}}
+    nose = data["contacts"]["c"] | {"center": [0.05, 0.0105], "body": "punch"}
+    rollers = {name: data["contacts"]["c"] | {"center": [x, -0.0105]} for name, x in (("l", 0.01), ("r", 0.09))}
+    free = {"joint": "free"}
+    drive = {"kind": "displacement", "point": "P", "direction": [0.0, -1.0]}
+    changes = [("beams/beam/start", free), ("beams/beam/end", free), ("contacts", {"c": nose, **rollers})]
+    return edited(*changes, ("loads", {}), ("drives", {"d": drive}), ("stages/0/steps", "d"), base=data)
+
+
+def pressed_then_held() -> Data:
+    """A cantilever under a force at its tip; in a second stage a drive holds the tip and lowers the tip."""
+    drive = {"kind": "displacement", "point": "T", "direction": [0.0, -1.0], "from": "hold"}
+    stages = [("press", "F", [FORCE]), ("hold", "d", [0.01])]
+    return edited(
+        ("drives", {"d": drive}),
+        ("stages", [{"name": name, "steps": steps, "stations": values} for name, steps, values in stages]),
+        base=held_by(CIRCLE),
+    )
+
+
+def stepped_together() -> Data:
+    """A cantilever under two forces that are stepped together."""
+    force = {"kind": "force", "point": "T", "direction": [1.0, 0.0]}
+    return edited(("loads/H", force), ("stages/0/steps", ["F", "H"]), base=held_by(CIRCLE))

@@ -13,11 +13,11 @@ import cprbm
 import elastica_reference
 import fea_reference
 from comparisons.verdict.point_forces import away_from_point_forces
-from cprbm_scene import Answer, Ending, SceneError, SelfContact, scene_from
+from cprbm_scene import Answer, SceneError, SelfContact, scene_from
 from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import STRESSES
 from fea_reference import solid
-from tests.together.features import FEATURES, SOLVERS, Feature
+from tests.together.feature_rows import FEATURES, SOLVERS, Feature
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "features.md"
 LINKS, ELEMENTS = {"auto": 40, "paper": 120}, 16
@@ -52,19 +52,17 @@ def test_a_cell(feature: Feature, solver: str) -> None:
     # elements with shear
     number = FEATURES.index(feature)
     if not feature.cells[solver]:
-        if solver == "exact" and feature.solvers:
-            answer = answered(number, solver)
-            assert answer.ending is Ending.NOT_COVERED
-            assert len(answer.sentence) > 20
-        else:
-            with pytest.raises(SceneError, match=r"found .* allowed"):
-                answered(number, solver)
+        with pytest.raises(SceneError, match=r"found .* allowed") as refused:
+            answered(number, solver)
+        assert all(mistake.key for mistake in refused.value.mistakes)
         return
     answer = answered(number, solver)
     assert answer.completed, answer.sentence
     assert all(station.certificate.holds for station in answer.stations)
     others = [other for other in ("exact", "fea", "auto") if other != solver and feature.cells[other]]
     others = ["shear"] if solver == "solid" else others
+    if not others:
+        return  # tests of the record compare this solver with statics
     reference = answered(number, others[0])
     assert reference.completed, reference.sentence
     allowed = max(TOLERANCE.get(each, 0.0) for each in (solver, others[0]))

@@ -6,7 +6,7 @@ import cprbm
 import fea_reference
 from comparisons import cases
 from cprbm.chain import mechanism_of
-from cprbm.paper.boundaries import related_joints
+from cprbm.paper.contacts import related_joints
 from cprbm_scene import Ending, Probe
 
 JOINTS = {"contact": {"beam1": (8, 26), "beam2": (11, 28)}, "link1": {"beam1": (31, 40)}, "link2": {"beam2": (31, 40)}}

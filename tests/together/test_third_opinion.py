@@ -6,8 +6,8 @@ import pytest
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired, with_solid
-from comparisons.present.difference_tables import solid_table
 from comparisons.present.json_document import comparison
+from comparisons.present.row_tables import solid_table
 from comparisons.third import sentence, thirds_of
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
 

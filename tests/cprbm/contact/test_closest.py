@@ -115,8 +115,9 @@ def test_gaps_are_counted():
     assert counters[GAPS] == len(places.pair)
 
 
-def test_a_scene_without_contacts_has_no_geometry():
+def test_a_scene_without_contacts_has_no_curves_and_no_places():
     m, _, _ = mechanism()
     alone = m.scene.model_copy(update={"contacts": {}})
     m.scene = alone
-    assert contact_geometry(m) is None
+    geometry = contact_geometry(m)
+    assert len(geometry.arrays.stencil) == len(geometry.possible.pair) == 0

@@ -130,7 +130,9 @@ def test_half_links_lose_nothing_at_a_joint_and_little_at_a_free_end():
     _, held, free = lost_compliance("bending")
     assert abs(held[0]) < 1e-5
     assert np.polyval(held[::-1], 1.0) == pytest.approx(2e-5, abs=1e-5)
-    assert np.polyval(free[::-1], 1.0) == pytest.approx(np.polyval(lost_compliance("bending")[INNER][::-1], 0.0), rel=0.02)
+    assert np.polyval(free[::-1], 1.0) == pytest.approx(
+        np.polyval(lost_compliance("bending")[INNER][::-1], 0.0), rel=0.02
+    )
 
 
 def test_the_plain_chain_touches_by_its_polygon():

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from cprbm.chain import add_rows, empty_blocks, mechanism_of
+from cprbm.contact import contact_geometry
 from cprbm.equilibrium.factors import pulls
 from cprbm.equilibrium.linear import add_gradient
 from cprbm.equilibrium.system import rest_state, system_of
@@ -63,7 +64,7 @@ def built(scene, links, *, corrected=True):
     """System of a scene."""
     mechanism = mechanism_of(scene, dict.fromkeys(scene.beams, links), scene.theory, corrected=corrected)
     add_rows(mechanism)
-    return system_of(mechanism)
+    return system_of(mechanism, contact_geometry(mechanism))
 
 
 def disturbed(system, seed, size):

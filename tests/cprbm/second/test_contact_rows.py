@@ -24,7 +24,7 @@ CLOSED = 4
 def random_contact(seed):
     """System, geometry, a state near rest, places with random forces, and which are closed."""
     m, geometry, rest = mechanism(7)
-    system, random = system_of(m), np.random.default_rng(seed)
+    system, random = system_of(m, geometry), np.random.default_rng(seed)
     state = disturbed(system, seed, 3e-3)
     # large forces of links turn some of the states into saddles
     state.z[system.links.first[:, None] + [2, 3]] *= 1.0 + 400.0 * (seed % 3)

@@ -1,12 +1,17 @@
-"""What is said of a wrong question: what was found, what is allowed, what may have been meant, and what comes next."""
+"""A wrong question: a paragraph with the file, the key, the words found and allowed, and the next step; exit code 2."""
 
+import re
 from pathlib import Path
 
 import pytest
 
+from comparisons import cases
 from comparisons.cli.main import run
+from comparisons.pairing import Solvers
 from comparisons.starting.begun import begin
 
+HINGE = (Path(cases.__file__).parent / "hinge.toml").read_text("utf-8")
+PRESTRESSED = (Path(cases.__file__).parent / "prestressed.toml").read_text("utf-8")
 WORDS = [
     (
         ["slove", "hinge"],
@@ -32,6 +37,21 @@ WORDS = [
     (["compare", "hinge", "--tol", "2"], "found '2'; allowed: as 0.1%", "Try 'cprbm compare --help'"),
     (["converge", "hinge", "--sizes", "40,20"], "found '40,20'", "each larger than the one before"),
     (["new", "mine"], "found mine.toml, an existing file", "another name"),
+    (["solve", "hinge", "-n", "10000"], "from 1 to 9999"),
+    (["solve", "hinge", "-n", "beam1=3,beam1=4"], "once for each beam"),
+    (["solve", "hinge", "-n", "beam1=3"], "found beam1=3", "the beams beam1, beam2"),
+    (["solve", "hinge", "--links", "10", "--tol", "1%"], "--tol and -n"),
+    (["compare", "hinge", "--penetration", "nan"], "found 'nan'"),
+    (["compare", "hinge", "--kinematics", "timoshenko"], "timoshenko", "'stretch'"),
+    (["compare", "hinge", "--set", "a"], "found a; allowed: NAME=VALUE"),
+    (["compare", "hinge", "mine-hinge.toml"], "Several scenes have the name hinge"),
+    (["compare", "hinge", "no/such/file.toml"], "no/such/file.toml", "'cprbm new NAME'"),
+    (["solve", "bytes.toml"], "bytes.toml"),
+    (["solve", "."], "built-in case"),
+    (["new", "9lives"], "found '9lives'; allowed: letters"),
+    (["new", "über"], "found 'über'; allowed: letters"),
+    (["new", "a/b"], "found 'a/b'; allowed: letters"),
+    (["new", ""], "found ''; allowed: letters"),
 ]
 FILES = [
     ("thickness =", "thicknes =", "beams.strip.thicknes: found 'thicknes'", "is 'thickness' meant?"),
@@ -66,17 +86,45 @@ FILES = [
     ("radius = 0.006", 'radius = "6mm"', "found '6mm'; allowed: a number; numbers have no units", "units = { length"),
     ("radius = 0.006", 'radius = "six"', "found 'six'; allowed: a number\n"),
 ]
+SCENES = {
+    "no TOML": (HINGE.replace("[bodies.AC]", "[bodies.AC"), "TOML"),
+    "not finite": (HINGE.replace("2.3e9", "nan"), "materials.abs.youngs_modulus"),
+    "an end that meets nothing": (HINGE.replace('"weld", point = "B"', '"weld", point = "D"'), "beams.beam1.end"),
+    "a load on ground": (HINGE.replace('body = "BD"', 'body = "AC"'), "loads.M.body"),
+    "a load on a driven body": (
+        HINGE.replace("[loads.M]", '[drives.d]\nkind = "rotation"\nbody = "BD"\n[loads.M]'),
+        "loads.M",
+    ),
+    "beams that overlap": (HINGE.replace('thickness = "= t"', "thickness = 0.0032"), "contacts.contact"),
+    "a beam too short": (PRESTRESSED.replace("0.06]", "0.05]", 1), "a beam too short to reach 'B'"),
+    "no stations": (re.sub(r"stations = \[.*?\]", "stations = []", PRESTRESSED, flags=re.DOTALL), "stages[0].stations"),
+    "a stop in the way as drawn": (
+        PRESTRESSED.replace('["= -t/2", 0.06]', "[-0.02, 0.05]")
+        .replace("beam1 = 4.0, ", "")
+        .replace("most = 0.785398163397448", "most = -1.3", 1)
+        .replace("least = -0.785398163397448", "least = -1.4", 1),
+        "stops.stopB",
+    ),
+    "a limit above the other": (PRESTRESSED.replace("least = -0.78", "least = 0.79", 1), "less than the most"),
+}
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     begin("mine", tmp_path)
+    (tmp_path / "mine-hinge.toml").write_text(HINGE, "utf-8")
+    (tmp_path / "bytes.toml").write_bytes(b'name = "\xff"')
+    (tmp_path / "in the way").write_text("", "utf-8")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
+def _unasked(scene, choices):
+    pytest.fail("solved before the question was read and the folders were made")
+
+
 def _said(arguments, capsys):
-    assert run(arguments) == 2
+    assert run(arguments, Solvers(_unasked, _unasked)) == 2
     captured = capsys.readouterr()
     assert captured.out == ""
     assert captured.err.startswith("cprbm: ")
@@ -88,6 +136,7 @@ def _said(arguments, capsys):
 @pytest.mark.parametrize(("arguments", "parts"), [(words[0], words[1:]) for words in WORDS], ids=lambda it: str(it[-1]))
 def test_wrong_words(arguments, parts, folder, capsys):
     said = _said(arguments, capsys)
+    assert said.count("\n") == 1
     for part in parts:
         assert part in said
 
@@ -104,18 +153,27 @@ def test_wrong_files(old, new, parts, folder, capsys):
         assert part in said
 
 
+@pytest.mark.parametrize(("text", "part"), SCENES.values(), ids=SCENES)
+def test_wrong_scenes(text, part, folder, capsys):
+    assert text not in (HINGE, PRESTRESSED)
+    Path("wrong.toml").write_text(text, "utf-8")
+    said = [_said([command, "wrong.toml"], capsys) for command in ("solve", "compare", "converge")]
+    assert said[0] == said[1] == said[2]
+    assert said[0].startswith("cprbm: The question is wrong.")
+    assert "wrong.toml: " in said[0]
+    assert part in said[0]
+
+
 def test_several_mistakes_have_a_line_each(folder, capsys):
-    path = Path("mine.toml")
-    text = (
-        path.read_text(encoding="utf-8")
-        .replace('"steel"', '"stel"')
-        .replace("poisson_ratio = 0.3", "poisson_ratio = 0.7")
-    )
-    path.write_text(text.replace("width =", "widht ="), encoding="utf-8")
-    first, *lines = _said(["solve", "mine.toml"], capsys).splitlines()
+    """The misspelt key, the key that is missing by it, and the width of either beam."""
+    text = HINGE.replace("poisson_ratio", "poison_ratio").replace("width = 0.008", "width = -1.0")
+    Path("wrong.toml").write_text(text, "utf-8")
+    first, *lines = _said(["solve", "wrong.toml"], capsys).splitlines()
     assert first == "cprbm: The question is wrong."
-    assert len(lines) >= 3
-    assert all(line.startswith("  mine.toml: ") for line in lines)
+    assert len(lines) == 4
+    assert all(line.startswith("  wrong.toml: ") for line in lines)
+    for part in ("poison_ratio", "beams.beam1.width: found -1.0", "beams.beam2.width: found -1.0"):
+        assert sum(part in line for line in lines) == 1
 
 
 @pytest.mark.parametrize("unit", ["M", "nm", "lb"])
@@ -126,3 +184,29 @@ def test_between_short_words_nothing_is_guessed(unit, folder, capsys):
     path.write_text(text.replace('name = "mine"', f'name = "mine"\nunits = {{ force = "{unit}" }}'), encoding="utf-8")
     said = _said(["solve", "mine.toml"], capsys)
     assert f"units.force: found {unit!r}; allowed: one of 'N'" in said
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["compare", "--out"], ["compare", "--json"], ["solve", "--json"], ["solve", "--csv"], ["converge", "--out"]],
+    ids=" ".join,
+)
+def test_a_place_that_takes_no_file_is_a_sentence_before_any_solve(arguments, folder, capsys):
+    command, option = arguments
+    said = _said([command, "hinge", "--quiet", option, str(folder / "in the way" / "numbers")], capsys)
+    assert said.startswith(f"cprbm: Cannot write {folder / 'in the way'}")
+    assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["compare", "no\x1b[35m.toml"], ["solve", "tapered", "--set", "\x1b[35m=3"], ["compare", "key.toml"],
+     ["import", "\x1b[35m.dxf", "--thickness", "1", "--width", "1"], ["\x1b[35m"]],
+    ids=["path", "parameter", "key", "drawing", "command"],
+)  # fmt: skip
+def test_no_control_character_of_a_file_or_argument_reaches_the_terminal(arguments, monkeypatch, folder, capsys):
+    Path("key.toml").write_text('name = "a"\n["\\u001b[35m"]\na = 1\n', "utf-8")
+    monkeypatch.setattr("click.utils.should_strip_ansi", lambda *given: False)  # as on a terminal
+    said = _said(arguments, capsys)
+    assert "\x1b" not in said
+    assert "\\x1b[35m" in said

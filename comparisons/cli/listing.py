@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import click
 
+from comparisons import cases
 
-@click.command("list")
-def command() -> None:
-    """List the built-in cases."""
-    from comparisons import cases
 
+def list_cases() -> None:
+    """Print name, title and source of every built-in case."""
     for name, title, source in cases.described():
         click.echo(f"{name:<16} {title}" + (f" ({source})" if source else ""))

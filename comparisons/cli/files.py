@@ -1,0 +1,72 @@
+"""``cprbm new``, ``import`` and ``schema``: scene files to start from."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import click
+
+from comparisons.cli.errors import printable
+from comparisons.importing.formats import read_drawing
+from comparisons.importing.scene_text import Choices, Unit, scene_text
+from comparisons.starting import begun
+from comparisons.starting.system import line_for
+from comparisons.writing import write
+from cprbm_scene import reading
+
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]{0,63}")
+
+
+def new(name: str, out: Path, quiet: bool) -> None:  # noqa: FBT001 - click passes a keyword
+    """Write the first scene and its schema.
+
+    Raises:
+        click.UsageError: the name is wrong, or the file exists.
+    """
+    _check_name(name, "NAME")
+    try:
+        path = begun.begin(name, out)
+    except FileExistsError as error:
+        raise click.UsageError(f"found {error.args[0]}, an existing file; allowed: another name.") from None
+    if not quiet:
+        click.echo(f"{path}: change the scene, then run 'cprbm compare {path}'.")
+
+
+def import_drawing(
+    drawing: Path, thickness: float, width: float, unit: Unit, within: float, name: str | None, out: Path
+) -> None:
+    """Write the scene of a drawing, and the notes on wrong curves.
+
+    Raises:
+        click.ClickException: the name is wrong, the file exists, or gmsh lacks libraries of the system.
+    """
+    named = re.sub(r"[^A-Za-z0-9_-]", "_", drawing.stem) if name is None else name
+    _check_name(named, "--name")
+    path = out / f"{named}.toml"
+    if path.exists():
+        raise click.UsageError(f"found {path}, an existing file; allowed: another --name.")
+    try:
+        drawn = read_drawing(drawing, unit)
+    except ImportError as error:
+        if line := line_for("gmsh", str(error)):
+            text = f"gmsh cannot be loaded ({error}). On Debian and Ubuntu install its libraries with: {line}"
+            raise click.ClickException(text) from None
+        raise
+    text, notes = scene_text(drawn, drawing, Choices(named, unit, thickness, width, within))
+    write(path, text)
+    for note in notes:
+        click.echo(printable(f"{drawing}: {note}"), err=True)
+    click.echo(printable(f"{path}: change load and probes, then run 'cprbm compare {path}'."))
+
+
+def schema() -> None:
+    """Print the JSON schema of scene files."""
+    click.echo(json.dumps(reading.schema(), indent=1, ensure_ascii=False))
+
+
+def _check_name(name: str, hint: str) -> None:
+    if not _NAME.fullmatch(name):
+        allowed = "letters, digits, '_' and '-', a letter or '_' first, 64 at most"
+        raise click.BadParameter(f"found {name!r}; allowed: {allowed}", param_hint=hint)

@@ -1,0 +1,116 @@
+"""``cprbm bench`` and ``study``: run times and calibration, with output after every step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Literal
+
+import click
+
+from comparisons import provenance, workshop
+from comparisons.bench import contenders, errors, question, running
+from comparisons.bench.section import bench_section
+from comparisons.bench.tables import sized
+from comparisons.choices import Count, check
+from comparisons.cli.bars import status
+from comparisons.cli.declarations import OPTIMISERS
+from comparisons.cli.errors import INCOMPLETE
+from comparisons.cli.pipeline import take_steps
+from comparisons.cli.questions import scene_of, solvers_for, with_room
+from comparisons.cli.request import Request
+from comparisons.pairing import workers_for
+from comparisons.present.page import own_folder
+from comparisons.store import run_into
+from comparisons.studies import calibration as calibrations
+from comparisons.studies import table1 as timings
+from comparisons.studies.calibration_result import result_of as calibration_section
+from comparisons.studies.table1_result import result_of as table1_section
+from comparisons.verdict.words import Word
+from cprbm_scene.frozendict import frozendict
+
+
+def bench(
+    request: Request,
+    sizes: tuple[int, ...] | None,
+    numbers: tuple[Count, ...],
+    methods: tuple[str, ...],
+    stations: Literal["last", "all"],
+    repeat: int,
+    clock: running.Clock,
+) -> int:
+    """Time the methods on a scene; exit code 1 for an incomplete run of a solver of this project.
+
+    Raises:
+        click.UsageError: sizes are stated twice, or no method is possible.
+    """
+    if sizes is not None and numbers:
+        raise click.UsageError("found --sizes and -n; allowed: one of them.")
+    whole = stations == "all"
+    opened = scene_of(request)
+    counts = tuple(n if isinstance(n, int) else frozendict(n) for n in numbers) or (sizes or ())
+    for n in counts:
+        check(replace(request.choices, links=n), opened)
+    solvers = solvers_for(request)
+    optimisers = [name for name in OPTIMISERS if not methods or name in methods]
+    every = [
+        *contenders.contenders(solvers, request.choices),
+        *(workshop.load(f"bench --method {name}").contender() for name in optimisers),
+    ]
+    asked = [each for each in every if not methods or each.name in methods]
+    reasons = {each.name: _absence(each, whole=whole) for each in asked}
+    absent: Mapping[str, str] = frozendict({name: reason for name, reason in reasons.items() if reason})
+    taking = tuple(each for each in asked if each.name not in absent)
+    if not taking:
+        left = "; ".join(f"{name}: {reason}" for name, reason in absent.items())
+        raise click.UsageError(f"No method is left: {left}.")
+    own = frozendict({each.name: running.sizes_of(each, counts) for each in taking})
+    plan = running.Plan(own, request.choices.kinematics_of(opened), repeat, request.at_most, whole, clock)
+    scene = opened if whole else question.asked(opened)
+    session = running.Session(scene, plan, taking, provenance.machine(), running.CLOCKS[clock], absent=absent)
+    request = with_room(request)
+    if request.out is not None:
+        request = replace(request, out=own_folder(request.out, scene.name))
+    with status(shown=not request.quiet) as say:
+        say("reference of the errors")
+        known = errors.reference(question.asked(opened), solvers)
+
+    def taken(session: running.Session, job: running.Job) -> running.Session:
+        session.do(job)
+        return session
+
+    take_steps(request, session, session.jobs(), taken, lambda found: bench_section(found.done(known)))
+    timed = session.done(known).timings
+    failed = [row for row in timed if row.contender.name not in OPTIMISERS and not row.outcome.completed]
+    for row in failed:
+        who = f"{row.contender.label} at N = {sized(row.count)}"
+        click.echo(f"cprbm: {scene.name}: {who}: {row.outcome.why}", err=True)
+    return INCOMPLETE if failed else 0
+
+
+def _absence(contender: contenders.Contender, *, whole: bool) -> str:
+    """Reason against a method; empty for a possible method."""
+    if whole and contender.is_peer:
+        return "an optimiser solves the last station only"
+    return contender.absence
+
+
+def calibration(request: Request) -> int:
+    """Compare stated with true errors; exit code 1 for a case that differs or did not complete."""
+    request = with_room(request)
+    with run_into(request.out, solvers_for(request), processes=workers_for(request.planted)) as run:
+        take = partial(calibrations.with_piece, solvers=run.solvers, crew=run.crew)
+        found = take_steps(request, calibrations.Calibration(), calibrations.pieces(), take, calibration_section)
+    verdicts = [trial.verdict for trial in found.trials]
+    return INCOMPLETE if any(each.word is Word.DIFFER or not each.completed for each in verdicts) else 0
+
+
+def table1(request: Request, repeat: int) -> int:
+    """Time both solvers on the cells of the paper's Table 1; exit code 1 for an incomplete solve."""
+    request = with_room(request)
+    solvers = solvers_for(request)
+    take = partial(timings.solved, solvers=solvers, at_most=request.at_most)
+    begun = timings.begun(solvers, provenance.machine())
+    found = take_steps(request, begun, timings.runs(repeat), take, table1_section)
+    return INCOMPLETE if found.unfinished else 0

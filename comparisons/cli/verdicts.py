@@ -1,0 +1,197 @@
+"""``cprbm compare``, ``converge`` and ``report``: both solvers on questions, as tables, JSON and a page."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from logging import NOTSET
+from pathlib import Path
+
+import click
+
+from comparisons import case, cases, logs, offset_verdict, pairing, provenance
+from comparisons.case import Comparison
+from comparisons.cli.bars import Bar, bar, status
+from comparisons.cli.errors import INCOMPLETE, UNDECIDED
+from comparisons.cli.output import print_sections, print_tables, write_json
+from comparisons.cli.pipeline import Ends, answer_all, print_folder
+from comparisons.cli.questions import questions_of, solvers_for, with_room
+from comparisons.cli.request import Request
+from comparisons.plain import Plain
+from comparisons.present import brief, case_tables, csv_table, figures, offset, page
+from comparisons.present.columns import Section
+from comparisons.store import Run, run_into
+from comparisons.studies import convergence, report_folder
+from comparisons.studies.report import Parts, gathered, has_table, table_section
+from comparisons.tolerances.result import Tolerance
+from comparisons.tolerances.search import runs_within
+from comparisons.verdict.runs import Runs
+from comparisons.verdict.words import Word
+from comparisons.writing import write
+from cprbm_scene import OffsetQuestion, Question
+
+Compared = Comparison | offset_verdict.OffsetComparison
+
+
+def compare_all(request: Request) -> int:
+    """Compare both solvers on questions; the exit code.
+
+    0 if all agree; 1 if any case differs or a solve did not complete; 3 if no case is worse than undecided.  An
+    uncertainty above the requested tolerance counts as undecided.
+    """
+    questions = questions_of(request)
+    request = with_room(request, "report" if "all" in request.arguments else "")
+    ends = Ends(_put_case, page.report_page, _documents, partial(_show, request))
+    # with a tolerance a status line with N replaces the bar
+    progress = bar(len(questions), shown=not request.quiet and request.tol is None, noun="case")
+    finished = answer_all(request, questions, partial(_comparisons, request, questions), ends, progress)
+    _export(request, [found for found in finished if isinstance(found, Comparison)])
+    if request.prints and not request.quiet and len(finished) > 1:
+        print_tables([brief.summary(finished)], brief.WIDTH)
+    print_folder(request)
+    verdicts = [found.verdict for found in finished]
+    if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):
+        return INCOMPLETE
+    undecided = any(verdict.word is Word.UNDECIDED for verdict in verdicts)
+    return UNDECIDED if undecided or any(map(_missed, finished)) else 0
+
+
+def _comparisons(request: Request, questions: Sequence[Question], run: Run, progress: Bar) -> Iterator[Compared]:
+    """Comparisons of all questions; the next question is solved while the caller draws and prints the last."""
+    begun = partial(_begun, request, [] if request.tol else questions, run)
+    following = begun(0)
+    for place, question in enumerate(progress.through(questions)):
+        pending, following = following, begun(place + 1)
+        if isinstance(question, OffsetQuestion):
+            yield offset_verdict.compared_offset(question, run.solvers.offset)
+        elif pending is not None:
+            yield case.compare(question, pending())
+        else:
+            assert request.tol is not None
+            with status(shown=not request.quiet) as say:
+                runs, searches = runs_within(question, request.choices, request.tol, run.solvers, run.crew, say)
+            yield replace(case.compare(question, runs), tolerances=searches)
+
+
+def _begun(request: Request, questions: Sequence[Question], run: Run, place: int) -> Callable[[], Runs] | None:
+    """The runs of a question, begun now; None beyond the last question, and for an offset question."""
+    question = questions[place] if place < len(questions) else None
+    if question is None or isinstance(question, OffsetQuestion):
+        return None
+    return pairing.begin(question, request.choices, run.solvers, run.crew)
+
+
+def _put_case(out: Path, question: Question, compared: Compared) -> page.Chapter:
+    figures = page.figures_of(compared)
+    page.put_case(out, compared, figures)
+    return page.case_chapter(compared, figures)
+
+
+def _documents(finished: Sequence[Compared]) -> Plain:
+    return {"cases": [page.document_of(compared) for compared in finished]}
+
+
+def _show(request: Request, question: Question, compared: Compared) -> None:
+    """Print a case: in brief, with ``-v`` with all tables, or quietly with the verdict alone."""
+    if not request.quiet and logs.level() == NOTSET:
+        values = [text for name, value in request.values.items() for text in ("--set", f"{name}={value}")]
+        click.echo(brief.brief(compared, shlex.join([cases.argument(question), *values]), request.out) + "\n")
+        return
+    if not request.quiet:
+        print_sections(
+            case_tables.case_sections(compared)
+            if isinstance(compared, Comparison)
+            else offset.offset_sections(compared)
+        )
+    click.echo(brief.headline(question.name, compared.verdict, compared.verdict.sentence))
+    if isinstance(compared, Comparison):
+        for search in _missed(compared):
+            click.echo(f"{question.name}: {search.sentence(compared.scene)}")
+
+
+def _missed(compared: Compared) -> tuple[Tolerance, ...]:
+    """Searches for N without success."""
+    return tuple(search for search in compared.tolerances if not search.met) if isinstance(compared, Comparison) else ()
+
+
+def _export(request: Request, compared: Sequence[Comparison]) -> None:
+    """Write the table and the drawing of all comparisons; without common stations standard error reports the reason."""
+    if request.csv_file is not None:
+        write(request.csv_file, csv_table.csv_of_comparisons(compared))
+    if request.plot_file is not None and compared and all(each.rows for each in compared):
+        figures.designs_figure(compared).save(request.plot_file)
+    elif request.plot_file is not None:
+        click.echo(f"cprbm: {request.plot_file} is not drawn: a case has no station of both solvers.", err=True)
+
+
+def converge_all(request: Request, sizes: tuple[int, ...]) -> int:
+    """State limits and orders of all numbers of questions; exit code 1 for an incomplete series."""
+    questions = questions_of(request)
+    request = with_room(request, "convergence" if "all" in request.arguments else "")
+
+    def results(run: Run, progress: Bar) -> Iterator[Section]:
+        for question in progress.through(questions):
+            yield convergence.convergence_section(question, sizes, request.choices, run.solvers, run.crew)
+
+    def chapter(out: Path, question: Question, section: Section) -> page.Chapter:
+        page.put_section(page.own_folder(out, question.name), section)
+        return page.section_chapter(question, [section])
+
+    def document(finished: Sequence[Section]) -> Plain:
+        return dict(finished[0].data) if len(questions) == 1 else {"cases": [each.data for each in finished]}
+
+    def show(question: Question, section: Section) -> None:
+        if not request.quiet:
+            print_tables(section.tables)
+        for sentence in section.sentences:
+            click.echo(f"{question.name}: {sentence}")
+
+    ends = Ends(chapter, page.convergence_page, document, show)
+    finished = answer_all(request, questions, results, ends, bar(len(questions), shown=not request.quiet, share=0.8))
+    print_folder(request)
+    return 0 if all(section.complete for section in finished) else INCOMPLETE
+
+
+def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -> None:
+    """Write the page of questions with verdicts, errors and run times; finished parts are taken from the folder."""
+    request = replace(request, arguments=request.arguments or ("all",))
+    questions = questions_of(request)
+    request = with_room(request, "full-report")
+    out = request.out
+    assert out is not None
+    parts = Parts(request.choices, () if "convergence" in without else sizes, times="times" not in without)
+    origin = provenance.page_origin()
+    key = f"{parts!r}, exact={request.exact}"  # chapters with other parts are written anew
+    chapters = {question.name: report_folder.kept(out, question, key) for question in questions}
+    with_table = parts.times and has_table(questions)
+    table = report_folder.kept_table(out, origin) if with_table else None
+    missing = [question for question in questions if chapters[question.name] is None]
+    solvers = solvers_for(request)
+
+    def finished() -> list[page.Chapter]:
+        return [chapter for chapter in chapters.values() if chapter is not None]
+
+    def put() -> None:
+        report_folder.put_report(out, finished(), () if table is None else (table,), origin)
+
+    with (
+        run_into(out, solvers, tuple(chapters), pairing.workers_for(request.planted)) as run,
+        bar(len(missing), shown=not request.quiet) as progress,
+    ):
+        pending = _begun(request, missing, run, 0)
+        for place, question in enumerate(progress.through(missing)):
+            content = gathered(question, pending, parts, run.solvers, solvers, run.crew)
+            # solve the next case during the drawings, but not during the measurement of run times
+            pending = _begun(request, missing, run, place + 1)
+            chapters[question.name] = report_folder.added(out, question, key, content)
+            put()
+        if with_table and table is None:
+            table = report_folder.added_table(out, table_section(solvers, origin), origin)
+    put()
+    if request.json_file is not None:
+        write_json(request.json_file, report_folder.document(out, finished(), origin))
+    for chapter in finished() if request.prints else ():
+        click.echo(f"{chapter.name}: {chapter.word}. {chapter.sentence}")
+    print_folder(request)
