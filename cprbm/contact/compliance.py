@@ -17,7 +17,7 @@ The spline spreads a point force over the nodes of a few links.  The chain of fo
 
 in place of s³/(3 EI), and with shear Σ L_j Q_j²/GA in place of s/GA.  A point force makes a kink F/GA in the neutral
 line, and the spline has none.  The differences depend on ξ alone: a polynomial of degree six on every piece, the same
-on all pieces but the half links at the beam's ends.  A half link beyond a clamp or a pin has nearly no compliance of its
+on all pieces but the half links at the ends.  A half link beyond a clamp or a pin has nearly no compliance of its
 own, a half link at a free end more; both follow from a cantilever loaded near its two ends.
 """
 
@@ -27,7 +27,6 @@ from functools import cache
 from typing import Literal
 
 import numpy as np
-from numpy.polynomial import Polynomial
 
 from cprbm.chain.spline import spline_line
 from cprbm_scene.answer import Array
@@ -40,15 +39,15 @@ ELEMENTS = 16
 
 
 @cache
-def lost_compliance(part: Literal["bending", "shear"]) -> tuple[Array, Array, Array]:
-    """Coefficients (POWERS,) of c, lowest power first: inner piece, half link at a joint with a body, free half link.
+def lost_compliance(part: Literal["bending", "shear"]) -> Array:
+    """Coefficients of c, lowest power first, of the pieces of a beam.
 
-    The parameter of a half link runs from the beam's end.
+    The rows (5, POWERS) are an inner piece, a first half link at a joint with a body, a free first half link, and both
+    as last half links.
     """
-    middle = 0.5 * ELEMENTS - 0.5
-    at_end = _fitted(part, ELEMENTS - 0.5, float(ELEMENTS))
-    free = Polynomial(at_end)(Polynomial([1.0, -1.0])).coef
-    return _fitted(part, middle, middle + 1.0), _fitted(part, 0.0, 0.5), np.resize(free, POWERS)
+    n = float(ELEMENTS)
+    pieces = (0.5 * n - 0.5, 0.5 * n + 0.5), (0.0, 0.5), (n, n - 0.5), (0.5, 0.0), (n - 0.5, n)
+    return np.array([_fitted(part, *ends) for ends in pieces])
 
 
 def _fitted(part: str, begin: float, end: float) -> Array:

@@ -212,20 +212,15 @@ def _lost(m: Mechanism, chain: BeamChain) -> Array:
     """Lost compliance of a beam's pieces; none for the plain chain: a polygon spreads no force."""
     if not chain.corrected:
         return np.zeros((chain.links, POWERS))
-    h = chain.borders[1] - chain.borders[0]
+    beam, h, kind = (
+        m.scene.beams[chain.name],
+        chain.borders[1] - chain.borders[0],
+        np.zeros(chain.links, dtype=np.int64),
+    )
+    kind[0], kind[-1] = 1 + isinstance(beam.start, FreeEnd), 3 + isinstance(beam.end, FreeEnd)
     bending = 12.0 * h * (chain.lean + chain.half_lean / chain.link_length)
-    shares = (lost_compliance("bending"), bending), (lost_compliance("shear"), h * chain.shear)
-    return sum((_by_link(m, chain, *pieces) * share[:, None] for pieces, share in shares), np.zeros(POWERS))
-
-
-def _by_link(m: Mechanism, chain: BeamChain, inner: Array, held: Array, free: Array) -> Array:
-    """Polynomials (links, POWERS) of a beam's pieces: of inner pieces, half links at bodies and free half links."""
-    lost, beam = np.tile(inner, (chain.links, 1)), m.scene.beams[chain.name]
-    lost[0] = free if isinstance(beam.start, FreeEnd) else held
-    at_end = free if isinstance(beam.end, FreeEnd) else held
-    backwards = np.polynomial.Polynomial(at_end)(np.polynomial.Polynomial([1.0, -1.0])).coef
-    lost[-1] = np.resize(backwards, POWERS)
-    return lost
+    sheared = lost_compliance("shear")[kind] * (h * chain.shear)[:, None]
+    return np.asarray(lost_compliance("bending")[kind] * bending[:, None] + sheared)
 
 
 @dataclass(eq=False)
