@@ -4,8 +4,8 @@ After every solve the rule looks at runs of neighbouring closed joints:
 
 * one or two closed joints with a minimum of the gap nearby become a moving place;
 * a moving place with a closed joint nearby, or with a gap of negative curvature, becomes joints again;
-* joints beside a moving place with less than a small part of the force open.  A joint that closes again is part of a
-  length: the moving place becomes joints.
+* joints beside a moving place with less than a small part of the force open.  A light joint that closes again and
+  again is part of a length: the moving place becomes joints.
 
 The equilibrium is solved again until the rule changes nothing.  Where moving places fail, joints alone are solved first
 and made points anew; then the moving place with the flattest gap is given up.
@@ -51,8 +51,8 @@ from cprbm_scene.answer import Array, Flags
 ROUNDS = 12
 """Solves under the same targets."""
 
-RETRIES = 2
-"""First solves, after which light joints open, and a moving place that has become joints may move again."""
+RETRIES = 6
+"""First solves, half of all: after these light joints open, and a moving place that has become joints may move again."""
 
 
 def touched_equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Touched:
