@@ -1,4 +1,4 @@
-"""Numbers as people read them: never more digits than tell something, never a small one shown as nothing."""
+"""Texts of numbers: few digits, prefixes of units, and no small number that reads as zero."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, 
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """``value`` to so many significant digits; a dash where there is none."""
+    """A number to ``digits`` significant digits; a dash without a finite value."""
     if value is None or not math.isfinite(value):
         return "–"
     if value == 0.0:
@@ -27,15 +27,12 @@ def number(value: float | None, digits: int = 3) -> str:
 
 
 def percent(fraction: float | None, digits: int = 3) -> str:
-    """A fraction in per cent to ``digits`` significant digits."""
+    """A fraction in per cent to ``digits`` significant digits; a dash without a finite value."""
     return "–" if fraction is None or not math.isfinite(fraction) else f"{number(100.0 * fraction, digits)} %"
 
 
 def scaled_unit(unit: str, size: float) -> tuple[float, str]:
-    """The power of a thousand, and the unit with its prefix, in which ``size`` reads best.
-
-    Units without a prefix of their own (radians) stay as they are.
-    """
+    """Size in SI and name of the unit with the prefix for values of about ``size``; radians have no prefix."""
     if unit in ("rad", "") or size == 0.0 or not math.isfinite(size):
         return 1.0, unit
     for factor, prefix in _PREFIXES:

@@ -130,9 +130,18 @@ def exact_answer(scene: Scene, choices: Choices) -> Answer:
 
 
 def exact_if_covered(scene: Scene, choices: Choices) -> Answer:
-    """The exact answer beside other solvers; without stations, and with the mistakes as a sentence, if refused."""
-    answer, reason = _unless_refused(exact_answer, scene, choices)
-    return answer or Answer("exact", scene.name, frozendict(), Ending.NOT_COVERED, reason, ())
+    """The exact answer beside other solvers; without stations, and with a sentence on refused records, if refused."""
+    try:
+        return exact_answer(scene, choices)
+    except SceneError as error:
+        return Answer(
+            "exact",
+            scene.name,
+            frozendict(),
+            Ending.NOT_COVERED,
+            f"there are no equations for {', '.join(dict.fromkeys(each.found for each in error.mistakes))}.",
+            (),
+        )
 
 
 def exact_pieces(scene: Scene) -> int:
@@ -330,8 +339,7 @@ def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
     finest = choices.links if isinstance(choices.links, int) else max(choices.links.values())
     contacts = scene.contacts.values()
     has_hints = all(isinstance(contact, RigidContact) or contact.paper is not None for contact in contacts)
-    ends = any(stage.beyond is not None for stage in scene.stages)
-    if not contacts or not has_hints or ends or finest > PAPER_BESIDE_AUTO:
+    if not contacts or not has_hints or finest > PAPER_BESIDE_AUTO or any(stage.beyond for stage in scene.stages):
         return None
     # `paper` may refuse too few links for the polynomial; no requested value depends on the run
     return _unless_refused(solvers.cprbm, scene, replace(choices.within("bending"), formulation="paper"))[0]

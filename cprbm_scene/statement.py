@@ -160,7 +160,7 @@ class Scene(Record):
     """Origin of the scene, such as a publication."""
     units: Units = Units()
     """Units of the numbers in the file."""
-    theory: Literal["bending", "stretch", "shear"] = "bending"
+    theory: Literal["bending", "stretch", "shear"] = "shear"
     """Beam theory of the CPRBM and the finite elements: bending alone, with stretch, or with stretch and shear."""
     parameters: Named[Parameter] = Field(default_factory=frozendict)
     """Named numbers for expressions."""

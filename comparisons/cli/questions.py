@@ -19,12 +19,22 @@ from cprbm_scene.plausibility import notes
 
 
 def scene_of(request: Request) -> Scene:
-    """The scene of a command for a single scene.
+    """The scene of a command for a single scene; notes on implausible numbers go to standard error.
 
     Raises:
         SceneError: the case does not exist, the file is no valid scene, or the choices do not fit the scene.
     """
-    scene = cases.opened(request.case, request.values)
+    return _checked(cases.opened(request.case, request.values), request)
+
+
+def _checked(scene: Scene, request: Request) -> Scene:
+    """The scene after notes on implausible numbers to standard error.
+
+    Raises:
+        SceneError: the choices do not fit the scene.
+    """
+    for note in notes(scene):
+        click.echo(printable(f"Note: {scene.file}: {note}"), err=True)
     check(request.choices, scene)
     return scene
 
@@ -38,15 +48,12 @@ def questions_of(request: Request) -> list[Question]:
     """
     names = [name for text in request.arguments for name in (cases.names() if text == "all" else (text,))]
     questions = [cases.asked(name, request.values) for name in dict.fromkeys(names)]
-    scenes = [question for question in questions if isinstance(question, Scene)]
-    for scene in scenes:
-        for note in notes(scene):
-            click.echo(printable(f"Note: {scene.file}: {note}"), err=True)
     twice = sorted(name for name, number in Counter(question.name for question in questions).items() if number > 1)
     if twice:
         raise click.UsageError(f"Several scenes have the name {', '.join(twice)}; allowed: a name for each scene.")
-    for scene in scenes:
-        check(request.choices, scene)
+    for scene in questions:
+        if isinstance(scene, Scene):
+            _checked(scene, request)
     return questions
 
 

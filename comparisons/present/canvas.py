@@ -16,7 +16,7 @@ import numpy as np
 from comparisons.display_units import display_unit
 from comparisons.geometry import longest
 from comparisons.present.columns import Figure
-from comparisons.present.picture import Kind, Part
+from comparisons.present.picture import Kind, Part, names_by_place
 from cprbm_scene import Scene
 
 if TYPE_CHECKING:
@@ -122,21 +122,14 @@ def draw_parts(axes: Axes, parts: Iterable[Part], colour: str = INK) -> None:
 
 
 def draw_names(axes: Axes, scene: Scene) -> None:
-    """Names of all points as drawn, at the left, or at the right beside a close point; points in a place share it."""
-    close, named = 0.05 * longest(scene), dict[tuple[float, float], list[str]]()
-    for body in scene.bodies.values():
-        for name, place in body.points.items():
-            near = (other for other in named if np.hypot(*np.subtract(place, other)) < 1e-3 * close)
-            named.setdefault(next(near, place), []).append(name)
-    for x, y in named:
-        crowded = any(0.0 < x - left < close and abs(y - height) < close for left, height in named)
-        axes.annotate(
-            ", ".join(named[x, y]),
-            (x, y),
-            textcoords="offset points",
-            xytext=(4 if crowded else -4, 7),
-            ha="left" if crowded else "right",
-        )
+    """Names of all points as drawn, at the left, or at the right beside a close point."""
+    close = 0.05 * longest(scene)
+    points = {name: np.array(place) for body in scene.bodies.values() for name, place in body.points.items()}
+    named = names_by_place(points, 1e-3 * close)
+    for text, (x, y) in named.items():
+        crowded = any(0.0 < x - left < close and abs(y - height) < close for left, height in named.values())
+        side, shift = ("left", 4) if crowded else ("right", -4)
+        axes.annotate(text, (x, y), textcoords="offset points", xytext=(shift, 7), ha=side)
 
 
 def show_lengths(scene: Scene, axis: Axis, name: str = "") -> None:

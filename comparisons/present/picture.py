@@ -200,6 +200,14 @@ def _points(scene: Scene, station: StationAnswer) -> dict[str, Array]:
     return found
 
 
+def names_by_place(points: Mapping[str, Array], room: float) -> dict[str, Array]:
+    """Places (2,) by the text beside a place; ``points`` in one place, within a square of ``room``, share a text."""
+    found: dict[tuple[float, ...], list[str]] = {}
+    for name, at in points.items():
+        found.setdefault(tuple(np.round(at / room).tolist()), []).append(name)
+    return {", ".join(names): points[names[0]] for names in found.values()}
+
+
 def _bodies(scene: Scene, points: Mapping[str, Array]) -> Iterator[Part]:
     """Bodies and joints."""
     pins = {end.point for beam in scene.beams.values() for end in (beam.start, beam.end) if isinstance(end, PinnedEnd)}

@@ -8,7 +8,6 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Callable, Sequence
-from itertools import pairwise
 from typing import Any, TypeVar
 
 import numpy as np
@@ -117,22 +116,16 @@ def _pictures(
             surface = surface.clip_box([x, right, y, top, -np.inf, np.inf], invert=False)
             plotter.add_mesh(surface, color=_RIGID, ambient=0.3)
         for part in view.of("body"):
-            for start, end in pairwise(np.pad(part.line, ((0, 0), (0, 1)))):
-                if not np.array_equal(start, end):
-                    plotter.add_mesh(pyvista.Line(start, end).tube(radius=0.005 * size), color=_BODY)
+            plotter.add_lines(np.pad(part.line, ((0, 0), (0, 1))), color=_BODY, width=7, connected=True)
         deep = float(np.ptp(block.places[:, 2]))
         for push in view.arrows_of("push"):
             vector = bounds.arrow(push)
             if vector is not None:
-                whole = float(np.hypot(*vector))
-                tail = (*(push.middle - vector), 0.55 * deep)  # in front of the beam
-                arrow = pyvista.Arrow(tail, (*vector, 0.0), scale=whole, tip_length=min(0.9, 0.03 * size / whole),
-                                      tip_radius=0.009 * size / whole, shaft_radius=0.004 * size / whole)  # fmt: skip
-                plotter.add_mesh(arrow, color=_FORCE, ambient=0.5)
+                tail = np.array([*(push.middle - vector), 0.55 * deep])  # in front of the beam
+                plotter.add_arrows(tail, np.array([*vector, 0.0]), color=_FORCE, ambient=0.5)
         plotter.add_text(_plain(name), position="upper_left", color="black", font_size=10)
         plotter.enable_parallel_projection()
-        plotter.camera.focal_point, plotter.camera.position = middle, middle + 4.0 * size * np.array(_WAY)
-        plotter.camera.up = (0.0, 1.0, 0.0)
+        plotter.camera_position = [(middle + 4.0 * size * np.array(_WAY)).tolist(), middle.tolist(), [0.0, 1.0, 0.0]]
         plotter.camera.parallel_scale = 0.62 * max(high, wide * _SIZE[1] / (0.75 * _SIZE[0])) + 0.3 * deep
         plotter.renderer.ResetCameraClippingRange()
         plotter.enable_anti_aliasing("ssaa")

@@ -26,10 +26,11 @@ from comparisons.formats import number, vector
 from comparisons.geometry import length, points
 from comparisons.present.columns import NOTHING
 from comparisons.present.figures import colour_unit, view_title
-from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, view_of
+from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, names_by_place, view_of
 from comparisons.present.row_tables import Judged, judged_rows, row_units, share
 from comparisons.present.strips import Strip
 from comparisons.present.table import with_minus
+from comparisons.verdict.completeness import complete_stations
 from comparisons.verdict.rows import ROUND_OFF
 from cprbm_scene import StationAnswer
 from cprbm_scene.answer import Array
@@ -86,11 +87,12 @@ class Stepper:
 def stepper(compared: Comparison) -> Stepper | None:
     """The common stations of both answers; None without a common station."""
     scene, beams = compared.scene, compared.scene.beams
-    reached = {(at.stage, at.value): at for at in compared.runs.cprbm[0].stations}
-    common = [at for at in compared.runs.reference.stations if (at.stage, at.value) in reached]
+    both = (compared.runs.cprbm[0], compared.runs.reference)
+    cprbm, fea = (complete_stations(scene, answer) for answer in both)
+    common = [where for where in fea if where in cprbm]
     if not common:
         return None
-    views = [view_of(scene, station) for station in common]
+    views = [view_of(scene, fea[where]) for where in common]
     bounds = bounds_of(scene, views, "bending_stress")
     margin = _MARGIN * bounds.size
     corner = np.array([bounds.low[0] - margin, bounds.high[1] + margin])
@@ -104,13 +106,13 @@ def stepper(compared: Comparison) -> Stepper | None:
     rows = {(at.row.probe.name, *at.row.where): at for at in judged_rows(compared)}
     units = row_units(scene, compared.rows)
     of_probe = {row.probe.name: units[row.unit][1] for row in compared.rows}
-    labels = _labels(views[-1], place)
+    labels = names_by_place(views[-1].points, 1.0 / scale)
+    leaders = [text.partition(", ")[0] for text in labels]
     stations, moving = [], dict[str, str]()
-    for view in views:
-        where = view.station.stage, view.station.value
-        moving = dict(_moving(view, reached[where], bounds, place))
+    for where, view in zip(common, views, strict=True):
+        moving = dict(_moving(view, cprbm[where], bounds, place))
         cells = tuple(_cells(rows.get((name, *where)), units) for name in names)
-        spots = tuple("{:g} {:g}".format(*np.round(place(view.points[point]))) for point in labels.values())
+        spots = tuple("{:g} {:g}".format(*np.round(place(view.points[point]))) for point in leaders)
         stations.append((view_title(scene, view), tuple(moving.values()), spots, cells))
     rest = (points(beam.curve, np.linspace(0.0, length(beam.curve), 121)) for beam in beams.values())
     factor, unit = colour_unit(scene, "bending_stress", bounds.most)
@@ -145,27 +147,15 @@ def _moving(view: View, cprbm: StationAnswer, bounds: Bounds, place: Placing) ->
 
 def _shades(strip: Strip, bounds: Bounds, place: Placing) -> Iterator[tuple[int, str]]:
     """Areas of a beam by number of the colour."""
-    half = np.maximum(0.5 * strip.thickness, 0.5 * _THINNEST / _scale(place))[:, None] * strip.normal
-    edges = place(strip.line + half), place(strip.line - half)
-    shares = strip.bending_stress / (bounds.most or 1.0)
-    colours = np.rint((1.0 + shares) * (SHADES - 1) / 2.0).astype(int)
+    middle = place(strip.line)
+    across = place(strip.layer(1.0)) - middle
+    across *= np.maximum(0.5 * _THINNEST / np.hypot(*across.T), 1.0)[:, None]
+    edges = middle + across, middle - across
+    colours = np.rint((1.0 + strip.bending_stress / (bounds.most or 1.0)) * (SHADES - 1) / 2.0).astype(int)
     for colour, found in groupby(range(len(colours) - 1), key=lambda piece: colours[piece]):
         pieces = list(found)
         run = slice(pieces[0], pieces[-1] + 2)
         yield int(colour), line(np.concatenate([edges[0][run], edges[1][run][::-1]]), closed=True)
-
-
-def _scale(place: Placing) -> float:
-    """Size of a metre in the picture."""
-    return float(np.diff(place(np.array([[0.0, 0.0], [1.0, 0.0]]))[:, 0])[0])
-
-
-def _labels(view: View, place: Placing) -> dict[str, str]:
-    """A point by the text beside it; points in one place share a text."""
-    found: dict[tuple[float, ...], list[str]] = {}
-    for name, at in view.points.items():
-        found.setdefault(tuple(np.round(place(at)).tolist()), []).append(name)
-    return {", ".join(names): names[0] for names in found.values()}
 
 
 def _cells(judged: Judged | None, units: Mapping[str, tuple[float, str]]) -> tuple[str, ...]:

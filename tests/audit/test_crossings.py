@@ -32,6 +32,7 @@ def scene_of(beams, contacts=(), thickness=T, **keys):
     return scene_from(
         {
             "name": "drawn",
+            "theory": "bending",
             "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": points},

@@ -67,6 +67,14 @@ def test_compare_ends_with_3_if_nothing_is_worse_than_undecided(right, capsys):
     assert capsys.readouterr().out.startswith("hinge: UNDECIDED")
 
 
+@pytest.mark.parametrize("command", ["solve", "compare"])
+def test_an_implausible_load_is_noted_before_the_answer(command, right, tmp_path, capsys):
+    soft = tmp_path / "soft.toml"
+    soft.write_text(HINGE.read_text(encoding="utf-8").replace("2.3e9", "2.1e3"), encoding="utf-8")
+    run([command, str(soft), "--quiet"], right)
+    assert capsys.readouterr().err.startswith(f"Note: {soft}: loads.M: M L/(E I) is ")
+
+
 def test_solve_ends_with_0_or_1(right, capsys):
     assert run(["solve", "hinge"], right) == 0
     assert "B.displacement" in capsys.readouterr().out

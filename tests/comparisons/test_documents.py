@@ -28,6 +28,7 @@ NUMBER = (int, float)
 BENT = {
     "name": "leaf",
     "units": {"length": "mm", "force": "N", "angle": "deg", "stress": "MPa"},
+    "theory": "bending",
     "materials": {"steel": {"youngs_modulus": 210e3, "poisson_ratio": 0.3}},
     "bodies": {
         "ground": {"motion": "fixed", "points": {"O": [0.0, 0.0]}},

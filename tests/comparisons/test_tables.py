@@ -65,12 +65,14 @@ def test_a_table_keeps_to_its_width_and_splits_between_columns(width, monkeypatc
     for row in TABLE.rows:
         for cell in row:
             assert any(re.search(rf"(?:^|\s){re.escape(cell)}(?:\s|$)", line) for line in lines), cell
+    if width == 50:  # the name folds
+        return
     beginnings = [line.split()[:2] for line in lines if "potential_energy" in line]
-    if width > 50:  # name and unit stand in every part; on a narrow screen the name folds
-        assert beginnings == [["scene.potential_energy", "mJ"]] * parts(lines)
-    for place, line in enumerate(lines):
-        if line.lstrip().startswith("probe"):  # columns of numbers end where their headers end
-            assert {len(row.rstrip()) for row in lines[place + 2 : place + 4]} == {len(line.rstrip())}
+    assert beginnings == [["scene.potential_energy", "mJ"]] * parts(lines)  # name and unit stand in every part
+    heads = [place for place, line in enumerate(lines) if line.lstrip().startswith("probe")]
+    assert len(heads) == parts(lines)
+    for place in heads:  # columns of numbers end where their headers end
+        assert {len(row.rstrip()) for row in lines[place + 2 : place + 4]} == {len(lines[place].rstrip())}
 
 
 def test_sentences_fold_between_words_and_names_fold_anywhere():

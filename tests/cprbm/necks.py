@@ -30,6 +30,7 @@ def _column(
     return scene_from(
         {
             "name": "neck",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": MODULUS, "poisson_ratio": 0.31}},
             "bodies": bodies,
             "beams": {

@@ -22,6 +22,7 @@ def roll(stations, narrows=NARROWS, *, thick=True, backwards=False):
     return scene_from(
         {
             "name": "rolled",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": MODULUS, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"C": places["C"]}},

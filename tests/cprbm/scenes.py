@@ -24,6 +24,7 @@ def hinge(**changes: Any):
 def cantilever_data(load: dict[str, Any], stations: list[float]) -> dict[str, Any]:
     return {
         "name": "cantilever",
+        "theory": "bending",
         "materials": {"m": {"youngs_modulus": MODULUS, "poisson_ratio": 0.31}},
         "bodies": {
             "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},

@@ -21,6 +21,7 @@ def over_a_circle(coefficients, thickness, circle, load, stations):
     return scene_from(
         {
             "name": "over",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": 2.0e9, "poisson_ratio": 0.35}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},

@@ -33,6 +33,7 @@ def test_a_tip_pressed_on_another_beam(order, links):
     scene = scene_from(
         {
             "name": "two",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": MODULUS, "poisson_ratio": 0.31}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"U": [0.0, y], "V": [0.0, 0.0]}},

@@ -16,6 +16,7 @@ def leaves(overlap):
         {
             "name": "leaves",
             "units": {"length": "mm", "force": "N", "angle": "deg", "stress": "MPa"},
+            "theory": "bending",
             "materials": {"steel": {"youngs_modulus": 200000.0, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {f"A{k}": [0.0, y] for k, y in enumerate(heights)}},

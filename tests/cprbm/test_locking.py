@@ -31,6 +31,7 @@ def beside_a_held_one(moment, away):
     return scene_from(
         {
             "name": "beside",
+            "theory": "bending",
             "materials": {"steel": {"youngs_modulus": E, "poisson_ratio": 0.3}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0], "A": held[0], "B": held[1]}},
@@ -71,6 +72,7 @@ def column(push):
     return scene_from(
         {
             "name": "column",
+            "theory": "bending",
             "materials": {"steel": {"youngs_modulus": E, "poisson_ratio": 0.3}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},

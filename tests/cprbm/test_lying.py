@@ -44,6 +44,7 @@ def scene_of(tip, clamp, center, radius, load, direction, order=("A", "B"), belo
     return scene_from(
         {
             "name": "lying",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": below.youngs_modulus, "poisson_ratio": 0.3}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": wall if block else {**wall, **foot}},

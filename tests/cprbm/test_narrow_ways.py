@@ -9,6 +9,7 @@ from cprbm_scene import read
 
 PRESSED_FLAT = """
 name = "pressed-flat"
+theory = "bending"
 [materials.polypropylene]
 youngs_modulus = 1370000000.0
 poisson_ratio = 0.42
@@ -39,6 +40,7 @@ point = [0.0173981, -0.0056798]
 normal = [-0.1942, 0.981]
 [[stages]]
 name = "press"
+theory = "bending"
 steps = "press"
 stations = [0.005688, 0.008532, 0.009479]
 [[probes]]
@@ -51,6 +53,7 @@ quantity = "centre"
 
 LINKED = """
 name = "linked"
+theory = "bending"
 [materials.polypropylene]
 youngs_modulus = 1370000000.0
 poisson_ratio = 0.42

@@ -63,6 +63,7 @@ def pressed_down(load, contact, *, mirrored=False, below=None, points=()):
     return scene_from(
         {
             "name": "pressed",
+            "theory": "bending",
             "materials": {
                 "soft": {"youngs_modulus": 2.0e9, "poisson_ratio": 0.3},
                 "hard": {"youngs_modulus": 2.0e12, "poisson_ratio": 0.3},

@@ -23,6 +23,7 @@ def beam_onto(contacts, load, *, thick):
     return Scene.model_validate(
         {
             "name": "tiny",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": 12.0 / (WIDTH * T**3), "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"root": (0.0, 0.0)}},

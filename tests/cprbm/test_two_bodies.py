@@ -36,6 +36,7 @@ def frame(order):
     return scene_from(
         {
             "name": "frame",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": MODULUS, "poisson_ratio": 0.31}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"R": R, "S": S}},

@@ -46,6 +46,7 @@ def two_lines(gap, *, thick=True, second=None):
     beam = {"thickness": 0.002, "width": 0.01, "material": "steel", "end": {"joint": "weld", "point": "Q"}}
     return {
         "name": "pair",
+        "theory": "bending",
         "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
         "bodies": {
             "ground": {"motion": "fixed", "points": {"O": [0.0, 0.0], "P": list(ends[0])}},

@@ -10,6 +10,7 @@ def over_a_circle(gap=0.0, *, thick=True, body="ground"):
     offset = R + gap + (0.5 * T if thick else 0.0)
     return {
         "name": "circle",
+        "theory": "bending",
         "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
         "bodies": {
             "ground": {"motion": "fixed", "points": {"O": [0.0, 0.0]}},
@@ -64,6 +65,7 @@ def over(contact, gap=0.0, *, thick=True, start="weld"):
     y = gap + (0.5 * T if thick else 0.0)
     return {
         "name": "edge",
+        "theory": "bending",
         "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
         "bodies": {
             "ground": {"motion": "fixed", "points": {"O": [0.0, y]}},
@@ -134,6 +136,7 @@ LOADED = edited(("loads", {"F": FORCE, "q": WEIGHT}), ("stages", LOADED_STAGES),
 
 LINKAGE = {
     "name": "linkage",
+    "theory": "bending",
     "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
     "bodies": {
         "ground": {"motion": "fixed", "points": {"O": [0.0, 0.0], "E": [0.2, 0.0]}},

@@ -164,6 +164,7 @@ def test_a_ring_that_overlaps_itself_as_drawn():
     curve = {"kind": "arc", "center": [0.0, 0.0], "direction": "counterclockwise", **ends}
     data = {
         "name": "ring",
+        "theory": "bending",
         "materials": {"m": {"youngs_modulus": 2e9, "poisson_ratio": 0.3}},
         "bodies": {
             "ground": {"motion": "fixed", "points": {"A": ends["start"]}},

@@ -39,6 +39,7 @@ THIN = {"thickness": 0.001, "width": 0.01, "material": "steel"}
 
 HUNG = {
     "name": "hung",
+    "theory": "bending",
     "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
     "bodies": {
         "ground": {"motion": "fixed", "points": {"R": [0.0, 0.0], "S": [0.031, 0.047]}},

@@ -331,6 +331,7 @@ def test_every_number_of_a_record_states_a_unit():
 DATA = {
     "name": "measured",
     "units": {"length": "mm", "force": "kN", "angle": "deg", "stress": "GPa"},
+    "theory": "bending",
     "materials": {"steel": {"youngs_modulus": 207.3, "poisson_ratio": 0.29}},
     "bodies": {
         "ground": {"motion": "fixed", "points": {"A": [9.7, -2.9], "P": [0.0, 0.0], "Q": [0.0, 31.7]}},

@@ -30,6 +30,7 @@ def cantilever(
     return scene_from(
         {
             "name": "cantilever",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": young, "poisson_ratio": POISSON}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"root": [0.0, 0.0]}},

@@ -37,6 +37,7 @@ def scene(stations: list[float]) -> dict[str, Any]:
     """The strip as a scene whose first stage drives T through ``stations``, m."""
     return {
         "name": "faint-contact",
+        "theory": "bending",
         "materials": {"abs": {"youngs_modulus": E, "poisson_ratio": 0.35}},
         "bodies": {
             "wall": {"motion": "fixed", "points": {"R": _pair(ROOT)}},

@@ -24,6 +24,7 @@ def hook(lean: float, thickness: tuple[float, float], stations: list[float], *, 
     return scene_from(
         {
             "name": "hook",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": 114e9, "poisson_ratio": 0.33}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"R": points[0]}},

@@ -36,6 +36,7 @@ def lying(between: tuple[str, str], stations: tuple[float, ...]) -> Scene:
     return scene_from(
         {
             "name": "lying",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"U": [0.0, y], "V": [0.0, 0.0]}},

@@ -26,6 +26,7 @@ def arch(thickness: float | dict[str, Any], clamps: list[float], *, thick: bool,
     return scene_from(
         {
             "name": "neck",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"A": left}},
@@ -75,6 +76,7 @@ def strip(
     return scene_from(
         {
             "name": "roll",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"C": clamp}},
@@ -126,6 +128,7 @@ def half(thickness: float | dict[str, Any], clamps: list[float], mirror: dict[st
     return scene_from(
         {
             "name": "half",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"O": [0.0, 0.0]}},

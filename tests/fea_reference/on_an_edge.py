@@ -12,6 +12,7 @@ def scene_of(
     return Scene.model_validate(
         {
             "name": "edge",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": 12.0 / (WIDTH * thickness**3), "poisson_ratio": 0.3}},
             "bodies": bodies,
             "beams": {

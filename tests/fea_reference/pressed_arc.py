@@ -22,6 +22,7 @@ def pressed_arc(
     return scene_from(
         {
             "name": "pressed-arc",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": material[0], "poisson_ratio": material[1]}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},

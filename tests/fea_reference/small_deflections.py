@@ -107,6 +107,7 @@ def scene_of(spans, ends, thicknesses, contacts, load, at):
     }
     return {
         "name": "small",
+        "theory": "bending",
         "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
         "bodies": bodies,
         "beams": beams,

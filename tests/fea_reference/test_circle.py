@@ -57,6 +57,7 @@ def on_circle(forces, radius=RADIUS, *, units=1.0, thick=True, body="ground", ce
     return Scene.model_validate(
         {
             "name": "circle",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"root": (0.0, 0.0)}},

@@ -38,6 +38,7 @@ def two_cantilevers(first, second, stations, *, thick=True):
     return scene_from(
         {
             "name": "two",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"U": [0.0, y], "V": [0.0, 0.0]}},
@@ -123,6 +124,7 @@ def test_a_propped_cantilever():
     scene = scene_from(
         {
             "name": "propped",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"root": [0.0, 0.0], "prop": [L, 0.0]}},
@@ -337,6 +339,7 @@ def test_what_moves_by_less_than_is_clear_does_not_overlap(order):
     scene = scene_from(
         {
             "name": "apart",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"U": [0.03, apart], "V": [-0.02, 0.0]}},

@@ -87,6 +87,7 @@ def test_the_softest_of_beams_that_know_nothing_of_each_other_is_the_longest():
     scene = scene_from(
         {
             "name": "six",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": 2.1e9, "poisson_ratio": 0.3}},
             "bodies": {"ground": {"motion": "fixed", "points": points}},
             "beams": beams,

@@ -15,6 +15,7 @@ def quarter_circle(direction):
     return scene_from(
         {
             "name": "quarter",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": POISSON}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"root": [R, 0.0]}},

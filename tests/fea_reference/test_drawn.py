@@ -22,6 +22,7 @@ def test_an_arc_that_is_drawn_straight_says_where_forces_have_no_limit(rise, ele
     scene = scene_from(
         {
             "name": "arc",
+            "theory": "bending",
             "materials": {"steel": {"youngs_modulus": E, "poisson_ratio": 0.3}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},

@@ -118,6 +118,7 @@ def test_beams_of_unlike_thickness_touch_between_their_surfaces():
     pressed = scene_from(
         {
             "name": "unlike",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": 2.3e9, "poisson_ratio": 0.35}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": ends["ground"]},

@@ -21,6 +21,7 @@ def hump():
     return scene_from(
         {
             "name": "hump",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": 2.3e9, "poisson_ratio": 0.35}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": wall},

@@ -109,6 +109,7 @@ def nudged_column(*stations):
     return scene_from(
         {
             "name": "nudged",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": 1.14e11, "poisson_ratio": 0.33}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
@@ -162,6 +163,7 @@ def pressed_hook():
     return scene_from(
         {
             "name": "hook",
+            "theory": "bending",
             "materials": {"steel": {"youngs_modulus": 2.07e11, "poisson_ratio": 0.29}},
             "bodies": {"wall": {"motion": "fixed", "points": {"R": points[0]}}},
             "beams": {

@@ -16,6 +16,7 @@ def arch(stations):
     return scene_from(
         {
             "name": "arch",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": 207e9, "poisson_ratio": 0.29}},
             "bodies": {"wall": {"motion": "fixed", "points": ends}},
             "beams": {

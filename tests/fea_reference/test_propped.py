@@ -16,6 +16,7 @@ def propped(load):
     return scene_from(
         {
             "name": "propped",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.33}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0], "S": [PLACE, top - STRUT]}},

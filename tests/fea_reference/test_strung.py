@@ -16,6 +16,7 @@ def strung(depth):
     return scene_from(
         {
             "name": "strung",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.33}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"A": [0.0, 0.0], "B": [LENGTH, 0.0]}},

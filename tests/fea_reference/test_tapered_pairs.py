@@ -59,6 +59,7 @@ def pressed(contact: dict[str, Any], load: float, thickness: Any, points: dict[s
     return scene_from(
         {
             "name": "tapered",
+            "theory": "bending",
             "materials": {
                 "m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3},
                 "hard": {"youngs_modulus": HARD * YOUNG, "poisson_ratio": 0.3},
@@ -166,6 +167,7 @@ def two_arcs(values: tuple[float, ...], *, alone: bool) -> Scene:
     return scene_from(
         {
             "name": "mirror",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {f"A_{name}": both[0] for name, both in ends.items()}},

@@ -34,6 +34,7 @@ def pressed(share):
     return scene_from(
         {
             "name": "pressed",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.31}},
             "bodies": {"wall": wall, "tip": tip},
             "beams": {"b": beam},
@@ -75,6 +76,7 @@ def driven(distance, root):
     return scene_from(
         {
             "name": "driven",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.31}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"R": (0.0, 0.0)}},

@@ -40,6 +40,7 @@ def tangled():
     """A tapered beam from a weld to a free start, loaded in its inside, which lies on an edge that is a polynomial."""
     return {
         "name": "tangled",
+        "theory": "bending",
         "materials": {"m": {"youngs_modulus": 7.3e10, "poisson_ratio": 0.31}},
         "bodies": {"ground": {"motion": "fixed", "points": {"P": [0.1173, 0.0213]}}},
         "beams": {
@@ -199,6 +200,7 @@ def turned():
     """A strip whose end is turned, and else free: by statics a moment alone holds it."""
     return {
         "name": "turned",
+        "theory": "bending",
         "materials": {"m": {"youngs_modulus": 7.3e10, "poisson_ratio": 0.31}},
         "bodies": {"ground": {"motion": "fixed", "points": {"P": [0.013, 0.021]}},
                    "tip": {"motion": "free", "points": {"T": [0.093, 0.054]}}},

@@ -83,6 +83,10 @@ def _varied(rng: Generator, mean: float, by: float) -> Data:
 def started(rng: Generator) -> Draft:
     """One with a material and a frame, and nothing in it."""
     material, modulus, ratio = any_of(rng, MATERIALS)
-    data: Data = {"name": "random", "materials": {material: {"youngs_modulus": modulus, "poisson_ratio": ratio}}}
+    data: Data = {
+        "name": "random",
+        "theory": "bending",
+        "materials": {material: {"youngs_modulus": modulus, "poisson_ratio": ratio}},
+    }
     slenderness = spread(rng, 1.0 / THICKEST, 1.0 / THINNEST)
     return Draft(rng, drawn_frame(rng), material, slenderness, data | {"bodies": {}, "beams": {}})

@@ -33,6 +33,7 @@ def pulled(last, contact):
     """A half ring from the ground to a slide that is drawn away from it, as far as ``last``."""
     data = {
         "name": "pulled",
+        "theory": "bending",
         "materials": {"abs": {"youngs_modulus": 2.3e9, "poisson_ratio": 0.35}},
         "bodies": {
             "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},

@@ -4,6 +4,7 @@ import csv
 
 CANTILEVER = """
 name = "cantilever"
+theory = "bending"
 units = {{ length = "mm", stress = "MPa" }}
 [parameters]
 t = {{ value = 2.0, unit = "mm", range = [1.0, 3.0] }}

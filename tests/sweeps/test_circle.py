@@ -10,6 +10,7 @@ from tests.sweeps.elastica import tip
 
 SCENE = """
 name = "round"
+theory = "bending"
 [parameters]
 rho = { value = 1.0, unit = "m", range = [0.6, 1.2] }
 t = { value = 0.01, unit = "m" }

@@ -14,6 +14,7 @@ def cantilever(load: dict[str, Any], stations: list[float], curve: dict[str, Any
     """The parabola x = 14.64 y² + 0.05 m, or another curve between its ends, clamped at R, with a rigid tip at T."""
     return {
         "name": "bowed",
+        "theory": "bending",
         "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.35}},
         "bodies": {
             "wall": {"motion": "fixed", "points": {"R": CLAMP}},

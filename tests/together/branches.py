@@ -43,7 +43,12 @@ def _stage(name: str, steps: str, stations: list[float], beyond: str) -> dict[st
 
 
 def _scene(name: str, **parts: Any) -> dict[str, Any]:
-    return {"name": name, "materials": {"m": {"youngs_modulus": MODULUS, "poisson_ratio": 0.31}}, **parts}
+    return {
+        "name": name,
+        "theory": "bending",
+        "materials": {"m": {"youngs_modulus": MODULUS, "poisson_ratio": 0.31}},
+        **parts,
+    }
 
 
 def arch(half_angle: float, left: str, right: str, stations: list[float], *, beyond: str = "stop") -> dict[str, Any]:

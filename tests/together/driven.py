@@ -16,6 +16,7 @@ def gripper_like() -> Scene:
     beam = {"thickness": 0.0021, "width": 0.0083, "material": "m"}
     data: dict[str, Any] = {
         "name": "driven",
+        "theory": "bending",
         "materials": {"m": {"youngs_modulus": 2.3e9, "poisson_ratio": 0.35}},
         "bodies": {
             "ground": {"motion": "fixed", "points": {"C": [0.153, 0.011]}},
@@ -110,6 +111,7 @@ def snapping() -> Scene:
     return scene_from(
         {
             "name": "snapping",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": 2.3e9, "poisson_ratio": 0.35}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"A": left, "B": right}},

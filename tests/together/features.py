@@ -68,6 +68,7 @@ def cantilever(curve: Data | None = None, asked: tuple[str, ...] = ASKED, **chan
     kind = ((changes.get("drives") or changes.get("loads") or {"F": DOWN})[stepped])["kind"]
     return {
         "name": "feature",
+        "theory": "bending",
         "materials": {"m": {"youngs_modulus": MODULUS, "poisson_ratio": 0.3}},
         "bodies": {
             "wall": {"motion": "fixed", "points": {"R": start}},

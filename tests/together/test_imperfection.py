@@ -31,6 +31,7 @@ def column(half_waves, **beam):
     }
     return {
         "name": "column",
+        "theory": "bending",
         "materials": {"m": {"youngs_modulus": E, "poisson_ratio": 0.3}},
         "bodies": {
             "ground": {"motion": "fixed", "points": {"A": [0.0, 0.0]}},

@@ -40,6 +40,7 @@ def arch(stations=STATIONS):
     return scene_from(
         {
             "name": "arch-on-a-wall",
+            "theory": "bending",
             "materials": {"pp": material},
             "bodies": bodies,
             "beams": {"arch": beam},

@@ -29,6 +29,7 @@ def stacked():
     return scene_from(
         {
             "name": "stacked",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"U": [0.0, h], "V": [a, 0.0], "W": [0.0, -h]}},

@@ -31,6 +31,7 @@ def lifted(*stations: float) -> Data:
     """The tip is lifted by forces of so many times what lifts it to where the link stands upright."""
     return {
         "name": "lifted",
+        "theory": "bending",
         "materials": {"steel": {"youngs_modulus": YOUNGS_MODULUS, "poisson_ratio": 0.29}},
         "bodies": {
             "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},

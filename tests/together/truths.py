@@ -162,6 +162,7 @@ def of_two_cantilevers() -> tuple[Scene, Solver]:
     scene = scene_from(
         {
             "name": "pair",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": young, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"U": [0.0, h], "V": [a, 0.0]}},

@@ -168,6 +168,7 @@ def test_an_edge_that_runs_on_behind_the_pin_limits_both_ways():
     scene = scene_from(
         {
             "name": "lever",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": 2.1e9, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"A": [0.0, 0.0]}},

@@ -28,6 +28,7 @@ def data(angle: float, between: tuple[str, str]) -> dict[str, Any]:
     ground = {"beam": "lower", "body": "ground"}
     scene = {
         "name": "workshop",
+        "theory": "bending",
         "materials": {"m": {"youngs_modulus": 2.1e9, "poisson_ratio": 0.3}},
         "bodies": {
             "ground": {"motion": "fixed", "points": {"A": at(0.0, 0.0), "B": at(0.0, 0.01)}},

@@ -91,6 +91,7 @@ def test_a_cantilever_pressed_on_a_round_pin_is_a_propped_beam(angle):
     scene = scene_from(
         {
             "name": "propped",
+            "theory": "bending",
             "materials": {"m": STEEL},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"A": at(0.0, 0.0)}},

@@ -14,6 +14,7 @@ from tests.scenes.rare_scenes import scene as rare_scene
 AT, FORCE = (0.5, -0.02), 3.0
 DEAD_WEIGHT = """
 name = "dead-weight"
+theory = "bending"
 units = { length = "mm", force = "N", angle = "deg", stress = "MPa" }
 [materials.steel]
 youngs_modulus = 200000.0

@@ -163,6 +163,7 @@ def test_three_blades_share_their_forces():
     scene = scene_from(
         {
             "name": "guide",
+            "theory": "bending",
             "materials": {"plastic": {"youngs_modulus": modulus, "poisson_ratio": 0.36}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": points},
@@ -198,6 +199,7 @@ def test_sections_beside_a_moment_inside_an_element_turn_as_the_elastica_does():
     at, moment, bending_stiffness = 0.1 * 0.78, 0.5, 0.175
     data = {
         "name": "moment",
+        "theory": "bending",
         "materials": {"steel": STEEL},
         "bodies": {"ground": {"motion": "fixed", "points": {"A": [0.0, 0.0]}}},
         "beams": {

@@ -12,6 +12,7 @@ def bar(curve, thickness, *, poisson=0.0, load=None, stations=(1.0,), probes=(),
     return scene_from(
         {
             "name": "bar",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": poisson}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"root": start}},

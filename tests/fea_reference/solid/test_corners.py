@@ -23,6 +23,7 @@ def pressing(*, by_a_point):
     return scene_from(
         {
             "name": "pressing",
+            "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.0}},
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"A": [0.0, 0.0], "B": [0.17, -0.013]}},
