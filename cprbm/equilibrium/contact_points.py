@@ -52,7 +52,7 @@ ROUNDS = 12
 """Solves under the same targets."""
 
 RETRIES = 6
-"""First solves, half of all: after these light joints open, and a moving place that has become joints may move again."""
+"""First solves, half of all, after which light joints open, and a moving place that became joints may move again."""
 
 
 def touched_equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Touched:
