@@ -282,13 +282,16 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
 
     def ended() -> Runs:
         found = dict(zip(jobs, pending(), strict=False))  # of decided runs the first two alone
+        cprbm, fea, solid = (
+            tuple(found[run] for run in (name, f"{name} finer") if run in found) for name in ("cprbm", "fea", "solid")
+        )
         other, other_absence = (None, "") if bare else in_other_theory(scene, even, solvers)
         exact, exact_absence = exact_or_why(found.get("exact"))
         ratio, fea_ratio = even.ratios_beside()
         return Runs(
             theory,
-            tuple(found[name] for name in ("cprbm", "cprbm finer") if name in found),
-            tuple(found[name] for name in ("fea", "fea finer") if name in found),
+            cprbm,
+            fea,
             auto=found.get("auto"),
             paper=None if bare or "auto" in jobs or len(found) < len(jobs) else in_paper(scene, choices, solvers),
             beside=found.get("beside"),
@@ -300,7 +303,7 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
             perturbed=found.get("perturbed"),
             exact=exact,
             exact_absence=exact_absence,
-            solid=(found["solid"], found["solid finer"]) if "solid" in found else None,
+            solid=solid or None,
         )
 
     return ended
@@ -308,23 +311,26 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
 
 def _planned(scene: Scene, choices: Choices, solvers: Solvers, *, bare: bool) -> dict[str, Job]:
     """The runs of a comparison by name, without the other theory and ``paper``."""
-    even = replace(choices, formulation="auto")
-    jobs: dict[str, Job] = {"cprbm": (solvers.cprbm, scene, choices), "fea": (solvers.fea, scene, choices)}
-    if even != choices:
-        jobs["auto"] = (solvers.cprbm, scene, even)
+    even, finer, beside = replace(choices, formulation="auto"), choices.finer(), choices.beside()
     driven = None if bare else perturbed_scene(scene)
-    if driven is not None:
-        jobs["perturbed"] = (solvers.cprbm, driven, choices)
-    jobs["beside"] = (solvers.cprbm, scene, even.beside())
-    jobs["cprbm finer"] = (solvers.cprbm, scene, even.finer())
-    jobs["fea beside"] = (solvers.fea, scene, choices.beside())
-    jobs["fea finer"] = (solvers.fea, scene, choices.finer())
-    if solvers.exact is not None and choices.theory == "bending":
-        jobs["exact"] = (solvers.exact, scene, choices)
-    if solvers.solid is not None:
-        jobs["solid"] = (solvers.solid, scene, choices)
-        jobs["solid finer"] = (solvers.solid, scene, choices.finer())
-    return jobs
+    planned: dict[str, tuple[Solver | None, Scene | None, Choices]] = {
+        "cprbm": (solvers.cprbm, scene, choices),
+        "fea": (solvers.fea, scene, choices),
+        "auto": (None if even == choices else solvers.cprbm, scene, even),
+        "perturbed": (solvers.cprbm, driven, choices),
+        "beside": (solvers.cprbm, scene, even.beside()),
+        "cprbm finer": (solvers.cprbm, scene, even.finer()),
+        "fea beside": (solvers.fea, scene, beside),
+        "fea finer": (solvers.fea, scene, finer),
+        "exact": (solvers.exact if choices.theory == "bending" else None, scene, choices),
+        "solid": (solvers.solid, scene, choices),
+        "solid finer": (solvers.solid, scene, finer),
+    }
+    return {
+        name: (solver, asked, own)
+        for name, (solver, asked, own) in planned.items()
+        if solver is not None and asked is not None
+    }
 
 
 def _nothing_in_common(scene: Scene, cprbm: Answer, fea: Answer) -> bool:

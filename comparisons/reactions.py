@@ -46,8 +46,7 @@ from itertools import chain
 import numpy as np
 
 from comparisons.quantities import VANISHING
-from comparisons.stations import station_of
-from comparisons.thinning import kept
+from comparisons.stations import kept, station_of
 from cprbm_scene import Answer, Drive, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.freedoms import unit
 from cprbm_scene.statement import DisplacementDrive

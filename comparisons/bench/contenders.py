@@ -1,6 +1,6 @@
-"""Methods that a benchmark times, each as a set-up, a solve, and what is made of its result.
+"""Methods that a benchmark times: a set-up, a solve, and the outcome of the result.
 
-The project's own solvers are here; the optimisers beside them come from outside, as further contenders.
+The methods here are the project's own solvers.  Optimisers come from outside as further contenders.
 """
 
 from __future__ import annotations
@@ -16,24 +16,22 @@ from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
 
-Name = str
-OURS: tuple[Name, ...] = ("auto", "paper", "fea")
-"""The project's own methods, in the order of the tables."""
+OURS: tuple[str, ...] = ("auto", "paper", "fea")
+"""Names of the project's own methods, in the order of the tables."""
 
 Clocked = Literal["solve", "both"]
-"""What a time is of: the solve alone, or set-up and solve together."""
+"""Extent of a time: the solve alone, or set-up and solve together."""
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What one solve came to.
+    """Outcome of a solve.
 
     Attributes:
-        ended: COMPLETED, or the name of another ending.
-        why: a sentence on that.
-        iterations: of each station that was reached.
-        values: at the last station, by probe; empty if it was not reached.
-        residual: of the measure that is common to the peers; None of the project's own, which certify themselves.
+        ended: COMPLETED, or the name of another ending; why: a sentence on another ending.
+        iterations: at every reached station.
+        values: at the last station, by probe; empty without the last station.
+        residual: in the common measure of the peers; None of the project's own methods, which certify themselves.
     """
 
     ended: str
@@ -44,7 +42,7 @@ class Outcome:
 
     @property
     def completed(self) -> bool:
-        """Whether it is a whole answer."""
+        """True for a complete answer."""
         return self.ended == "COMPLETED"
 
 
@@ -56,28 +54,29 @@ class Run:
     outcome: Callable[[Any], Outcome]
 
 
+Begin = Callable[[Scene, Count, float], Run]
+"""A run from a scene, N and the largest seconds of a solve; raises SceneError where the method refuses the scene."""
+
+
 @dataclass(frozen=True, slots=True)
 class Contender:
     """A method.
 
     Attributes:
-        name: as it is asked for.
-        method, formulation: as the JSON has them.
-        label: as tables have it.
-        begin: from a scene, N and the seconds that a solve may take to a run; raises SceneError where it is refused.
-        largest: size up to which the method goes if no sizes are named.
-        tolerance: largest residual with which a peer's solve counts as completed; None for the project's own methods,
-            which certify themselves.
+        name: in the option ``--method``; method, formulation: in the JSON; label: in tables.
+        begin: begin of a run.
+        largest: largest of the standard sizes.
+        tolerance: largest residual of a complete solve of a peer; None for the project's own methods.
         ratios: clocks of the ratios of the method's time to the time of CPRBM ``paper``.
-        look: colour and marker of a peer's points in figures.
+        look: colour and marker of the points in figures.
         absence: why the method cannot take part on this machine; empty if it can.
     """
 
-    name: Name
+    name: str
     method: str
     formulation: str | None
     label: str
-    begin: Callable[[Scene, Count, float], Run]
+    begin: Begin
     largest: int = 160
     tolerance: float | None = None
     ratios: tuple[Clocked, ...] = ()
@@ -86,26 +85,28 @@ class Contender:
 
     @property
     def is_peer(self) -> bool:
-        """True for an optimiser on the problem of CPRBM ``paper``, which knows the last station alone."""
+        """True for an optimiser on the problem of CPRBM ``paper``, which solves the last station only."""
         return self.tolerance is not None
 
 
 def contenders(solvers: Solvers, choices: Choices) -> tuple[Contender, ...]:
     """The project's own methods, in the order of ``OURS``."""
-    auto, paper = replace(choices, formulation="auto"), replace(choices, formulation="paper")
+    auto, paper = (_ours(solvers.cprbm, replace(choices, formulation=name)) for name in ("auto", "paper"))
+    fea = _ours(solvers.fea, choices)
     return (
-        Contender(
-            "auto",
-            "cprbm",
-            "auto",
-            "CPRBM auto",
-            _ours(solvers.cprbm, auto),
-            largest=5120,
-            ratios=("both",),
-        ),
-        Contender("paper", "cprbm", "paper", "CPRBM paper", _ours(solvers.cprbm, paper), largest=640),
-        Contender("fea", "fea", None, f"FEA {choices.kinematics}", _ours(solvers.fea, choices), largest=1280),
+        Contender("auto", "cprbm", "auto", "CPRBM auto", auto, 5120, ratios=("both",), look=("#1f5fa8", "o")),
+        Contender("paper", "cprbm", "paper", "CPRBM paper", paper, 640, look=("#5aa0e0", "s")),
+        Contender("fea", "fea", None, f"FEA {choices.kinematics}", fea, 1280, look=("#c8321e", "^")),
     )
+
+
+def _ours(solver: Solver, choices: Choices) -> Begin:
+    def begin(scene: Scene, count: Count, at_most: float) -> Run:
+        # a penalty whose error falls with the error of the elements
+        chosen = replace(choices.of_size(round(mean(count))), links=count, elements=count)
+        return Run(lambda: prepared(solver, scene, chosen), outcome_of)
+
+    return begin
 
 
 def mean(count: Count) -> float:
@@ -113,16 +114,8 @@ def mean(count: Count) -> float:
     return float(count) if isinstance(count, int) else sum(count.values()) / len(count)
 
 
-def _ours(solver: Solver, choices: Choices) -> Callable[[Scene, Count, float], Run]:
-    def begin(scene: Scene, count: Count, at_most: float) -> Run:
-        # a penalty whose error falls with the elements' own
-        chosen = replace(choices.of_size(round(mean(count))), links=count, elements=count)
-        return Run(lambda: prepared(solver, scene, chosen), _of_answer)
-
-    return begin
-
-
-def _of_answer(answer: Answer) -> Outcome:
+def outcome_of(answer: Answer) -> Outcome:
+    """Outcome of a solve of our solvers."""
     return Outcome(
         ended=answer.ending.name,
         why="" if answer.completed else answer.sentence,

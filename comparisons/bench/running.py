@@ -21,16 +21,16 @@ single run of that length no larger size of the method begins; a peer's solve en
 from __future__ import annotations
 
 import gc
+import math
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 
-from comparisons.bench.contenders import Clocked, Contender, Name, Outcome, mean
-from comparisons.bench.errors import NOTHING, Reference, errors
-from comparisons.bench.question import Measure
+from comparisons.bench.contenders import Clocked, Contender, Outcome, mean
+from comparisons.bench.measures import NOTHING, Measure, Reference, errors
 from comparisons.choices import Count, Kinematics
 from cprbm_scene import Scene, SceneError
 from cprbm_scene.frozendict import frozendict
@@ -51,6 +51,8 @@ CLOCKS: Mapping[Clock, Callable[[], float]] = frozendict({"wall": time.perf_coun
 Job = tuple[Contender, Count]
 """A run of a method at a size."""
 
+_EXTENTS = {"set-up": slice(0, 1), "solve": slice(1, 2), "both": slice(0, 2)}
+
 
 @dataclass(frozen=True, slots=True)
 class Plan:
@@ -65,7 +67,7 @@ class Plan:
         clock: kind of seconds.
     """
 
-    sizes: Mapping[Name, tuple[Count, ...]]
+    sizes: Mapping[str, tuple[Count, ...]]
     kinematics: Kinematics = "bending"
     repeat: int = 5
     at_most: float = 30.0
@@ -73,28 +75,34 @@ class Plan:
     clock: Clock = "wall"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Timing:
-    """Runs of a method at a size.
+    """Runs of a method at a size; during a session the runs so far.
 
     Attributes:
         seconds: of set-up and solve of every run, (k, 2), in order.
-        outcome: of the last run, or of the first incomplete run.
+        outcome: of the last run, or of the first incomplete run; None without a run.
+        refusal: the method's refusal of the question.
         errors: by measure; empty for an incomplete run or without a reference.
         worse: True if the error of a peer is larger than the error of the CPRBM on the same problem.
     """
 
     contender: Contender
     count: Count
-    seconds: tuple[tuple[float, float], ...]
-    outcome: Outcome
-    errors: Mapping[Measure, float]
+    seconds: list[tuple[float, float]] = field(default_factory=list)
+    outcome: Outcome = field(default_factory=lambda: Outcome("", "", (), frozendict()))
+    refusal: SceneError | None = None
+    errors: Mapping[Measure, float] = frozendict()
     worse: bool = False
 
+    def quartiles(self, clocked: Clocked | Literal["set-up"]) -> tuple[float, float, float]:
+        """Lower quartile, median and upper quartile of the set-up, of the solve, or of both together (T), s."""
+        low, median, high = np.percentile(np.sum(np.array(self.seconds)[:, _EXTENTS[clocked]], axis=1), (25, 50, 75))
+        return float(low), float(median), float(high)
+
     def median(self, clocked: Clocked | Literal["set-up"]) -> float:
-        """Median of the set-up, of the solve, or of both together (T), s."""
-        chosen = {"set-up": slice(0, 1), "solve": slice(1, 2), "both": slice(0, 2)}[clocked]
-        return float(np.median(np.sum(np.array(self.seconds)[:, chosen], axis=1)))
+        """Median, s."""
+        return self.quartiles(clocked)[1]
 
     @property
     def n(self) -> float:
@@ -104,7 +112,8 @@ class Timing:
     @property
     def spread(self) -> float:
         """Distance of the quartiles of the solve, s."""
-        return float(np.subtract(*np.percentile(np.array(self.seconds)[:, 1], (75.0, 25.0))))
+        low, _, high = self.quartiles("solve")
+        return high - low
 
     @property
     def counts(self) -> bool:
@@ -121,51 +130,34 @@ class Timing:
         """Mean number of iterations; None without a reached station."""
         return self.iterations / len(self.outcome.iterations) if self.outcome.iterations else None
 
+    @property
+    def why(self) -> str:
+        """Why the method refuses the question, or why the run is incomplete; else empty."""
+        if self.refusal is None:
+            return self.outcome.why
+        return "; ".join(f"{one.key}: found {one.found}; allowed: {one.allowed}" for one in self.refusal.mistakes)
+
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
     """A method or a single size without a run, and the reason."""
 
-    name: Name
+    name: str
     count: Count | None
     why: str
 
 
-@dataclass(frozen=True, slots=True)
-class Benchmark:
-    """All timings of a scene, by method and N, everything left out, and the machine."""
-
-    scene: Scene
-    plan: Plan
-    machine: Mapping[str, str | int]
-    timings: tuple[Timing, ...]
-    left_out: tuple[LeftOut, ...] = ()
-    reference: Reference = NOTHING
-
-    def of(self, name: Name) -> tuple[Timing, ...]:
-        """The timings of a method by ascending N."""
-        return tuple(timing for timing in self.timings if timing.contender.name == name)
-
-    @property
-    def contenders(self) -> tuple[Contender, ...]:
-        """All methods with a timing."""
-        return tuple({timing.contender.name: timing.contender for timing in self.timings}.values())
-
-
-@dataclass
-class _Size:
-    """Seconds of set-up and solve, outcome, and mistakes of a refused question, of a method at a size."""
-
-    seconds: list[tuple[float, float]] = field(default_factory=list)
-    outcome: Outcome | None = None
-    refusal: SceneError | None = None
-
-
 @dataclass
 class Session:
-    """A benchmark while it runs: :meth:`do` makes a run, :meth:`done` returns the benchmark of all runs so far.
+    """A benchmark, also while it runs: :meth:`do` makes a run, all else speaks of the runs so far.
 
-    ``absent`` are methods that take no part, with reasons.
+    Attributes:
+        scene, plan: the question; contenders: the methods; machine: the machine and the versions.
+        clock: seconds.
+        reference: of the errors.
+        absent: methods that take no part, with reasons.
+        timings: by name of the method and count, in the order of the runs.
+        largest: by name of a method that has run, N above which no size begins.
     """
 
     scene: Scene
@@ -173,9 +165,10 @@ class Session:
     contenders: tuple[Contender, ...]
     machine: Mapping[str, str | int]
     clock: Callable[[], float]
-    absent: Mapping[Name, str] = frozendict()
-    sizes: dict[tuple[Name, Count], _Size] = field(default_factory=dict)
-    largest: dict[Name, float] = field(default_factory=dict)
+    reference: Reference = NOTHING
+    absent: Mapping[str, str] = frozendict()
+    timings: dict[tuple[str, Count], Timing] = field(default_factory=dict)
+    largest: dict[str, float] = field(default_factory=dict)
 
     def jobs(self) -> tuple[Job, ...]:
         """All runs: by repetition, by size, and at each size every method with this size."""
@@ -183,35 +176,37 @@ class Session:
         once = [(each, count) for count in counts for each in self.contenders if count in self.plan.sizes[each.name]]
         return tuple(once * self.plan.repeat)
 
-    def do(self, job: Job) -> None:
-        """Make a run, unless the question is refused or takes too long."""
+    def do(self, job: Job) -> Session:
+        """This session after a run; no run where the question is refused or takes too long."""
         (contender, count), most = job, self.plan.at_most
-        size = self.sizes.setdefault((contender.name, count), _Size())
-        if size.refusal or mean(count) > self._largest(contender) or sum(map(sum, size.seconds)) > most:
-            return
+        timing = self.timings.setdefault((contender.name, count), Timing(contender, count))
+        if timing.refusal or self._is_late(timing) or sum(map(sum, timing.seconds)) > most:
+            return self
         try:
             if contender.name not in self.largest:
-                self._run(job)
-                self.largest[contender.name] = np.inf
+                self._run(timing)
+                self.largest[contender.name] = math.inf
             with one_thread():  # of the libraries that the first run has loaded
                 gc.collect()  # the rubbish of earlier runs is not on the clock
-                seconds, outcome = self._run(job)
+                seconds, outcome = self._run(timing)
                 if sum(seconds) < REHEARSED:
-                    seconds, outcome = self._run(job)
+                    seconds, outcome = self._run(timing)
         except SceneError as error:
-            size.refusal = error
-            return
-        size.seconds.append(seconds)
-        if size.outcome is None or size.outcome.completed:
-            size.outcome = outcome
+            timing.refusal = error
+            return self
+        if not timing.seconds or timing.outcome.completed:
+            timing.outcome, timing.errors = outcome, errors(self.scene, self.reference, outcome.values)
+        timing.seconds.append(seconds)
         if sum(seconds) > most:
-            self.largest[contender.name] = min(self._largest(contender), mean(count))
+            self.largest[contender.name] = min(self.largest[contender.name], timing.n)
+        return self
 
-    def _largest(self, contender: Contender) -> float:
-        return self.largest.get(contender.name, np.inf)
+    def _is_late(self, timing: Timing) -> bool:
+        """Whether a smaller size of the method has taken too long."""
+        return timing.n > self.largest.get(timing.contender.name, math.inf)
 
-    def _run(self, job: Job) -> tuple[tuple[float, float], Outcome]:
-        run = job[0].begin(self.scene, job[1], self.plan.at_most)
+    def _run(self, timing: Timing) -> tuple[tuple[float, float], Outcome]:
+        run = timing.contender.begin(self.scene, timing.count, self.plan.at_most)
         begin = self.clock()
         solve = run.set_up()
         ready = self.clock()
@@ -219,42 +214,42 @@ class Session:
         end = self.clock()
         return (ready - begin, end - ready), run.outcome(result)
 
-    def done(self, known: Reference = NOTHING) -> Benchmark:
-        """The benchmark of all runs so far, with errors against a ``known`` reference.
+    def rows(self, name: str = "") -> tuple[Timing, ...]:
+        """The timings of all methods, or of the method of a ``name``, by method and ascending N.
 
         Raises:
             SceneError: every method has refused the question.
         """
-        refusals = [size.refusal for size in self.sizes.values() if size.refusal]
-        if refusals and not any(size.seconds for size in self.sizes.values()):
+        found = [timing for timing in self._in_order() if timing.seconds]
+        refusals = [timing.refusal for timing in self.timings.values() if timing.refusal]
+        if refusals and not found:
             raise refusals[0]
-        timings, left_out = list[Timing](), [LeftOut(name, None, why) for name, why in self.absent.items()]
+        ours = {row.count: row.errors for row in found if row.contender.name == "paper" and row.counts}
+        for row in (row for row in found if row.contender.is_peer):
+            limits = ours.get(row.count, {})
+            row.worse = any(row.errors.get(key, 0.0) > NO_WORSE * off for key, off in limits.items())
+        return tuple(row for row in found if name in ("", row.contender.name))
+
+    def left_out(self) -> tuple[LeftOut, ...]:
+        """Methods and sizes without a run."""
+        absent = [LeftOut(name, None, why) for name, why in self.absent.items()]
+        late = f"more than {self.plan.at_most:g} s"
+        missing = [
+            LeftOut(each.contender.name, each.count, each.why or (late if self._is_late(each) else "interrupted"))
+            for each in self._in_order()
+            if not each.seconds
+        ]
+        return (*absent, *missing)
+
+    def methods(self) -> tuple[Contender, ...]:
+        """All methods with a timing."""
+        return tuple({row.contender.name: row.contender for row in self.rows()}.values())
+
+    def _in_order(self) -> Iterator[Timing]:
+        """Timings of all sizes of the plan, also without a run."""
         for contender in self.contenders:
             for count in self.plan.sizes[contender.name]:
-                size = self.sizes.get((contender.name, count), _Size())
-                if size.outcome:
-                    off = errors(self.scene, known, size.outcome.values)
-                    timings.append(Timing(contender, count, tuple(size.seconds), size.outcome, off))
-                else:
-                    left_out.append(LeftOut(contender.name, count, self._why(contender, count, size)))
-        return Benchmark(self.scene, self.plan, self.machine, marked(timings), tuple(left_out), known)
-
-    def _why(self, contender: Contender, count: Count, size: _Size) -> str:
-        """Reason why a size has no run."""
-        if size.refusal:
-            return "; ".join(f"{one.key}: found {one.found}; allowed: {one.allowed}" for one in size.refusal.mistakes)
-        late = mean(count) > self._largest(contender)
-        return f"more than {self.plan.at_most:g} s" if late else "interrupted"
-
-
-def marked(timings: list[Timing]) -> tuple[Timing, ...]:
-    """The timings, with a mark on peers with a worse error than the CPRBM on the same problem."""
-    ours = {row.count: row.errors for row in timings if row.contender.name == "paper" and row.counts}
-    limits = [{measure: NO_WORSE * off for measure, off in ours.get(row.count, {}).items()} for row in timings]
-    return tuple(
-        replace(row, worse=row.contender.is_peer and any(row.errors.get(m, 0.0) > most for m, most in limit.items()))
-        for row, limit in zip(timings, limits, strict=True)
-    )
+                yield self.timings.get((contender.name, count), Timing(contender, count))
 
 
 def trend(timings: tuple[Timing, ...]) -> tuple[tuple[float, ...], float | None, float | None]:

@@ -1,64 +1,51 @@
-"""The fastest method at an error, and times over the time of the CPRBM, from the rows of a benchmark that count.
+"""The fastest method at an error, ratios of times, and growth of times, from the rows of a benchmark that count.
 
 A method reaches an error at a size if the errors at this size and at all larger sizes are no larger.  Its time lies on
 the straight line between this size and the size before, in the logarithms of error and time; without a size before, the
-time is that of the size.
+time is the time of the size.  All results are records of the documented JSON.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
-from comparisons.bench.contenders import Clocked, Name
-from comparisons.bench.question import MEASURES, Measure
-from comparisons.bench.running import Benchmark
+from comparisons.bench.contenders import Clocked
+from comparisons.bench.measures import MEASURES, Measure
+from comparisons.bench.running import Session, trend
 from comparisons.plain import Plain, plain
-from cprbm_scene.frozendict import frozendict
 
 TARGETS = (1e-2, 1e-3, 1e-4)
 CLOCKED: tuple[Clocked, ...] = ("both", "solve")
+UNTIMED = ("slsqp_both", "ipopt_both", "ipopt_solve")
+"""Ratios of methods that take no part: None."""
 
 
-@dataclass(frozen=True, slots=True)
-class Standing:
-    """Seconds by method at an ``error``, of all methods that reach it.
-
-    Attributes:
-        clocked: set-up and solve, or the solve alone.
-        fastest: name of the fastest method; None without a method.
-        ahead: seconds of the next method over the seconds of the fastest; None without a next method.
-    """
-
-    measure: Measure
-    error: float
-    clocked: Clocked
-    fastest: Name | None
-    ahead: float | None
-    seconds: Mapping[Name, float]
-
-
-def standings(measured: Benchmark) -> tuple[Standing, ...]:
-    """Standings for each measure with errors: by both clocks, at every target."""
-    known = [name for name in MEASURES if any(name in timing.errors for timing in measured.timings)]
-    return tuple(
+def standings(measured: Session) -> list[Plain]:
+    """``fastest``: for each measure with errors, by both clocks, at every target."""
+    known = [name for name in MEASURES if any(name in timing.errors for timing in measured.rows())]
+    return [
         _standing(measured, measure, clocked, target) for measure in known for clocked in CLOCKED for target in TARGETS
-    )
+    ]
 
 
-def _standing(measured: Benchmark, measure: Measure, clocked: Clocked, target: float) -> Standing:
-    seconds = dict[Name, float]()
-    for contender in measured.contenders:
-        counted = [one for one in measured.of(contender.name) if one.counts and measure in one.errors]
-        found = reached([(one.errors[measure], one.median(clocked)) for one in counted], target)
+def _standing(measured: Session, measure: Measure, clocked: Clocked, target: float) -> Plain:
+    """Seconds by method that reaches the error, the fastest, and the quotient of the second and the first time."""
+    seconds = dict[str, float]()
+    for contender in measured.methods():
+        counted = [row for row in measured.rows(contender.name) if row.counts and measure in row.errors]
+        found = reached([(row.errors[measure], row.median(clocked)) for row in counted], target)
         if found is not None:
             seconds[contender.name] = found
     first, second, *_ = (*sorted(seconds.values()), 0.0, 0.0)
-    fastest = min(seconds, key=lambda name: seconds[name], default=None)
-    return Standing(
-        measure, target, clocked, fastest, second / first if first and second else None, frozendict(seconds)
-    )
+    return {
+        "measure": measure,
+        "error": target,
+        "clocked": clocked,
+        "fastest": min(seconds, key=lambda name: seconds[name], default=None),
+        "ahead": second / first if first and second else None,
+        "seconds": seconds,
+    }
 
 
 def reached(points: Sequence[tuple[float, float]], target: float) -> float | None:
@@ -73,28 +60,42 @@ def reached(points: Sequence[tuple[float, float]], target: float) -> float | Non
     return math.exp(math.log(quick) + share * math.log(seconds / quick))
 
 
-def ratios(measured: Benchmark) -> list[Plain]:
-    """Documented JSON of times over the time of the CPRBM in ``paper``, at every size with another method.
+def ratios(measured: Session) -> list[Plain]:
+    """``ratios``: times over the time of the CPRBM in ``paper``, at every size with another method.
 
     A row that does not count has None.
     """
     found = []
-    for ours in (row for row in measured.of("paper") if row.counts):
-        rows = {row.contender.name: row for row in measured.timings if row.count == ours.count and row.counts}
-        over = {
-            ratio_key(method.name, clocked): rows[method.name].median(clocked) / mine
-            if method.name in rows and (mine := ours.median(clocked)) > 0.0
-            else None
-            for method in measured.contenders
-            for clocked in method.ratios
-        }
-        untimed: Plain = dict.fromkeys(("slsqp_both", "ipopt_both", "ipopt_solve"))
+    for ours in (row for row in measured.rows("paper") if row.counts):
+        rows = {row.contender.name: row for row in measured.rows() if row.count == ours.count and row.counts}
+        record: Plain = {"n": plain(ours.count), **dict.fromkeys(UNTIMED)}
+        for method in measured.methods():
+            for clocked in method.ratios:
+                mine, theirs = ours.median(clocked), rows.get(method.name)
+                record[ratio_key(method.name, clocked)] = theirs.median(clocked) / mine if theirs and mine else None
         if rows.keys() - {"paper", "fea"}:
-            iterations = ours.iterations_per_station
-            found.append({"n": plain(ours.count), **untimed, **over, "iterations_per_station": iterations})
+            found.append({**record, "iterations_per_station": ours.iterations_per_station})
     return found
 
 
-def ratio_key(name: Name, clocked: Clocked) -> str:
+def ratio_key(name: str, clocked: Clocked) -> str:
     """Key of a ratio in the JSON."""
     return f"{name.replace('-', '_')}_{clocked}"
+
+
+def trends(measured: Session) -> list[Plain]:
+    """``trends``: growth of time and iterations of every method."""
+    found = []
+    for contender in measured.methods():
+        sizes, exponent, iterations = trend(measured.rows(contender.name))
+        found.append(
+            {
+                "method": contender.method,
+                "formulation": contender.formulation,
+                "n": [plain(n) for n in sizes],
+                "exponent": exponent,
+                "iterations_ratio": iterations,
+                "left_out": [plain(one.count) for one in measured.left_out() if one.name == contender.name],
+            }
+        )
+    return found

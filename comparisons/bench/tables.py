@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import fields
-
-from comparisons.bench.contenders import OURS, Clocked, Contender, Name
-from comparisons.bench.errors import uncertainties
-from comparisons.bench.running import FIT_FROM, NO_WORSE, Benchmark, Clock, LeftOut, Timing, trend
-from comparisons.bench.standings import CLOCKED, Standing, ratio_key, ratios, standings
+from comparisons.bench.contenders import OURS, Clocked
+from comparisons.bench.measures import uncertainties
+from comparisons.bench.running import FIT_FROM, NO_WORSE, Session, Timing
+from comparisons.bench.standings import CLOCKED, ratio_key, ratios, standings, trends
 from comparisons.choices import Count
 from comparisons.formats import number, percent
 from comparisons.plain import Plain, plain
 from comparisons.present.columns import Column, Table, records_of, table_of, without_empty
 
-_OF_CLOCK: dict[Clock, str] = {"wall": "", "cpu": " of the processor"}
+_OF_CLOCK = {"wall": "", "cpu": " of the processor"}
 _TITLES: dict[Clocked, str] = {"both": "set-up and solve", "solve": "solve alone"}
+_LIBRARIES = {"python": "Python", "numpy": "NumPy", "scipy": "SciPy", "scikit-fem": "scikit-fem", "casadi": "CasADi"}
 
 _COLUMNS: tuple[Column[Timing], ...] = (
     Column("method", lambda row: row.contender.label),
@@ -50,12 +48,12 @@ _KEYS: tuple[Column[Timing], ...] = (
 )
 
 
-def tables_of(measured: Benchmark) -> tuple[Table, ...]:
+def tables_of(measured: Session) -> tuple[Table, ...]:
     """All tables: times and errors, the fastest methods, ratios, growth, and everything left out."""
-    timings = table_of(f"{measured.scene.title or measured.scene.name}: time against error", _COLUMNS,
-                       measured.timings, _note(measured))  # fmt: skip
+    name = measured.scene.title or measured.scene.name
+    timings = table_of(f"{name}: time against error", _COLUMNS, measured.rows(), _note(measured))
     fastest = [_fastest(measured, clocked) for clocked in CLOCKED]
-    found = (timings, *fastest, _ratios(measured), _trends(measured), _left_out(measured.left_out))
+    found = (timings, *fastest, _ratios(measured), _trends(measured), _left_out(measured))
     return tuple(table for table in found if table.rows)
 
 
@@ -69,14 +67,14 @@ def ended(timing: Timing) -> str:
     return "WORSE" if timing.worse else timing.outcome.ended
 
 
-def _note(measured: Benchmark) -> str:
+def _note(measured: Session) -> str:
     extent = "the whole scene" if measured.plan.whole else "the last load, from the state without stress"
     off = {measure: percent(u) for measure, u in uncertainties(measured.scene, measured.reference).items() if u > 0.0}
     known = f"; itself known to {', '.join(f'{u} ({measure})' for measure, u in off.items())}" if off else ""
     peers = (
         f" A peer has completed with a residual of at most {_tolerance(measured):g}; WORSE: its error is more than "
         f"{NO_WORSE:g} times that of CPRBM paper at this N."
-        if any(each.is_peer for each in measured.contenders)
+        if any(each.is_peer for each in measured.methods())
         else ""
     )
     return (
@@ -87,17 +85,17 @@ def _note(measured: Benchmark) -> str:
     )
 
 
-def _tolerance(measured: Benchmark) -> float | None:
+def _tolerance(measured: Session) -> float | None:
     """Largest residual of a complete solve of a peer; None without a peer."""
-    return next((each.tolerance for each in measured.contenders if each.is_peer), None)
+    return next((each.tolerance for each in measured.methods() if each.is_peer), None)
 
 
-def _fastest(measured: Benchmark, clocked: Clocked) -> Table:
-    labels = {each.name: each.label for each in measured.contenders}
+def _fastest(measured: Session, clocked: Clocked) -> Table:
+    labels = {each.name: each.label for each in measured.methods()}
     rows = tuple(
-        (f"{percent(one.error)} of {one.measure}", labels.get(one.fastest or "", "nobody"), number(one.ahead),
-         *(number(one.seconds.get(name)) for name in labels))
-        for one in standings(measured) if one.clocked == clocked
+        (f"{percent(one['error'])} of {one['measure']}", labels.get(one["fastest"], "nobody"), number(one["ahead"]),
+         *(number(one["seconds"].get(name)) for name in labels))
+        for one in standings(measured) if one["clocked"] == clocked
     )  # fmt: skip
     return Table(
         f"Fastest at an error, {_TITLES[clocked]}",
@@ -108,21 +106,21 @@ def _fastest(measured: Benchmark, clocked: Clocked) -> Table:
     )
 
 
-def _ratios(measured: Benchmark) -> Table:
+def _ratios(measured: Session) -> Table:
     labels = {
         ratio_key(each.name, clocked): each.label if len(each.ratios) == 1 else f"{each.label}, {clocked}"
-        for each in measured.contenders
+        for each in measured.methods()
         for clocked in each.ratios
     }
-    body = tuple(
+    rows = [
         (sized(one["n"]), *(number(one[key]) for key in (*labels, "iterations_per_station")))
         for one in ratios(measured)
-    )
+    ]
     return without_empty(
         Table(
             "How many times longer than CPRBM paper on the same problem",
             ("N", *labels.values(), "iterations per station"),
-            body,
+            tuple(rows),
             "Medians over medians: the solve over our solve, else set-up and solve over ours; a dash where a row does "
             "not count. Set-up begins with the scene for the CPRBM, with the discretised problem for the peers. "
             "Iterations are those of CPRBM paper.",
@@ -130,37 +128,37 @@ def _ratios(measured: Benchmark) -> Table:
     )
 
 
-def _trends(measured: Benchmark) -> Table:
-    body = []
-    for contender in measured.contenders:
-        sizes, exponent, iterations = trend(measured.of(contender.name))
-        if exponent is not None:
-            body.append((contender.label, f"{sizes[0]:g} to {sizes[-1]:g}", number(exponent), number(iterations)))
+def _trends(measured: Session) -> Table:
     machine = measured.machine
-    names = {"python": "Python", "numpy": "NumPy", "scipy": "SciPy", "scikit-fem": "scikit-fem", "casadi": "CasADi"}
-    libraries = ", ".join(f"{label} {machine[name]}" for name, label in names.items() if name in machine)
+    libraries = ", ".join(f"{label} {machine[name]}" for name, label in _LIBRARIES.items() if name in machine)
+    rows = [
+        (method.label, f"{one['n'][0]:g} to {one['n'][-1]:g}", number(one["exponent"]), number(one["iterations_ratio"]))
+        for method, one in zip(measured.methods(), trends(measured), strict=True)
+        if one["exponent"] is not None
+    ]
     return Table(
         "How it grows",
         ("method", "N", "exponent of time", "iterations, last to first"),
-        tuple(body),
+        tuple(rows),
         f"The exponent e of seconds = a·N^e by least squares of the logarithms, set-up and solve together, over the "
         f"rows with N of {FIT_FROM} or more that count. {machine['cpu']}, {machine['cores']} cores, BLAS on one "
         f"thread; {libraries}.",
     )
 
 
-def _left_out(left_out: Sequence[LeftOut]) -> Table:
-    sizes = dict[tuple[Name, str], list[str]]()
-    for one in left_out:
+def _left_out(measured: Session) -> Table:
+    sizes = dict[tuple[str, str], list[str]]()
+    for one in measured.left_out():
         sizes.setdefault((one.name, one.why), []).append("all" if one.count is None else sized(one.count))
     rows = tuple((name, ", ".join(mine), why) for (name, why), mine in sizes.items())
     return Table("Left out", ("method", "N", "why"), rows)
 
 
-def document(measured: Benchmark) -> Plain:
+def document(measured: Session) -> Plain:
     """``bench``: rows, fastest methods, ratios, trends; times in seconds, errors as fractions."""
     plan, reference = measured.plan, measured.reference
-    left_out = sorted(measured.left_out, key=lambda one: _place(one.name))
+    # the project's own methods first, then peers by their names
+    left_out = sorted(measured.left_out(), key=lambda one: (OURS.index(one.name) if one.name in OURS else 9, one.name))
     return {
         "case": measured.scene.name,
         "machine": plain(measured.machine),
@@ -170,25 +168,9 @@ def document(measured: Benchmark) -> Plain:
         "stations": "all" if plan.whole else "last",
         "tolerance": _tolerance(measured),
         "reference": {"by": reference.by, "uncertainty": plain(uncertainties(measured.scene, reference))},
-        "rows": records_of(_KEYS, measured.timings),
-        "fastest": [_standing(one) for one in standings(measured)],
+        "rows": records_of(_KEYS, measured.rows()),
+        "fastest": standings(measured),
         "ratios": ratios(measured),
-        "trends": [_trend(measured, each) for each in measured.contenders],
+        "trends": trends(measured),
         "left_out": [{"method": one.name, "n": plain(one.count), "why": one.why} for one in left_out],
     }
-
-
-def _standing(one: Standing) -> Plain:
-    return {field.name: plain(getattr(one, field.name)) for field in fields(one)}
-
-
-def _trend(measured: Benchmark, contender: Contender) -> Plain:
-    sizes, exponent, iterations = trend(measured.of(contender.name))
-    left_out = [plain(one.count) for one in measured.left_out if one.name == contender.name]
-    names = {"method": contender.method, "formulation": contender.formulation, "n": [plain(n) for n in sizes]}
-    return {**names, "exponent": exponent, "iterations_ratio": iterations, "left_out": left_out}
-
-
-def _place(name: Name) -> tuple[int, str]:
-    """Key that sorts the project's own methods first, in their order, and peers by their names."""
-    return OURS.index(name) if name in OURS else len(OURS), name

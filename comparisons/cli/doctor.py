@@ -9,7 +9,7 @@ import click
 from comparisons.cli.errors import INCOMPLETE
 from comparisons.executor import obstacle
 from comparisons.starting import present
-from comparisons.starting.system import WHAT_DRAWS, line_for
+from comparisons.starting.present import WHAT_DRAWS, line_for
 
 
 def doctor(quiet: bool) -> int:  # noqa: FBT001 - click passes a keyword

@@ -12,7 +12,7 @@ from comparisons.cli.errors import printable
 from comparisons.importing.formats import read_drawing
 from comparisons.importing.scene_text import Choices, Unit, scene_text
 from comparisons.starting import begun
-from comparisons.starting.system import line_for
+from comparisons.starting.present import line_for
 from comparisons.writing import write
 from cprbm_scene import reading
 

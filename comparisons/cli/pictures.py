@@ -17,7 +17,7 @@ from comparisons.present import animation
 from comparisons.present.space import DrawingError
 from comparisons.present.strips import Coloured, with_stresses
 from comparisons.quantities import load_unit
-from comparisons.starting.system import WHAT_DRAWS
+from comparisons.starting.present import WHAT_DRAWS
 from comparisons.writing import write
 from cprbm_scene import Scene
 

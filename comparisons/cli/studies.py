@@ -10,7 +10,7 @@ from typing import Literal
 import click
 
 from comparisons import provenance, workshop
-from comparisons.bench import contenders, errors, question, running
+from comparisons.bench import contenders, measures, running
 from comparisons.bench.section import bench_section
 from comparisons.bench.tables import sized
 from comparisons.choices import Count, check
@@ -25,8 +25,6 @@ from comparisons.present.page import own_folder
 from comparisons.store import run_into
 from comparisons.studies import calibration as calibrations
 from comparisons.studies import table1 as timings
-from comparisons.studies.calibration_result import result_of as calibration_section
-from comparisons.studies.table1_result import result_of as table1_section
 from comparisons.verdict.words import Word
 from cprbm_scene.frozendict import frozendict
 
@@ -67,22 +65,16 @@ def bench(
         raise click.UsageError(f"No method is left: {left}.")
     own = frozendict({each.name: running.sizes_of(each, counts) for each in taking})
     plan = running.Plan(own, request.choices.kinematics_of(opened), repeat, request.at_most, whole, clock)
-    scene = opened if whole else question.asked(opened)
-    session = running.Session(scene, plan, taking, provenance.machine(), running.CLOCKS[clock], absent=absent)
+    scene = opened if whole else measures.asked(opened)
     request = with_room(request)
     if request.out is not None:
         request = replace(request, out=own_folder(request.out, scene.name))
     with status(shown=not request.quiet) as say:
         say("reference of the errors")
-        known = errors.reference(question.asked(opened), solvers)
-
-    def taken(session: running.Session, job: running.Job) -> running.Session:
-        session.do(job)
-        return session
-
-    take_steps(request, session, session.jobs(), taken, lambda found: bench_section(found.done(known)))
-    timed = session.done(known).timings
-    failed = [row for row in timed if row.contender.name not in OPTIMISERS and not row.outcome.completed]
+        known = measures.reference(measures.asked(opened), solvers)
+    session = running.Session(scene, plan, taking, provenance.machine(), running.CLOCKS[clock], known, absent)
+    take_steps(request, session, session.jobs(), running.Session.do, bench_section)
+    failed = [row for row in session.rows() if row.contender.name not in OPTIMISERS and not row.outcome.completed]
     for row in failed:
         who = f"{row.contender.label} at N = {sized(row.count)}"
         click.echo(f"cprbm: {scene.name}: {who}: {row.outcome.why}", err=True)
@@ -100,8 +92,8 @@ def calibration(request: Request) -> int:
     """Compare stated with true errors; exit code 1 for a case that differs or did not complete."""
     request = with_room(request)
     with run_into(request.out, solvers_for(request), processes=workers_for(request.planted)) as run:
-        take = partial(calibrations.with_piece, solvers=run.solvers, crew=run.crew)
-        found = take_steps(request, calibrations.Calibration(), calibrations.pieces(), take, calibration_section)
+        take = partial(calibrations.with_case, solvers=run.solvers, crew=run.crew)
+        found = take_steps(request, calibrations.Calibration(), calibrations.pieces(), take, calibrations.result_of)
     verdicts = [trial.verdict for trial in found.trials]
     return INCOMPLETE if any(each.word is Word.DIFFER or not each.completed for each in verdicts) else 0
 
@@ -109,8 +101,6 @@ def calibration(request: Request) -> int:
 def table1(request: Request, repeat: int) -> int:
     """Time both solvers on the cells of the paper's Table 1; exit code 1 for an incomplete solve."""
     request = with_room(request)
-    solvers = solvers_for(request)
-    take = partial(timings.solved, solvers=solvers, at_most=request.at_most)
-    begun = timings.begun(solvers, provenance.machine())
-    found = take_steps(request, begun, timings.runs(repeat), take, table1_section)
-    return INCOMPLETE if found.unfinished else 0
+    session = timings.session(solvers_for(request), provenance.machine(), repeat, request.at_most)
+    take_steps(request, session, session.jobs(), running.Session.do, timings.result_of)
+    return 0 if timings.result_of(session).complete else INCOMPLETE

@@ -23,8 +23,8 @@ from comparisons.plain import Plain
 from comparisons.present import brief, case_tables, csv_table, figures, offset, page
 from comparisons.present.columns import Section
 from comparisons.store import Run, run_into
-from comparisons.studies import convergence, report_folder
-from comparisons.studies.report import Parts, gathered, has_table, table_section
+from comparisons.studies import convergence
+from comparisons.studies import report as reports
 from comparisons.tolerances.result import Tolerance
 from comparisons.tolerances.search import runs_within
 from comparisons.verdict.runs import Runs
@@ -161,12 +161,12 @@ def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -
     request = with_room(request, "full-report")
     out = request.out
     assert out is not None
-    parts = Parts(request.choices, () if "convergence" in without else sizes, times="times" not in without)
+    parts = reports.Parts(request.choices, () if "convergence" in without else sizes, times="times" not in without)
     origin = provenance.page_origin()
     key = f"{parts!r}, exact={request.exact}"  # chapters with other parts are written anew
-    chapters = {question.name: report_folder.kept(out, question, key) for question in questions}
-    with_table = parts.times and has_table(questions)
-    table = report_folder.kept_table(out, origin) if with_table else None
+    chapters = {question.name: reports.kept(out, question, key) for question in questions}
+    with_table = parts.times and reports.has_table(questions)
+    table = reports.kept_table(out, origin) if with_table else None
     missing = [question for question in questions if chapters[question.name] is None]
     solvers = solvers_for(request)
 
@@ -174,7 +174,7 @@ def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -
         return [chapter for chapter in chapters.values() if chapter is not None]
 
     def put() -> None:
-        report_folder.put_report(out, finished(), () if table is None else (table,), origin)
+        page.put_page(out, page.report_page(finished(), () if table is None else (table,), origin))
 
     with (
         run_into(out, solvers, tuple(chapters), pairing.workers_for(request.planted)) as run,
@@ -182,16 +182,16 @@ def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -
     ):
         pending = _begun(request, missing, run, 0)
         for place, question in enumerate(progress.through(missing)):
-            content = gathered(question, pending, parts, run.solvers, solvers, run.crew)
+            content = reports.gathered(question, pending, parts, run.solvers, solvers, run.crew)
             # solve the next case during the drawings, but not during the measurement of run times
             pending = _begun(request, missing, run, place + 1)
-            chapters[question.name] = report_folder.added(out, question, key, content)
+            chapters[question.name] = reports.added(out, question, key, content)
             put()
         if with_table and table is None:
-            table = report_folder.added_table(out, table_section(solvers, origin), origin)
+            table = reports.added_table(out, reports.table_section(solvers, origin), origin)
     put()
     if request.json_file is not None:
-        write_json(request.json_file, report_folder.document(out, finished(), origin))
+        write_json(request.json_file, reports.document(out, finished(), origin))
     for chapter in finished() if request.prints else ():
         click.echo(f"{chapter.name}: {chapter.word}. {chapter.sentence}")
     print_folder(request)

@@ -36,8 +36,8 @@ def read(path: Path, unit: str) -> Drawing:
         found = f"a file that ezdxf does not read ({str(error).strip() or type(error).__name__})"
         raise SceneError([Mistake("", found, "a DXF file", str(path))]) from None
     number = document.header.get("$INSUNITS", 0)
-    if number and _UNITS.get(number) != unit:
-        stated = _UNITS.get(number, "another unit")
+    stated = _UNITS.get(number, "another unit")
+    if number and stated != unit:
         found = f"a drawing in {stated} ($INSUNITS = {number}), read in {unit}"
         raise SceneError([Mistake("", found, f"--unit {stated}" if number in _UNITS else "a drawing in mm", str(path))])
     curves, refused, points = list[DrawnCurve](), list[str](), dict[str, list[Array]]()
@@ -46,20 +46,19 @@ def read(path: Path, unit: str) -> Drawing:
         parts = list(entity.virtual_entities()) if kind in ("LWPOLYLINE", "POLYLINE") else [entity]
         if kind == "POINT":
             points.setdefault(layer, []).append(np.array(entity.dxf.location))
-        elif any(part.dxftype() not in ("LINE", "ARC") for part in parts):
+        elif not {part.dxftype() for part in parts} <= {"LINE", "ARC"}:
             refused.append(f"{kind} on the layer {layer!r} (entity {entity.dxf.handle}), no line, arc or polyline")
-        else:
-            for part in parts:
-                tag, k = layer if layer != "0" else f"curve{len(curves) + 1}", len(curves) + 1
-                curves.append(DrawnCurve(tag, k, f"{kind} {entity.dxf.handle}", *_along(part)))
-    places = {layer: np.array(each) for layer, each in points.items()}
-    return Drawing(tuple(curves), places, any(curve.tag != f"curve{curve.number}" for curve in curves), tuple(refused))
+            continue
+        for part in parts if kind != "POINT" else ():
+            place = len(curves) + 1
+            tag = layer if layer != "0" else f"curve{place}"
+            curves.append(DrawnCurve(tag, place, f"{kind} {entity.dxf.handle}", _along(part), None))
+    tagged = any(curve.tag != f"curve{curve.number}" for curve in curves)
+    return Drawing(tuple(curves), {layer: np.array(each) for layer, each in points.items()}, tagged, tuple(refused))
 
 
-def _along(part) -> tuple[Array, Array | None]:  # type: ignore[no-untyped-def]  # noqa: ANN001 - ezdxf exports no types
-    """Places (k, 3) along a line or an arc; no directions, since both are exact."""
+def _along(part) -> Array:  # type: ignore[no-untyped-def]  # noqa: ANN001 - ezdxf exports no types
+    """Places (k, 3) along a line or an arc."""
     if part.dxftype() == "LINE":
-        return np.array([tuple(part.dxf.start), tuple(part.dxf.end)]), None
-    first, last = part.dxf.start_angle, part.dxf.end_angle
-    angles = np.linspace(first, last if last > first else last + 360.0, SAMPLES)
-    return np.array([tuple(place) for place in part.vertices(angles)]), None
+        return np.array([tuple(part.dxf.start), tuple(part.dxf.end)])
+    return np.array([tuple(place) for place in part.vertices(part.angles(SAMPLES))])

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from comparisons.importing import dxf_reader, gmsh_reader
 from comparisons.importing.drawing import Drawing, DrawnCurve
 from cprbm_scene.mistakes import Mistake, SceneError
 from cprbm_scene.point_table import read_points
@@ -27,36 +28,23 @@ def read_drawing(path: Path, unit: str) -> Drawing:
         ImportError: the library for the format is missing.
         SceneError: the file is missing, has another format, or its reader refuses the file.
     """
-    if not path.is_file():
-        raise SceneError([Mistake("", "no such file", f"a drawing: {_known()}", str(path))])
-    with path.open("rb") as stream:
-        begin = stream.read(_BEGIN)
-    for name, endings, pattern, read in _FORMATS:
-        if re.match(pattern, begin) and (endings != GEOMETRY or path.suffix in GEOMETRY):
-            if read is _by_gmsh and path.suffix.lower() not in endings:
-                found = f"a {name} file with the ending {path.suffix!r}"
-                raise SceneError([Mistake("", found, f"the ending {endings[0]}", str(path))])
-            return read(path, unit)
-    raise SceneError([Mistake("", "a file of another format", f"a drawing: {_known()}", str(path))])
+    found, allowed = "no such file", "a drawing: "
+    allowed += ", ".join(f"{name} ({', '.join(endings)})" for name, endings, *_ in _FORMATS)
+    if path.is_file():
+        found = "a file of another format"
+        with path.open("rb") as stream:
+            begin = stream.read(_BEGIN)
+        for name, endings, pattern, read in _FORMATS:
+            if not re.match(pattern, begin) or (not pattern and path.suffix not in endings):
+                continue
+            if read is not gmsh_reader.read or path.suffix.lower() in endings:
+                return read(path, unit)
+            found, allowed = f"a {name} file with the ending {path.suffix!r}", f"the ending {endings[0]}"
+            break
+    raise SceneError([Mistake("", found, allowed, str(path))])
 
 
-def _known() -> str:
-    return ", ".join(f"{name} ({', '.join(endings)})" for name, endings, *_ in _FORMATS)
-
-
-def _by_gmsh(path: Path, unit: str) -> Drawing:
-    from comparisons.importing import gmsh_reader
-
-    return gmsh_reader.read(path)
-
-
-def _by_ezdxf(path: Path, unit: str) -> Drawing:
-    from comparisons.importing import dxf_reader
-
-    return dxf_reader.read(path, unit)
-
-
-def _table(path: Path, unit: str) -> Drawing:
+def _read_table(path: Path, unit: str) -> Drawing:
     """The curve through the points of a table."""
     try:
         points = np.array(read_points(path, unit), dtype=float).reshape(-1, 2)
@@ -64,18 +52,17 @@ def _table(path: Path, unit: str) -> Drawing:
         raise SceneError([Mistake("", each.found, each.allowed, str(path)) for each in error.mistakes]) from None
     if len(points) < 2:
         raise SceneError([Mistake("", f"{len(points)} points", "at least two points", str(path))])
-    points = np.column_stack((points, np.zeros(len(points))))
-    return Drawing((DrawnCurve(path.stem, 1, f"{len(points)} points", points, None),), {}, tagged=True)
+    places = np.pad(points, ((0, 0), (0, 1)))
+    return Drawing((DrawnCurve(path.stem, 1, f"{len(points)} points", places, None),), {}, tagged=True)
 
 
-GEOMETRY = (".geo",)
 _FORMATS: tuple[tuple[str, tuple[str, ...], bytes, Callable[[Path, str], Drawing]], ...] = (
-    ("STEP", (".step", ".stp"), rb"\s*ISO-10303-21", _by_gmsh),
-    ("gmsh mesh", (".msh",), rb"\s*\$(MeshFormat|NOD|Comments)", _by_gmsh),
-    ("BREP", (".brep",), rb"\s*(DBRep_DrawableShape|CASCADE Topology)", _by_gmsh),
-    ("IGES", (".iges", ".igs"), rb".{72}S\s*1", _by_gmsh),
-    ("DXF", (".dxf",), rb"(\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION|AutoCAD Binary DXF", _by_ezdxf),
-    ("table", (".csv",), rb"(\xef\xbb\xbf)?(\s*#[^\n]*\n|\s)*([^\n]*[,;\t])?[\s\"']*[xy][^,;\t\n]*[,;\t]", _table),
-    ("gmsh geometry", GEOMETRY, b"", _by_gmsh),
+    ("STEP", (".step", ".stp"), rb"\s*ISO-10303-21", gmsh_reader.read),
+    ("gmsh mesh", (".msh",), rb"\s*\$(MeshFormat|NOD|Comments)", gmsh_reader.read),
+    ("BREP", (".brep",), rb"\s*(DBRep_DrawableShape|CASCADE Topology)", gmsh_reader.read),
+    ("IGES", (".iges", ".igs"), rb".{72}S\s*1", gmsh_reader.read),
+    ("DXF", (".dxf",), rb"(\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION|AutoCAD Binary DXF", dxf_reader.read),
+    ("table", (".csv",), rb"(\xef\xbb\xbf)?(\s*#[^\n]*\n|\s)*([^\n]*[,;\t])?[\s\"']*[xy][^,;\t\n]*[,;\t]", _read_table),
+    ("gmsh geometry", (".geo",), b"", gmsh_reader.read),
 )
 """Names, endings, patterns of the beginnings, and readers of all formats; the first fitting pattern counts."""

@@ -5,11 +5,10 @@ gmsh has one state per process, and a wrong file may end the process.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import shapely
 
 from comparisons.executor import WorkerDiedError, call_fresh
 from comparisons.importing.drawing import Drawing, DrawnCurve
@@ -20,8 +19,8 @@ SAMPLES = 2001
 """Places along a curve with a formula."""
 
 
-def read(path: Path) -> Drawing:
-    """Tagged curves and points of a file, whose ending tells gmsh the format.
+def read(path: Path, unit: str) -> Drawing:
+    """Tagged curves and points of a file, whose ending tells gmsh the format; gmsh knows no ``unit``.
 
     Raises:
         ImportError: gmsh or a library of the system is missing.
@@ -45,37 +44,33 @@ def _read(path: str) -> Drawing | str:
     gmsh.initialize([], readConfigFiles=False, interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
-        try:
-            gmsh.open(path)
-        except Exception as error:
-            return f"what gmsh does not read ({str(error).strip() or 'without a reason'})"
+        gmsh.open(path)
         return _drawing(gmsh.model)
+    except Exception as error:  # gmsh raises no other class
+        return f"what gmsh does not read ({str(error).strip() or 'without a reason'})"
     finally:
         gmsh.finalize()
 
 
 def _drawing(model) -> Drawing:  # type: ignore[no-untyped-def]  # noqa: ANN001 - gmsh has no types
-    groups = {dim: [(model.getPhysicalName(dim, g), g) for _, g in model.getPhysicalGroups(dim)] for dim in (0, 1)}
-    named = [
-        (name or f"curves{group}", int(number))
-        for name, group in groups[1]
-        for number in model.getEntitiesForPhysicalGroup(1, group)
-    ]
-    tagged = bool(named)
-    if not named:
-        names = [(model.getEntityName(1, k).rpartition("/")[2], int(k)) for _, k in model.getEntities(1)]
-        tagged = any(name for name, _ in names)
-        named = [(name or f"curve{number}", number) for name, number in names]
-    points = {
-        name or f"points{group}": np.array([_place(model, k) for k in model.getEntitiesForPhysicalGroup(0, group)])
-        for name, group in groups[0]
-    }
-    return Drawing(tuple(_curve(model, tag, number) for tag, number in named), points, tagged)
+    points, named = dict[str, Array](), list[tuple[str, int]]()
+    for dim, group in model.getPhysicalGroups():
+        name, entities = model.getPhysicalName(dim, group), model.getEntitiesForPhysicalGroup(dim, group)
+        if dim == 0:
+            points[name or f"points{group}"] = np.array([_place(model, k) for k in entities])
+        elif dim == 1:
+            named += [(name or f"curves{group}", int(k)) for k in entities]
+    if named:
+        return Drawing(tuple(_curve(model, *each) for each in named), points, tagged=True)
+    every = [(model.getEntityName(1, k).rpartition("/")[2], int(k)) for _, k in model.getEntities(1)]
+    curves = tuple(_curve(model, name or f"curve{k}", k) for name, k in every)
+    return Drawing(curves, points, tagged=any(name for name, _ in every))
 
 
-def _place(model, number: int) -> Sequence[float]:  # type: ignore[no-untyped-def]  # noqa: ANN001
+def _place(model, number: int) -> Array:  # type: ignore[no-untyped-def]  # noqa: ANN001
+    """Place (3,) of a point, of a mesh its node."""
     _, places, _ = model.mesh.getNodes(0, number)
-    return list(places[:3]) if len(places) else list(model.getValue(0, number, []))
+    return np.array(places[:3] if len(places) else model.getValue(0, number, []))
 
 
 def _curve(model, tag: str, number: int) -> DrawnCurve:  # type: ignore[no-untyped-def]  # noqa: ANN001
@@ -92,13 +87,9 @@ def _curve(model, tag: str, number: int) -> DrawnCurve:  # type: ignore[no-untyp
 def _nodes(model, number: int) -> Array:  # type: ignore[no-untyped-def]  # noqa: ANN001
     """The nodes of a meshed curve in their order, (k, 3)."""
     kinds, _, nodes = model.mesh.getElements(1, number)
-    after = {}
+    edges = []
     for kind, each in zip(kinds, nodes, strict=True):
-        for element in each.reshape(-1, model.mesh.getElementProperties(kind)[3]):
-            chain = [element[0], *element[2:], element[1]]  # both ends stand before the inner nodes
-            after.update({int(a): int(b) for a, b in pairwise(chain)})
-    begin = next(iter(set(after) - set(after.values())), next(iter(after)))
-    order = [begin]
-    while order[-1] in after and (len(order) == 1 or order[-1] != begin):
-        order.append(after[order[-1]])
-    return np.array([model.mesh.getNode(node)[0] for node in order])
+        for first, last, *inner in each.reshape(-1, model.mesh.getElementProperties(kind)[3]):
+            edges.append([model.mesh.getNode(node)[0] for node in (first, *inner, last)])
+    line = shapely.line_merge(shapely.multilinestrings([shapely.linestrings(edge) for edge in edges]), directed=True)
+    return np.asarray(shapely.get_coordinates(line, include_z=True))

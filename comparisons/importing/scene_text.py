@@ -1,4 +1,4 @@
-"""The text of a scene with the curves of a drawing as beams.
+"""The text of a scene with the curves of a drawing as beams, from the template ``scene.toml.jinja``.
 
 Every curve of a group is a beam with the group's name, numbered in a group of several curves; ends that meet are welded
 to one body.  A group of points is a body: ``ground`` (or ``fixed``) stands still.  Numbers stay in the drawing's unit.
@@ -10,16 +10,18 @@ from __future__ import annotations
 import re
 import tomllib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib.resources import files
 from pathlib import Path
 from typing import Literal
 
+import jinja2
 import numpy as np
 
-from comparisons.importing.curves import Fitted, fitted
+from comparisons.importing.curves import fitted
 from comparisons.importing.drawing import Drawing, DrawnCurve
-from cprbm_scene import Arc, Line
+from cprbm_scene import Arc, Line, Spline
 from cprbm_scene.answer import Array
 from cprbm_scene.mistakes import Mistake, SceneError
 from cprbm_scene.reading import scene_from
@@ -48,10 +50,16 @@ class Choices:
 
 @dataclass(frozen=True, slots=True)
 class _Beam:
+    """A beam with its name, drawn curve, record, and a statement on the accuracy of the record."""
+
     name: str
     drawn: DrawnCurve
-    fitted: Fitted
-    length: float
+    curve: Line | Arc | Spline
+    accuracy: str
+
+
+_Bodies = dict[str, dict[str, Array]]
+"""Places of named points by name of the body."""
 
 
 def scene_text(drawing: Drawing, path: Path, choices: Choices) -> tuple[str, list[str]]:
@@ -64,59 +72,48 @@ def scene_text(drawing: Drawing, path: Path, choices: Choices) -> tuple[str, lis
         found = f"no curve {'; '.join(('', *drawing.refused))}".rstrip()
         raise SceneError([Mistake("", found, "lines, arcs and curves, in groups or layers named for beams", str(path))])
     near = SAME * max(_length(curve.points) for curve in drawing.curves)
-    beams, mistakes = _beams(drawing, choices, near)
-    while True:
-        if not beams:
-            raise SceneError([Mistake(each.key, each.found, each.allowed, str(path)) for each in mistakes])
-        notes = [f"left out: {entity}" for entity in drawing.refused] + [f"left out: {each}" for each in mistakes]
-        text = "\n".join(_lines(drawing, path, choices, beams, near, notes)) + "\n"
-        try:
-            scene_from(tomllib.loads(text))
-            return text, notes
-        except SceneError as error:
-            keys = {each.key.split(".")[1]: each for each in error.mistakes if each.key.startswith("beams.")}
-            wrong = [beam for beam in beams if beam.name in keys]
-            if not wrong:
-                notes += [f"to be changed: {each}" for each in error.mistakes]
-                return "\n".join(_lines(drawing, path, choices, beams, near, notes)) + "\n", notes
-        mistakes += [Mistake(_label(beam.drawn), keys[beam.name].found, keys[beam.name].allowed) for beam in wrong]
-        beams = [beam for beam in beams if beam not in wrong]
+    beams, left_out, names = list[_Beam](), list[Mistake](), _names(drawing.curves)
+    for curve, name in zip(drawing.curves, names, strict=True):
+        made = _beam(curve, name, drawing.curves[0].points[0, 2], choices, near)
+        (beams if isinstance(made, _Beam) else left_out).append(made)  # type: ignore[arg-type]
+    while beams:
+        notes = [f"left out: {each}" for each in (*drawing.refused, *left_out)]
+        refused = _mistakes(_text(drawing, path, choices, beams, near, notes))
+        of_beams = {each.key.split(".")[1]: each for each in refused if each.key.startswith("beams.")}
+        wrong = [beam for beam in beams if beam.name in of_beams]
+        if not wrong:
+            notes += [f"to be changed: {each}" for each in refused]
+            return _text(drawing, path, choices, beams, near, notes), notes
+        for beam in wrong:
+            left_out.append(_left_out(beam.drawn, of_beams[beam.name].found, of_beams[beam.name].allowed))
+            beams.remove(beam)
+    raise SceneError([Mistake(each.key, each.found, each.allowed, str(path)) for each in left_out])
+
+
+def _mistakes(text: str) -> Sequence[Mistake]:
+    """Mistakes in the text of a scene."""
+    try:
+        scene_from(tomllib.loads(text))
+    except SceneError as error:
+        return error.mistakes
+    return ()
 
 
 def _length(points: Array) -> float:
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
-def _label(curve: DrawnCurve) -> str:
-    return f"{curve.tag} (curve {curve.number}, {curve.kind})"
+def _left_out(curve: DrawnCurve, found: str, allowed: str) -> Mistake:
+    return Mistake(f"{curve.tag} (curve {curve.number}, {curve.kind})", found, allowed)
 
 
-def _beams(drawing: Drawing, choices: Choices, near: float) -> tuple[list[_Beam], list[Mistake]]:
-    """Beams of all curves that a beam can have, and the mistakes of the other curves."""
-    beams, mistakes = [], []
-    many, used = Counter(curve.tag for curve in drawing.curves), Counter[str]()
-    z = drawing.curves[0].points[0, 2]
-    for curve in drawing.curves:
-        used[curve.tag] += 1
-        name = _name(curve.tag) + (f"-{used[curve.tag]}" if many[curve.tag] > 1 else "")
-        length, off = _length(curve.points), float(np.abs(curve.points[:, 2] - z).max())
-        directions = None if curve.directions is None else curve.directions[:, :2]
-        if off > near:
-            found, allowed = (
-                f"points {off:.4g} {choices.unit} off the plane z = {z:g}",
-                "curves in one plane z = constant",
-            )
-        elif np.linalg.norm(curve.points[0] - curve.points[-1]) <= near:
-            found = "a curve that comes back to the begin"
-            allowed = "a curve with two ends; a closed curve is cut into two"
-        elif (made := fitted(curve.points[:, :2], directions, choices.within * length)) is None:
-            found = f"a curve that no spline follows within {choices.within:g} of the length"
-            allowed = "a smooth curve, cut at corners, or a larger --within"
-        else:
-            beams.append(_Beam(name, curve, made, length))
-            continue
-        mistakes.append(Mistake(_label(curve), found, allowed))
-    return beams, mistakes
+def _names(curves: Sequence[DrawnCurve]) -> list[str]:
+    """Names of the beams, with a number in a group of several curves."""
+    many, used, names = Counter(curve.tag for curve in curves), Counter[str](), []
+    for tag in (curve.tag for curve in curves):
+        used[tag] += 1
+        names.append(_name(tag) + (f"-{used[tag]}" if many[tag] > 1 else ""))
+    return names
 
 
 def _name(tag: str) -> str:
@@ -125,105 +122,74 @@ def _name(tag: str) -> str:
     return name if re.match(r"[A-Za-z_]", name) else f"_{name}"
 
 
-class _Bodies:
-    """Named ``places`` of points, and names of points by bodies; ends that meet at no named place are a body."""
-
-    def __init__(self, drawing: Drawing, beams: list[_Beam], near: float) -> None:
-        self.places: list[tuple[Array, str]] = []
-        self.names: dict[str, list[str]] = {}
-        self._near = 2.0 * near
-        for tag, group in drawing.points.items():
-            name = _name(tag)
-            single = len(group) == 1 and tag not in GROUND
-            names = [name] if single else [f"{name}-{number}" for number in range(1, len(group) + 1)]
-            self.names[f"{name}-body" if single else name] = names
-            self.places += [(place[:2], each) for place, each in zip(group, names, strict=True)]
-        ends = [np.array(end) for beam in beams for end in (beam.fitted.curve.start, beam.fitted.curve.end)]
-        for end in ends:
-            if sum(float(np.hypot(*(end - other))) <= near for other in ends) > 1 and self.at(end) is None:
-                name = f"joint{len(self.names) + 1}"
-                self.names[f"{name}-body"] = [name]
-                self.places.append((end, name))
-        first = self.at(ends[0])
-        if not any(name in self.names for name in GROUND):
-            if first is None:
-                self.places.append((ends[0], "ground-1"))
-                first = "ground-1"
-            self.names = {body: names for body, names in self.names.items() if first not in names} | {
-                "ground": next((names for names in self.names.values() if first in names), [first])
-            }
-
-    def at(self, end: Array | tuple[float, float]) -> str | None:
-        """Name of the point at an end; None for a free end."""
-        return next((name for place, name in self.places if float(np.hypot(*(place - end))) <= self._near), None)
-
-
-def _lines(
-    drawing: Drawing, path: Path, choices: Choices, beams: list[_Beam], near: float, notes: list[str]
-) -> Iterator[str]:
-    bodies, unit = _Bodies(drawing, beams, near), choices.unit
-    where = {name: place for place, name in bodies.places}
-    movable = [name for body, names in bodies.names.items() if body not in GROUND for name in names]
-    curves = "curves in groups, or with names" if drawing.tagged else "all curves, without names"
-    yield f"# {choices.name}: beams from {_comment(path.name)} ({curves}). Lengths are in {unit}, other numbers in SI."
-    yield "# The geometry is the drawing's. Change material, load, station and probes."
-    yield from (f"# {_comment(note)}" for note in notes)
-    title = f"From {path.name}" if re.fullmatch(r"[^\x00-\x1f\x7f\"\\]*", path.name) else ""
-    yield f'\nname = "{choices.name}"\ntitle = "{title}"\nunits = {{ length = "{unit}" }}'
-    yield "\n[materials.steel]\nyoungs_modulus = 2.1e11\npoisson_ratio = 0.3"
-    for body, names in bodies.names.items():
-        points = ", ".join(f"{name} = {_pair(where[name])}" for name in names)
-        yield f'\n[bodies.{body}]\nmotion = "{"fixed" if body in GROUND else "free"}"\npoints = {{ {points} }}'
-    for beam in beams:
-        yield f"\n{_accuracy(beam, unit)}\n[beams.{beam.name}]\ncurve = {_curve(beam.fitted)}"
-        yield f'thickness = {choices.thickness!r}\nwidth = {choices.width!r}\nmaterial = "steel"'
-        for side, end in (("start", beam.fitted.curve.start), ("end", beam.fitted.curve.end)):
-            point = bodies.at(end)
-            yield (
-                f'{side} = {{ joint = "free" }}'
-                if point is None
-                else f'{side} = {{ joint = "weld", point = "{point}" }}'
-            )
-    yield "\n# Change the load of the mechanism.\n[loads.F]"
-    if movable:
-        yield f'kind = "force"\npoint = "{movable[0]}"'
-    else:
-        at = 1.0 if bodies.at(beams[0].fitted.curve.end) is None else 0.5
-        yield f'kind = "beam_force"\nbeam = "{beams[0].name}"\nat = {at}'
-    yield 'direction = [0.0, -1.0]\n\n[[stages]]\nname = "load"\nsteps = "F"\nstations = [1.0]'
-    yield from (f'\n[[probes]]\nof = "{name}"\nquantity = "displacement"' for name in movable[:1])
-    yield from (f'\n[[probes]]\nof = "{beam.name}"\nquantity = "bending_stress"' for beam in beams)
-
-
-def _comment(text: str) -> str:
-    """The text without control characters, which a comment may not have."""
-    return re.sub(r"[\x00-\x1f\x7f]", " ", text)
-
-
-def _accuracy(beam: _Beam, unit: str) -> str:
-    curve, drawn = beam.fitted.curve, beam.drawn
-    begin = f"# Curve {drawn.number} ({_comment(drawn.kind)}) of the drawing"
-    if isinstance(curve, Line | Arc):
-        return f"{begin}, to round-off."
-    known = "" if drawn.directions is not None else ", known by places alone"
-    share = beam.fitted.deviation / beam.length
-    return (
-        f"{begin}{known}: a spline through {len(curve.points)} places, within {beam.fitted.deviation:.2g} {unit} of "
-        f"{len(drawn.points)} places ({share:.1g} of the length)."
+def _beam(curve: DrawnCurve, name: str, z: float, choices: Choices, near: float) -> _Beam | Mistake:
+    """The beam of a curve in the plane at ``z``, or the reason why the curve is left out."""
+    p, length, off = curve.points, _length(curve.points), float(np.abs(curve.points[:, 2] - z).max())
+    if off > near:
+        found = f"points {off:.4g} {choices.unit} off the plane z = {z:g}"
+        return _left_out(curve, found, "curves in one plane z = constant")
+    if np.linalg.norm(p[0] - p[-1]) <= near:
+        allowed = "a curve with two ends; a closed curve is cut into two"
+        return _left_out(curve, "a curve that comes back to the begin", allowed)
+    directions = None if curve.directions is None else curve.directions[:, :2]
+    made = fitted(p[:, :2], directions, choices.within * length)
+    if made is None:
+        found = f"a curve that no spline follows within {choices.within:g} of the length"
+        return _left_out(curve, found, "a smooth curve, cut at corners, or a larger --within")
+    if not isinstance(made.curve, Spline):
+        return _Beam(name, curve, made.curve, ", to round-off")
+    known = "" if curve.directions is not None else ", known by places alone"
+    accuracy = (
+        f"{known}: a spline through {len(made.curve.points)} places, within {made.deviation:.2g} {choices.unit} of "
+        f"{len(p)} places ({made.deviation / length:.1g} of the length)"
     )
+    return _Beam(name, curve, made.curve, accuracy)
 
 
-def _curve(made: Fitted) -> str:
-    curve = made.curve
-    ends = f"start = {_pair(curve.start)}, end = {_pair(curve.end)}"
-    if isinstance(curve, Line):
-        return f'{{ kind = "line", {ends} }}'
-    if isinstance(curve, Arc):
-        return f'{{ kind = "arc", center = {_pair(curve.center)}, {ends}, direction = "{curve.direction}" }}'
-    directions = (("start_direction", curve.start_direction), ("end_direction", curve.end_direction))
-    more = "".join(f", {key} = {_pair(direction)}" for key, direction in directions if direction is not None)
-    return f'{{ kind = "spline", points = [{", ".join(map(_pair, curve.points))}]{more} }}'
+def _bodies(drawing: Drawing, ends: Array, near: float) -> _Bodies:
+    """Bodies of the groups of points, and of ``ends`` (k, 2) that meet at no named point; with a ground."""
+    bodies: _Bodies = {}
+    for tag, group in drawing.points.items():
+        name = _name(tag)
+        if len(group) == 1 and tag not in GROUND:
+            bodies[f"{name}-body"] = {name: group[0, :2]}
+        else:
+            bodies[name] = {f"{name}-{number}": place[:2] for number, place in enumerate(group, 1)}
+    for end in ends:
+        if np.sum(np.hypot(*(ends - end).T) <= near) > 1 and not _point_at(bodies, end, near):
+            bodies[f"joint{len(bodies) + 1}-body"] = {f"joint{len(bodies) + 1}": end}
+    if not bodies.keys() & set(GROUND):
+        first = _point_at(bodies, ends[0], near)
+        own = next((body for body, points in bodies.items() if first in points), None)
+        bodies["ground"] = {"ground-1": ends[0]} if own is None else bodies.pop(own)
+    return bodies
 
 
-def _pair(place: Array | tuple[float, float]) -> str:
-    return f"[{float(place[0])!r}, {float(place[1])!r}]"
+def _point_at(bodies: _Bodies, end: Sequence[float] | Array, near: float) -> str:
+    """Name of the point at an end; empty for a free end."""
+    every = ((name, place) for points in bodies.values() for name, place in points.items())
+    return next((name for name, place in every if float(np.hypot(*(place - end))) <= 2.0 * near), "")
+
+
+def _text(
+    drawing: Drawing, path: Path, choices: Choices, beams: Sequence[_Beam], near: float, notes: Sequence[str]
+) -> str:
+    """The text with all ``beams``, and ``notes`` as comments."""
+    environment = jinja2.Environment(
+        undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
+    )
+    # a comment has no control characters
+    environment.filters["comment"] = lambda text: re.sub(r"[\x00-\x1f\x7f]", " ", text)
+    bodies = _bodies(drawing, np.array([end for beam in beams for end in (beam.curve.start, beam.curve.end)]), near)
+    template = files("comparisons.importing").joinpath("scene.toml.jinja").read_text(encoding="utf-8")
+    return environment.from_string(template).render(
+        file=path.name,
+        title=f"From {path.name}" if re.fullmatch(r"[^\x00-\x1f\x7f\"\\]*", path.name) else "",
+        tagged=drawing.tagged,
+        choices=choices,
+        notes=notes,
+        ground=GROUND,
+        bodies=bodies,
+        movable=[name for body, points in bodies.items() if body not in GROUND for name in points],
+        beams=[(beam, *(_point_at(bodies, end, near) for end in (beam.curve.start, beam.curve.end))) for beam in beams],
+    )

@@ -15,7 +15,7 @@ from comparisons.present.answer_tables import branch_table, critical_table, sear
 from comparisons.present.columns import Column, Figure, Section, Table, columns_of, follow, table_of
 from comparisons.present.json_document import solver
 from comparisons.reactions import MESH_ALLOWANCE, PERTURBATION, WorkEnergyReaction, is_long
-from comparisons.thinning import kept
+from comparisons.stations import kept
 from comparisons.third import sentence as solid_sentence
 from cprbm_scene import Answer, Scene
 

@@ -18,8 +18,7 @@ from comparisons.present.columns import Figure
 from comparisons.present.csv_table import pressing
 from comparisons.quantities import UNITS, arc_lengths, load_unit
 from comparisons.reactions import ENERGY, MESH_ALLOWANCE, WorkEnergyReaction, multiplier, reaction_probe
-from comparisons.stages import begins_at
-from comparisons.stations import station_of
+from comparisons.stations import begins_at, station_of
 from cprbm_scene import Answer, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array
 from cprbm_scene.freedoms import unit

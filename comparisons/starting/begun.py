@@ -16,9 +16,7 @@ SCHEMA = "scene.schema.json"
 def text(name: str) -> str:
     """The first scene, commented, under a ``name`` of letters, digits, ``_`` and ``-``."""
     template = files("comparisons.starting").joinpath("scene.toml").read_text(encoding="utf-8")
-    for key, value in (("schema", SCHEMA), ("name", name), ("file", f"{name}.toml")):
-        template = template.replace(f"{{{key}}}", value)
-    return template
+    return template.replace("{schema}", SCHEMA).replace("{name}", name).replace("{file}", f"{name}.toml")
 
 
 def begin(name: str, folder: Path) -> Path:

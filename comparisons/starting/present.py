@@ -1,6 +1,6 @@
-"""Which libraries are there, what each is for, and what installs one that is missing.
+"""Installed and missing libraries, their purposes, and the commands that install them.
 
-Each is imported in a process of its own: one that wants a library of the system may end the process that asks.
+Every library is imported in a process of its own: a library that lacks a part of the system may end the process.
 """
 
 from __future__ import annotations
@@ -9,18 +9,27 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
 SECONDS = 120.0
 
+_APT = "apt-get install --yes --no-install-recommends"
+
+WHAT_DRAWS = f"{_APT} libegl1 libgl1-mesa-dri"
+"""Command for all that VTK needs to draw without a screen: the dispatcher, and Mesa's renderer."""
+
 
 @dataclass(frozen=True, slots=True)
 class Library:
-    """A library: its distribution's ``name``, the ``module`` that is imported, what it is ``needed_for``.
+    """A library.
 
-    ``extra`` is the part of the project that it comes with, empty of one without which nothing works; ``least`` the
-    oldest release that will do.
+    Attributes:
+        name: of the distribution; module: imported name; needed_for: purpose.
+        least: range of releases.
+        extra: part of the project with the library; empty of a required library.
+        system: command, as root on Debian and Ubuntu, for the libraries of the system; found on a bare Debian 12.
     """
 
     name: str
@@ -28,16 +37,17 @@ class Library:
     needed_for: str
     least: str
     extra: str = ""
+    system: str = ""
 
     @property
     def line(self) -> str:
-        """What installs it for the Python that runs."""
+        """Command that installs the library for the running Python."""
         return f'{shlex.quote(sys.executable)} -m pip install "{self.name}{self.least}"'
 
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """What was found: the ``version``, empty where it is not installed, and why it cannot be imported, else empty."""
+    """A library with its installed ``version``, else empty, and why it cannot be imported, else empty."""
 
     library: Library
     version: str
@@ -45,7 +55,7 @@ class State:
 
     @property
     def there(self) -> bool:
-        """Whether it can be used."""
+        """Whether the library can be used."""
         return bool(self.version) and not self.trouble
 
 
@@ -70,33 +80,42 @@ LIBRARIES = (
         ">=3.5",
         "threads",
     ),
-    Library("gmsh", "gmsh", "meshes of the solid by gmsh, and 'import' of geometry", ">=4.13", "solid"),
+    Library(
+        "gmsh",
+        "gmsh",
+        "meshes of the solid by gmsh, and 'import' of geometry",
+        ">=4.13",
+        "solid",
+        f"{_APT} libgl1 libglu1-mesa libgomp1 libxcursor1 libxft2 libxinerama1",
+    ),
     Library("ezdxf", "ezdxf", "'import' of DXF drawings", ">=1.3", "dxf"),
     Library("meshio", "meshio", "those meshes, and files for ParaView", ">=5.3", "solid"),
-    Library("pyvista", "pyvista", "pictures in space by 'view'", ">=0.44", "view"),
+    Library("pyvista", "pyvista", "pictures in space by 'view'", ">=0.44", "view", WHAT_DRAWS),
 )
 
 
 def looked_for() -> Iterator[State]:
-    """What is there of each library."""
+    """State of every library."""
     for library in LIBRARIES:
-        try:
+        found = trouble = ""
+        with suppress(PackageNotFoundError):
             found = version(library.name)
-        except PackageNotFoundError:
-            yield State(library, "", "")
-            continue
-        yield State(library, found, trouble_with(library.module))
+            trouble = trouble_with(library.module)
+        yield State(library, found, trouble)
 
 
 def trouble_with(module: str) -> str:
-    """Why a module cannot be imported: the last line that Python says of it."""
+    """Why a module cannot be imported: the last line of Python's message; empty if it can."""
     try:
         done = subprocess.run(
             [sys.executable, "-c", f"import {module}"], capture_output=True, text=True, timeout=SECONDS, check=False
         )
     except subprocess.TimeoutExpired:
         return f"importing it takes more than {SECONDS:.0f} s"
-    if done.returncode == 0:
-        return ""
-    lines = done.stderr.strip().splitlines()
-    return lines[-1] if lines else f"importing it ends Python with {done.returncode}"
+    last = (done.stderr.strip().splitlines() or [f"importing it ends Python with {done.returncode}"])[-1]
+    return last if done.returncode else ""
+
+
+def line_for(name: str, trouble: str) -> str:
+    """Command for the libraries of the system that a library needs, if these are its ``trouble``; else empty."""
+    return next((each.system for each in LIBRARIES if each.name == name), "") if ".so" in trouble else ""

@@ -1,4 +1,4 @@
-"""Parts of the difference between a CPRBM value and the finite elements' value, probe by probe.
+"""Parts of the difference between the CPRBM and the finite elements, for every probe at every station.
 
 ==========  ================================================================================================
 symbol      meaning
@@ -30,8 +30,8 @@ of stress (:mod:`comparisons.studies.curved_beam`), and L_f less the value of th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -51,7 +51,9 @@ from comparisons.verdict.scales import probe_scales
 from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Answer, Probe, Scene, Stage
 from cprbm_scene.answer import Array, Flags
-from cprbm_scene.frozendict import frozendict
+
+PARTS = ("contact", "links", "rest", "elements", "penalty")
+"""Names of the parts, in the order of the sum."""
 
 LEVELS, ELEMENTS, TIGHTNESS = (1, 2, 4), (1, 2), (1, 4, 16)
 """Links over N, elements over n, and p over the penetration of a run."""
@@ -67,27 +69,12 @@ LEAST = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Parts:
-    """Parts of a difference in the order of the sum, each along the difference, in the probe's unit."""
-
-    contact: float
-    links: float
-    rest: float
-    elements: float
-    penalty: float
-
-    def by_name(self) -> dict[str, float]:
-        """Parts by name."""
-        return {each.name: getattr(self, each.name) for each in fields(self)}
-
-
-@dataclass(frozen=True, slots=True)
 class Budget:
     """Parts of the difference of a probe at a station, in the probe's unit.
 
     Attributes:
         row: values, difference and denominator.
-        parts: the sum.
+        parts: by name, each along the difference.
         rest_uncertainty: of L_c − L_f, by the uncertainties of the limits; elements_uncertainty: of L_f.
         off_line: distance of v_f from the line through the values at p/4 and p/16.
         paper: component of ``paper`` less ``auto`` at N along the difference; None without both values.
@@ -98,20 +85,20 @@ class Budget:
     """
 
     row: Row
-    parts: Parts
+    parts: Mapping[str, float]
     rest_uncertainty: float
     elements_uncertainty: float
     off_line: float
     paper: float | None
     inner_edge: Array | None
     curved: float | None
-    missed: float | None = None
-    missed_uncertainty: float | None = None
+    missed: float | None
+    missed_uncertainty: float | None
 
     @property
     def all_parts(self) -> float:
         """Σ|part| as a fraction; 0 for the tolerances of iterations."""
-        found = self.row.fraction(sum(map(abs, self.parts.by_name().values()))) or 0.0
+        found = self.row.fraction(sum(map(abs, self.parts.values()))) or 0.0
         return found if found > LEAST else 0.0
 
 
@@ -139,7 +126,7 @@ class Account:
         return tuple(each for each in self.budgets if each.row.where == (stage.name, stage.stations[-1]))
 
 
-_Runs = Mapping[str, tuple[Answer, ...]]
+_Runs = Mapping[str, Sequence[Answer]]
 """Answers by name: ``cprbm`` as chosen, ``cprbm auto`` at LEVELS, ``fea`` at TIGHTNESS, ``fea finer`` and
 ``solid`` at ELEMENTS."""
 
@@ -158,50 +145,47 @@ def account_of(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
     check(choices, scene)
     choices = choices.within(choices.kinematics_of(scene))
     runs = _solve(scene, choices, memory)
-    beams = {name: answers for name, answers in runs.items() if name != "solid"}
+    solids = runs.pop("solid", [])
     missing = tuple(
         f"{name}, run {place + 1} of {len(answers)}: {sentence}"
-        for name, answers in beams.items()
+        for name, answers in runs.items()
         for place, answer in enumerate(answers)
         for sentence in problem_sentences(scene, answer)
     )
     if missing:
         return Account(scene, choices, (), missing)
-    ended = [answer for answer in runs.get("solid", ()) if not answer.completed]
+    silent = [f"{answer.ending.value}. {answer.sentence}" for answer in solids if not answer.completed]
     paper = runs["cprbm"][0] if choices.formulation == "paper" else in_paper(scene, choices, memory.solvers)
     scales = probe_scales(scene, (runs["cprbm"][0], runs["fea"][0]))
-    solids = () if ended else runs.get("solid", ())
     found = (
-        _budget(scene, beams, paper, solids, probe, stage, value, scales[stage.name, probe.name])
+        _budget(scene, runs, paper, () if silent else solids, probe, stage, value, scales[stage.name, probe.name])
         for stage in scene.stages
         for value in stage.stations
         for probe in scene.probes_in(stage.name)
     )
-    silent = f"{ended[0].ending.value}. {ended[0].sentence}" if ended else ""
-    return Account(scene, choices, tuple(each for each in found if each is not None), silent=silent)
+    return Account(scene, choices, tuple(filter(None, found)), silent="".join(silent[:1]))
 
 
-def _solve(scene: Scene, choices: Choices, memory: AnswerMemory) -> _Runs:
+def _solve(scene: Scene, choices: Choices, memory: AnswerMemory) -> dict[str, list[Answer]]:
     even, solvers = replace(choices, formulation="auto"), memory.solvers
     tight = [replace(choices, penetration=choices.penetration / tightness) for tightness in TIGHTNESS]
-    wanted = {
-        "cprbm": [(solvers.cprbm, choices)],
-        "cprbm auto": [(solvers.cprbm, own) for own in (even, even.finer(), even.finer().finer())],
-        "fea": [(solvers.fea, own) for own in tight],
-    }
-    wanted["fea finer"] = [(solvers.fea, own) for own in (tight[-1], tight[-1].finer())]
+    wanted = [
+        ("cprbm", solvers.cprbm, [choices]),
+        ("cprbm auto", solvers.cprbm, [even, even.finer(), even.finer().finer()]),
+        ("fea", solvers.fea, tight),
+        ("fea finer", solvers.fea, [tight[-1], tight[-1].finer()]),
+    ]
     if solvers.solid is not None:
-        wanted["solid"] = [(solvers.solid, own) for own in (choices, choices.finer())]
-    jobs = [(solver, scene, own) for each in wanted.values() for solver, own in each]
-    answers = iter(memory.answers(jobs))
-    return frozendict({name: tuple(next(answers) for _ in each) for name, each in wanted.items()})
+        wanted.append(("solid", solvers.solid, [choices, choices.finer()]))
+    answers = iter(memory.answers([(solver, scene, own) for _, solver, every in wanted for own in every]))
+    return {name: [next(answers) for _ in every] for name, _, every in wanted}
 
 
 def _budget(
     scene: Scene,
     runs: _Runs,
     paper: Answer | None,
-    solids: tuple[Answer, ...],
+    solids: Sequence[Answer],
     probe: Probe,
     stage: Stage,
     value: float,
@@ -211,32 +195,28 @@ def _budget(
     at = {name: [station_of(each, stage.name, value) for each in answers] for name, answers in runs.items()}
     stations = [station for each in at.values() for station in each]
     every = [station.values[probe.name] for station in stations]
-    alike = len({station.branch for station in stations}) == 1 and len({v.shape for v in every}) == 1
-    if not alike or every[0].size == 0 or not any(v.any() for v in every):
+    if len({(station.branch, v.shape) for station, v in zip(stations, every, strict=True)}) > 1 or not np.any(every):
         return None
     row = bare_row(scene, (at["cprbm"][0], at["fea"][0]), probe, stage, value, scale)
-    counts = np.ones(row.cprbm.shape, dtype=bool)
+    counts, K = np.ones(row.cprbm.shape, dtype=bool), None
     if row.arc_length is not None:
-        counts = away_from_point_forces(scene, probe.of, row.arc_length, stations)
+        counts, beam = away_from_point_forces(scene, probe.of, row.arc_length, stations), scene.beams[probe.of]
         if not counts.any():
             return None
+        K = inner_edge_factor(bentness_on(beam, row.arc_length / length(beam.curve)))
     v = {name: np.array([each.values[probe.name][counts] for each in found]) for name, found in at.items()}
     v_c, v_a, v_f = v["cprbm"][0], v["cprbm auto"][0], v["fea"][0]
     v_0, delta, off_line, in_doubt = _penalty(probe, v["fea"])
     L_c = limit(LEVELS, v["cprbm auto"])
     L_f = limit(ELEMENTS, v["fea finer"] - np.outer(DEEPER, delta))
     along = direction(probe.quantity, v_c - v_f if (v_c - v_f).any() else v_f)
-    parts = Parts(*(float(np.dot(a - b, along)) for a, b in pairwise([v_c, v_a, L_c.value, L_f.value, v_0, v_f])))
-    K = None
-    if row.arc_length is not None:
-        beam = scene.beams[probe.of]
-        K = inner_edge_factor(bentness_on(beam, row.arc_length / length(beam.curve)))
+    parts = (float(np.dot(one - two, along)) for one, two in pairwise([v_c, v_a, L_c.value, L_f.value, v_0, v_f]))
     own = float(np.dot(L_f.uncertainty + in_doubt, np.abs(along)))
     missed, uncertainty = _missed(scene, row, solids, counts, L_f.value, along)
     return Budget(
         row=replace(row, difference=norm(probe.quantity, v_c - v_f)),
-        parts=parts,
-        rest_uncertainty=float(np.dot(L_c.uncertainty + L_f.uncertainty + in_doubt, np.abs(along))),
+        parts=dict(zip(PARTS, parts, strict=True)),
+        rest_uncertainty=float(np.dot(L_c.uncertainty, np.abs(along))) + own,
         elements_uncertainty=own,
         off_line=off_line,
         paper=_of_paper(paper, row, at["cprbm"][0].branch, v_a, counts, along),
@@ -259,21 +239,18 @@ def _penalty(probe: Probe, values: Array) -> tuple[Array, Array, float, Array]:
 
 def _of_paper(paper: Answer | None, row: Row, branch: int, v_a: Array, counts: Flags, along: Array) -> float | None:
     """Component of ``paper`` less ``auto``; None without a complete answer on the branch with such a value."""
-    if paper is None or not paper.completed:
+    station = station_of(paper, *row.where) if paper is not None and paper.completed else None
+    if station is None or station.branch != branch or station.values[row.probe.name].shape != row.cprbm.shape:
         return None
-    station = station_of(paper, *row.where)
-    value = station.values[row.probe.name]
-    alike = station.branch == branch and value.shape == row.cprbm.shape
-    return float(np.dot(value[counts] - v_a, along)) if alike else None
+    return float(np.dot(station.values[row.probe.name][counts] - v_a, along))
 
 
 def _missed(
-    scene: Scene, row: Row, solids: tuple[Answer, ...], counts: Flags, beams: Array, along: Array
+    scene: Scene, row: Row, solids: Sequence[Answer], counts: Flags, beams: Array, along: Array
 ) -> tuple[float | None, float]:
     """Component of the ``beams``' limit less the solid's value, and its uncertainty; None without such a value."""
     limited = solid_limit(scene, row, solids) if solids else None
     if limited is None or not limited[1][counts][np.abs(along) > 0.0].all():  # the solid's contacts may end elsewhere
         return None, 0.0
-    found = limited[0]
-    off = float(np.dot(beams - found.value[counts], along))
-    return off, float(np.dot(found.uncertainty[counts], np.abs(along)))
+    value, uncertainty = limited[0].value[counts], limited[0].uncertainty[counts]
+    return float(np.dot(beams - value, along)), float(np.dot(uncertainty, np.abs(along)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from comparisons.choices import Count
@@ -11,8 +11,8 @@ from comparisons.display_units import at_station
 from comparisons.formats import number, percent
 from comparisons.plain import Plain, plain
 from comparisons.present.canvas import canvas, finished
-from comparisons.present.columns import Column, Figure, Table, records_of, table_of
-from comparisons.studies.budget import Account, Budget
+from comparisons.present.columns import NOTHING, Figure, Table, without_empty
+from comparisons.studies.budget import PARTS, Account, Budget
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,11 +24,10 @@ LOOKS = {
     "elements": ("#3f8f5b", "FEA: elements"),
     "penalty": ("#8fd0b5", "FEA: penalty"),
 }
-"""Colour and label by part, in the order of the sum."""
+"""Colour and label by part."""
 
 MISSED = "#8a6d1f"
 
-_MOVED = ("displacement", "rotation")
 _LISTED = 0.02
 """Share of a difference below which a sentence sums parts up."""
 
@@ -38,68 +37,73 @@ def sentences_of(account: Account) -> tuple[str, ...]:
     if account.missing:
         return (f"{account.scene.name} has no error budget: {'; '.join(account.missing)}.",)
     claimed = [each for each in account.last if (claim := claim_of(account.scene, each.row)) and claim.value is None]
-    return (*(_made_of(account, each) for each in claimed), *_of_solid(account))
+    return (*(_claimed_sentence(account, each) for each in claimed), *_solid_sentences(account))
+
+
+def _claimed_sentence(account: Account, budget: Budget) -> str:
+    """The large parts of a difference."""
+    row = budget.row
+    large = {name: part for name, part in budget.parts.items() if abs(part) > _LISTED * row.difference}
+    small = sum(part for name, part in budget.parts.items() if name not in large)
+    listed = ", ".join(f"{name} {_cell(budget, part, sign=True)} %" for name, part in large.items())
+    return (
+        f"{row.probe.name} at {at_station(account.scene, row.stage, row.station)}: the difference of "
+        f"{percent(row.fraction(row.difference))} is {listed}, and {_cell(budget, small, sign=True)} % for all else."
+    )
+
+
+def _solid_sentences(account: Account) -> tuple[str, ...]:
+    """Statement of the solid on displacements and rotations at the last station; nothing without a solid."""
+    if account.silent:
+        return (f"The solid states nothing: {account.silent}",)
+    listed = ", ".join(
+        f"{each.row.probe.name} {_cell(each, each.missed, sign=True)} % (± {_cell(each, each.missed_uncertainty)} %)"
+        for each in account.last
+        if each.missed is not None and each.row.probe.quantity in ("displacement", "rotation")
+    )
+    return (f"What the beam theories miss together, beside the sum, by the solid: {listed}.",) if listed else ()
 
 
 def data_of(account: Account) -> Plain:
     """Keys for one case of ``converge``: ``budget``, with fractions as in the rows of ``compare``."""
-
-    def share(header: str, size: Callable[[Budget], float | None]) -> Column[Budget]:
-        def fraction(at: Budget) -> float | None:
-            value = size(at)
-            return None if value is None else at.row.fraction(value)
-
-        return Column(header, fraction)
-
-    solid = [share("missed", lambda at: at.missed), share("missed_uncertainty", lambda at: at.missed_uncertainty)]
-    columns = [
-        Column[Budget]("probe", lambda at: at.row.probe.name),
-        Column("stage", lambda at: at.row.stage),
-        Column("station", lambda at: at.row.station),
-        Column("unit", lambda at: at.row.unit),
-        share("difference", lambda at: at.row.difference),
-        Column("parts", _shares),
-        share("rest_uncertainty", lambda at: at.rest_uncertainty),
-        share("elements_uncertainty", lambda at: at.elements_uncertainty),
-        share("penalty_off_line", lambda at: at.off_line),
-        share("paper", lambda at: at.paper),
-        share("curved_beam", lambda at: at.curved),
-        Column("inner_edge_factor", lambda at: plain(at.inner_edge)),
-        Column("scale", lambda at: at.row.scale),
-        Column("denominator", lambda at: at.row.denominator),
-    ]
-    records = []
-    for each in account.budgets:
-        records += records_of([*columns, *(solid if each.missed is not None else ())], [each])
-    return {"budget": records, "budget_missing": list(account.missing)}
+    return {"budget": [_record(each) for each in account.budgets], "budget_missing": list(account.missing)}
 
 
-def _shares(budget: Budget) -> dict[str, float | None]:
-    """Parts as fractions."""
-    return {name: budget.row.fraction(part) for name, part in budget.parts.by_name().items()}
+def _record(at: Budget) -> Plain:
+    """Documented JSON of a budget; ``missed`` only with a solid."""
+    row, solid = at.row, {"missed": at.missed, "missed_uncertainty": at.missed_uncertainty}
+    sizes = {
+        "difference": row.difference,
+        "rest_uncertainty": at.rest_uncertainty,
+        "elements_uncertainty": at.elements_uncertainty,
+        "penalty_off_line": at.off_line,
+        "paper": at.paper,
+        "curved_beam": at.curved,
+        **(solid if at.missed is not None else {}),
+    }
+    return {
+        "probe": row.probe.name,
+        "stage": row.stage,
+        "station": row.station,
+        "unit": row.unit,
+        "parts": {name: row.fraction(part) for name, part in at.parts.items()},
+        **{name: None if value is None else row.fraction(value) for name, value in sizes.items()},
+        "inner_edge_factor": plain(at.inner_edge),
+        "scale": row.scale,
+        "denominator": row.denominator,
+    }
 
 
 def budget_table(account: Account) -> Table:
     """Parts at the last station, per cent of the denominators; without columns of zeros for theories not chosen."""
-
-    def size(header: str, value: Callable[[Budget], float | None]) -> Column[Budget]:
-        return Column(header, lambda at: _cell(at, value(at)))
-
-    def part(name: str) -> Column[Budget]:
-        return Column(name, lambda at: _cell(at, getattr(at.parts, name), sign=True) if at.all_parts else None)
-
-    shown = [name for name in LOOKS if any(getattr(each.parts, name) for each in account.last)]
-    columns = [Column[Budget]("probe", lambda at: at.row.probe.name), size("difference", lambda at: at.row.difference)]
-    for name in shown:
-        columns.append(part(name))
-        if name == "rest":
-            columns.append(size("±", lambda at: at.rest_uncertainty if at.all_parts else None))
-    columns += [
-        Column("paper", lambda at: None if at.parts.contact else _cell(at, at.paper, sign=True)),
-        size("curved", lambda at: at.curved or None),
-        Column("missed", lambda at: _cell(at, at.missed, sign=True)),
-        size("±", lambda at: at.missed_uncertainty),
-    ]
+    shown = [name for name in PARTS if any(each.parts[name] for each in account.last)]
+    headers = ["probe", "difference", *shown, "paper", "curved", "missed", "±"]
+    rows = [_row(at, shown) for at in account.last]
+    if "rest" in shown:
+        place = headers.index("rest") + 1
+        headers.insert(place, "±")
+        for at, row in zip(account.last, rows, strict=True):
+            row.insert(place, _cell(at, at.rest_uncertainty if at.all_parts else None))
     note = (
         "Per cent of the denominator of the case's table. The parts sum to the difference; negative parts make the "
         "difference smaller. Links, elements, penalty: value beside its limit. Rest: between the solvers' limits "
@@ -110,7 +114,15 @@ def budget_table(account: Account) -> Table:
     stage, choices = account.scene.stages[-1], account.choices
     where = at_station(account.scene, stage.name, stage.stations[-1])
     title = f"Error budget at {where} with {_count(choices.links)} links and {_count(choices.elements)} elements"
-    return table_of(f"{title} per beam, %", columns, account.last, note)
+    return without_empty(Table(f"{title} per beam, %", tuple(headers), tuple(map(tuple, rows)), note))
+
+
+def _row(at: Budget, shown: Sequence[str]) -> list[str]:
+    """Cells of a row: the difference, the ``shown`` parts, and the sizes beside the sum."""
+    parts = [_cell(at, at.parts[name] if at.all_parts else None, sign=True) for name in shown]
+    paper = _cell(at, None if at.parts["contact"] else at.paper, sign=True)
+    solid = _cell(at, at.missed, sign=True), _cell(at, at.missed_uncertainty)
+    return [at.row.probe.name, _cell(at, at.row.difference), *parts, paper, _cell(at, at.curved or None), *solid]
 
 
 def budget_figures(account: Account) -> tuple[Figure, ...]:
@@ -140,11 +152,16 @@ def budget_figures(account: Account) -> tuple[Figure, ...]:
         return (finished(drawing, "budget", caption),)
 
 
+def _share(budget: Budget, value: float | None) -> float:
+    """A size in per cent of all parts together."""
+    return 100.0 * (budget.row.fraction(value or 0.0) or 0.0) / budget.all_parts
+
+
 def _draw_parts(axes: Axes, budgets: Sequence[Budget]) -> None:
-    """A bar of all parts for every budget."""
+    """Draw a bar of all parts for every budget: negative parts to the left, positive parts to the right."""
     ends = [[0.0, 0.0] for _ in budgets]
     for name, (colour, label) in LOOKS.items():
-        shares = [100.0 * (each.row.fraction(getattr(each.parts, name)) or 0.0) / each.all_parts for each in budgets]
+        shares = [_share(each, each.parts[name]) for each in budgets]
         if any(shares):
             starts = [end[share < 0.0] for end, share in zip(ends, shares, strict=True)]
             axes.barh(range(len(budgets)), shares, left=starts, height=0.66, color=colour, label=label)
@@ -155,50 +172,26 @@ def _draw_parts(axes: Axes, budgets: Sequence[Budget]) -> None:
 
 
 def _draw_missed(axes: Axes, budgets: Sequence[Budget]) -> bool:
-    """A thin bar below every budget with a value of the solid; whether there is any."""
+    """Draw a thin bar below every budget with a value of the solid; True if there is any."""
     known = [(place, each) for place, each in enumerate(budgets) if each.missed is not None]
     if known:
-        sizes, doubts = (
-            [100.0 * (at.row.fraction(getattr(at, name)) or 0.0) / at.all_parts for _, at in known]
-            for name in ("missed", "missed_uncertainty")
+        shares, doubts = (
+            [_share(at, at.missed) for _, at in known],
+            [_share(at, at.missed_uncertainty) for _, at in known],
         )
-        axes.barh([place + 0.42 for place, _ in known], sizes, xerr=doubts, height=0.14, color=MISSED,
+        axes.barh([place + 0.42 for place, _ in known], shares, xerr=doubts, height=0.14, color=MISSED,
                   error_kw={"linewidth": 0.8}, label="missed by beam theory: FEA to solid")  # fmt: skip
     return bool(known)
 
 
-def _cell(budget: Budget, value: float | None, *, sign: bool = False) -> str | None:
+def _cell(budget: Budget, value: float | None, *, sign: bool = False) -> str:
     """A size in per cent of the row's denominator, without the unit."""
     fraction = None if value is None else budget.row.fraction(value)
     if fraction is None:
-        return None
+        return NOTHING
     mark = "" if not sign or fraction == 0.0 else "−" if fraction < 0.0 else "+"
     return f"{mark}{number(100.0 * abs(fraction))}"
 
 
 def _count(count: Count) -> str:
     return str(count) if isinstance(count, int) else ",".join(f"{beam}={number}" for beam, number in count.items())
-
-
-def _made_of(account: Account, budget: Budget) -> str:
-    """The large parts of a difference in a sentence."""
-    row, parts = budget.row, budget.parts.by_name()
-    large = {name: part for name, part in parts.items() if abs(part) > _LISTED * row.difference}
-    small = sum(part for name, part in parts.items() if name not in large)
-    listed = ", ".join(f"{name} {_cell(budget, part, sign=True)} %" for name, part in large.items())
-    return (
-        f"{row.probe.name} at {at_station(account.scene, row.stage, row.station)}: the difference of "
-        f"{percent(row.fraction(row.difference))} is {listed}, and {_cell(budget, small, sign=True)} % for all else."
-    )
-
-
-def _of_solid(account: Account) -> tuple[str, ...]:
-    """What the solid states about displacements and rotations at the last station; nothing without a solid."""
-    if account.silent:
-        return (f"The solid states nothing: {account.silent}",)
-    missed = [each for each in account.last if each.missed is not None and each.row.probe.quantity in _MOVED]
-    listed = ", ".join(
-        f"{each.row.probe.name} {_cell(each, each.missed, sign=True)} % (± {_cell(each, each.missed_uncertainty)} %)"
-        for each in missed
-    )
-    return (f"What the beam theories miss together, beside the sum, by the solid: {listed}.",) if missed else ()

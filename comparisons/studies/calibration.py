@@ -1,109 +1,89 @@
-"""Both solvers' stated uncertainties beside their true errors, on every built-in case with an exact answer.
+"""Stated uncertainties of both solvers beside their true errors, on every built-in case with an exact answer.
 
-The exact answer is one of the theory ``bending``, in which the finite elements are therefore run.
+The exact answer is an answer in the theory ``bending``: the finite elements run in this theory, too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from comparisons import cases
 from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
 from comparisons.crew import ALONE, Crew
+from comparisons.formats import number, percent
 from comparisons.pairing import Solvers, exact_if_covered, paired
-from comparisons.verdict.calibration import ErrorRatio, Tally, error_ratios, tally
+from comparisons.plain import Plain
+from comparisons.present.canvas import GREY, canvas, finished
+from comparisons.present.columns import Figure, Section, Table
+from comparisons.verdict.calibration import LARGEST_MEDIAN, SHARE_WITHIN, ErrorRatio, Tally, error_ratios, tally
 from comparisons.verdict.completeness import complete_part
-from comparisons.verdict.runs import SOLVERS, Solver
+from comparisons.verdict.runs import SOLVERS
+from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
 SIZES = ((17, 40), (20, 60), (40, 80), (80, 160))
 """Links per beam of the CPRBM and finite elements per beam."""
 
+_NAMES = {"cprbm": "CPRBM", "fea": "FEA in bending"}
+_COLOURS = ("#1f5fa8", "#c8321e", "#2c8a4b", "#a05fb4", "#c98a12", "#3aa6a6", "#555555")
+
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """One case at one discretisation: the verdict, and the true errors worth the name."""
+    """A case at a discretisation: N by solver, the verdict, and the error ratios."""
 
     case: str
-    choices: Choices
+    sizes: Mapping[str, int]
     verdict: Verdict
-    held: tuple[ErrorRatio, ...]
-
-    def size(self, solver: Solver) -> int:
-        """Links or elements per beam."""
-        count = self.choices.links if solver == "cprbm" else self.choices.elements
-        assert isinstance(count, int)
-        return count
+    ratios: tuple[ErrorRatio, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """All that is measured so far.
+    """All measurements so far.
 
     Attributes:
         trials: in the order of the cases and sizes.
-        covered: by case, for how many of its stations an exact answer is known, of how many.
-        why: by case, what the exact answer says of its end, where it covers not every station.
+        covered: by case, the number of stations with an exact answer, of all stations, and why any lacks the answer.
     """
 
     trials: tuple[Trial, ...] = ()
-    covered: Mapping[str, tuple[int, int]] = field(default_factory=frozendict)
-    why: Mapping[str, str] = field(default_factory=frozendict)
+    covered: Mapping[str, tuple[int, int, str | None]] = field(default_factory=frozendict)
 
-    @property
-    def cases(self) -> tuple[str, ...]:
-        """Those that were tried."""
-        return tuple(dict.fromkeys(trial.case for trial in self.trials))
-
-    def of_case(self, case: str) -> tuple[Trial, ...]:
-        """A case's trials."""
-        return tuple(trial for trial in self.trials if trial.case == case)
+    def by_case(self) -> dict[str, tuple[Trial, ...]]:
+        """Trials of every case."""
+        names = dict.fromkeys(trial.case for trial in self.trials)
+        return {name: tuple(trial for trial in self.trials if trial.case == name) for name in names}
 
 
-def tallies(trials: tuple[Trial, ...]) -> tuple[Tally, ...]:
-    """What some trials say of each solver."""
-    found = [each for trial in trials for each in trial.held]
-    return tuple(tally(found, solver) for solver in SOLVERS)
+def pieces() -> tuple[Scene, ...]:
+    """All built-in scenes."""
+    return tuple(scene for scene in map(cases.asked, cases.names()) if isinstance(scene, Scene))
 
 
-@dataclass(frozen=True, slots=True)
-class Piece:
-    """What is measured at once: a case at all sizes."""
-
-    scene: Scene
-    sizes: tuple[tuple[int, int], ...] = SIZES
-
-
-def pieces() -> tuple[Piece, ...]:
-    """A piece for each built-in scene."""
-    return tuple(Piece(scene) for scene in map(cases.asked, cases.names()) if isinstance(scene, Scene))
-
-
-def with_piece(found: Calibration, piece: Piece, solvers: Solvers, crew: Crew = ALONE) -> Calibration:
-    """What was found, and a piece more; a case without an exact answer has no trials.
+def with_case(
+    found: Calibration, scene: Scene, solvers: Solvers, crew: Crew = ALONE, sizes: Iterable[tuple[int, int]] = SIZES
+) -> Calibration:
+    """The measurements with a case more, at all sizes; a case without an exact answer has no trials.
 
     Raises:
         SceneError: a solver refuses the question.
     """
-    scene = piece.scene
     whole = (solvers.exact or exact_if_covered)(scene, Choices(theory="bending"))
     exact = complete_part(scene, whole)
-    asked = sum(len(stage.stations) for stage in scene.stages)
-    known = len(exact.stations)
-    trials = [tried(scene, links, elements, exact, solvers, crew) for links, elements in piece.sizes if known]
-    said = {} if known == asked else {scene.name: whole.sentence or whole.ending.value}
-    return Calibration(
-        (*found.trials, *trials),
-        frozendict({**found.covered, scene.name: (known, asked)}),
-        frozendict({**found.why, **said}),
-    )
+    known, asked = len(exact.stations), sum(len(stage.stations) for stage in scene.stages)
+    why = None if known == asked else whole.sentence or whole.ending.value
+    trials = [tried(scene, links, elements, exact, solvers, crew) for links, elements in sizes if known]
+    return Calibration((*found.trials, *trials), frozendict({**found.covered, scene.name: (known, asked, why)}))
 
 
 def tried(scene: Scene, links: int, elements: int, exact: Answer, solvers: Solvers, crew: Crew = ALONE) -> Trial:
-    """One case at one discretisation, beside an exact answer that is there already.
+    """The trial of a case with a known exact answer.
 
     Raises:
         SceneError: a solver refuses the question.
@@ -111,4 +91,146 @@ def tried(scene: Scene, links: int, elements: int, exact: Answer, solvers: Solve
     choices = Choices(links=links, elements=elements, theory="bending")
     runs = paired(scene, choices, replace(solvers, exact=None), crew, bare=True)
     comparison = compare(scene, replace(runs, exact=exact))
-    return Trial(scene.name, choices, comparison.verdict, error_ratios(comparison.rows))
+    sizes = {"cprbm": links, "fea": elements}
+    return Trial(scene.name, sizes, comparison.verdict, error_ratios(comparison.rows))
+
+
+def tallies(trials: Iterable[Trial]) -> tuple[Tally, ...]:
+    """Error ratios of each solver together."""
+    ratios = [each for trial in trials for each in trial.ratios]
+    return tuple(tally(ratios, solver) for solver in SOLVERS)
+
+
+def result_of(found: Calibration) -> Section:
+    """Result of the measurements so far."""
+    measured, by_case = any(trial.ratios for trial in found.trials), found.by_case()
+    cases_of_json = [
+        {
+            "case": case,
+            "stations_covered": known,
+            "stations": asked,
+            "why": why,
+            "trials": [_record(trial) for trial in by_case.get(case, ())],
+        }
+        for case, (known, asked, why) in found.covered.items()
+    ]
+    return Section(
+        "Stated uncertainties beside true errors",
+        tuple(_sentences(found)),
+        (_stated_against_true(found),) if measured else (),
+        tuple(table for table in (_tallies(found), _worst(found)) if table.rows),
+        "calibration",
+        {"study": "calibration", "cases": cases_of_json},
+    )
+
+
+def _record(trial: Trial) -> Plain:
+    """Documented JSON of a trial."""
+    solvers = {
+        own.solver: {
+            "rows": own.rows,
+            "within": own.within,
+            "share": own.share,
+            "stated_over_true": own.over,
+            "holds": own.holds,
+            "worst": [
+                {
+                    "probe": each.row.probe.name,
+                    "stage": each.row.stage,
+                    "station": each.row.station,
+                    "true": each.true / each.row.scale,
+                    "stated": each.stated / each.row.scale,
+                    "true_over_stated": each.ratio,
+                }
+                for each in own.worst
+            ],
+        }
+        for own in tallies([trial])
+    }
+    sizes = {"links": trial.sizes["cprbm"], "elements": trial.sizes["fea"]}
+    return {**sizes, "verdict": trial.verdict.word.value, "solvers": solvers}
+
+
+def _sentences(found: Calibration) -> Iterable[str]:
+    if found.trials:
+        every = [(case, own) for case, trials in found.by_case().items() for own in tallies(trials)]
+        broken = ", by the ".join(f"{_NAMES[own.solver]} on {case}" for case, own in every if not own.holds)
+        yield (
+            f"The house's rule: the true error lies within the stated one in at least {percent(SHARE_WITHIN)} of the "
+            f"rows, and stated over true is at most {LARGEST_MEDIAN:g} in the median. "
+            + (f"It is broken by the {broken}." if broken else "It is kept by both on every case.")
+        )
+    for trial in found.trials:
+        if trial.verdict.word is not Word.AGREE:
+            sizes = f"{trial.sizes['cprbm']} links and {trial.sizes['fea']} elements"
+            yield f"{trial.case} at {sizes}: {trial.verdict.word.value}. {trial.verdict.sentence}"
+    for case, (known, asked, why) in found.covered.items():
+        if why is not None:
+            where = f"{known} of {asked} stations" if known else "no station"
+            yield f"{case}: an exact answer is known for {where}. {why}"
+
+
+def _tallies(found: Calibration) -> Table:
+    rows = []
+    for case, trials in found.by_case().items():
+        for place, solver in enumerate(SOLVERS):
+            every = {str(trial.sizes[solver]): tallies([trial])[place] for trial in trials}
+            for size, own in {**every, "all": tallies(trials)[place]}.items():
+                worst = number(own.worst[0].ratio) if own.worst else "–"
+                counts = str(own.rows), str(own.within), percent(own.share), number(own.over), worst
+                rows.append((case, _NAMES[solver], size, *counts, "met" if own.holds else "not met"))
+    return Table(
+        "Calibration",
+        ("case", "solver", "N", "rows", "within", "share", "stated over true", "largest true over stated", "rule"),
+        tuple(rows),
+        "Rows with a true error of more than 1e-9 of the probe's scale, all stations, a closing load once; N is the "
+        "number of links or elements per beam. Stated over true: the median.",
+    )
+
+
+def _worst(found: Calibration) -> Table:
+    rows = []
+    for case, trials in found.by_case().items():
+        size_of = {id(each): trial.sizes[each.solver] for trial in trials for each in trial.ratios}
+        for each in (each for own in tallies(trials) for each in own.worst):
+            row, shares = each.row, (percent(each.true / each.row.scale), percent(each.stated / each.row.scale))
+            where = row.probe.name, f"{row.stage} {row.station:g}"
+            rows.append(
+                (case, _NAMES[each.solver], str(size_of[id(each)]), *where, *shares, number(each.ratio), each.word)
+            )
+    return Table(
+        "The least well stated",
+        ("case", "solver", "N", "probe", "at", "true", "stated", "true over stated", ""),
+        tuple(rows),
+        "True and stated as fractions of the probe's scale.",
+    )
+
+
+def _stated_against_true(found: Calibration) -> Figure:
+    """Stated against true errors of every row, a panel for each solver and a colour for each case."""
+    with canvas(9.6, 5.2) as drawing:
+        panels = drawing.subplots(1, 2, sharex=True, sharey=True)
+        every = [size for trial in found.trials for each in trial.ratios for size in _shares(each)]
+        low, high = 0.5 * min(every), 2.0 * max(every)
+        for axes, solver in zip(panels, SOLVERS, strict=True):
+            for place, (name, trials) in enumerate(found.by_case().items()):
+                points = [_shares(each) for trial in trials for each in trial.ratios if each.solver == solver]
+                colour, label = _COLOURS[place % len(_COLOURS)], name if solver == SOLVERS[0] else None
+                axes.plot(*np.array(points).reshape(-1, 2).T, "o", color=colour, markersize=2.5, alpha=0.6, label=label)
+            axes.plot([low, high], [low, high], "-", color="black", linewidth=1.0)
+            axes.plot([low, high], [LARGEST_MEDIAN * low, LARGEST_MEDIAN * high], "--", color=GREY, linewidth=1.0)
+            axes.set(xscale="log", yscale="log", xlim=(low, high), ylim=(low, high), aspect="equal")
+            axes.set_title(_NAMES[solver], loc="left")
+            axes.set_xlabel("true error / scale")
+        panels[0].set_ylabel("stated error / scale")
+        drawing.legend(loc="outside lower center", ncols=4, markerscale=2.0)
+        caption = (
+            "Each row's stated error against its true one. On the line they are equal; below it the statement is not "
+            "true. Dashed: stated ten times the true one, which the median is not to exceed."
+        )
+        return finished(drawing, "calibration", caption)
+
+
+def _shares(ratio: ErrorRatio) -> tuple[float, float]:
+    """True and stated error over the scale."""
+    return ratio.true / ratio.row.scale, ratio.stated / ratio.row.scale

@@ -1,33 +1,102 @@
-"""Error against N of a question, and the error budget: tables, sentences, figures and documented JSON."""
+"""Error against N of a question, and the error budget: runs, figure and section."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from comparisons.choices import Choices
 from comparisons.crew import Crew
 from comparisons.display_units import at_station
-from comparisons.pairing import Solvers
+from comparisons.pairing import Solvers, exact_or_why
 from comparisons.present.canvas import GREY, LINES, canvas, common_legend, finished, logarithmic
 from comparisons.present.columns import Figure, Section
+from comparisons.sentences import problem_sentences
+from comparisons.stations import at_shown
 from comparisons.store import AnswerMemory
 from comparisons.studies import budget_section as budgets
+from comparisons.studies import convergence_tables as tables
 from comparisons.studies import offset_convergence
 from comparisons.studies.budget import account_of
-from comparisons.studies.convergence_tables import convergence_tables, document, sentences_of, shown_size
-from comparisons.studies.families import Convergence, Family, converged
-from comparisons.thinning import at_shown
-from cprbm_scene import OffsetQuestion, Question
+from comparisons.studies.families import Family, Method, Series, critical_families, probe_families, size
+from cprbm_scene import OffsetQuestion, Question, Scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_LEAST = 1e-13
-"""Errors below this share of a probe's scale are round-off and are not drawn."""
+STANDARD_SIZE = 40
+"""Size of the tables and of the budget, if the family has it."""
 
-_COLOURS = 10  # of matplotlib's standard cycle, C0 to C9
+_LEAST = 1e-13
+"""Share of a probe's scale below which errors are round-off and not drawn."""
+
+_COLOURS = 10  # of Matplotlib's standard cycle, C0 to C9
+
+
+@dataclass(frozen=True, slots=True)
+class Convergence:
+    """A scene at all sizes.
+
+    Attributes:
+        scene: the question; sizes: N, ascending; series: answers of both solvers.
+        families: in the order of stages, stations and probes; of the CPRBM, then of the finite elements.
+        criticals: families of the critical points.
+        exact_absence: why the exact reference covers no station; else empty.
+    """
+
+    scene: Scene
+    sizes: tuple[int, ...]
+    series: tuple[Series, ...]
+    families: tuple[Family, ...]
+    criticals: tuple[Family, ...]
+    exact_absence: str = ""
+
+    @property
+    def completed(self) -> bool:
+        """True if every answer is complete."""
+        return not any(series.why for series in self.series)
+
+    @property
+    def shown(self) -> int:
+        """Size of the tables: the standard size, or else the middle size."""
+        return STANDARD_SIZE if STANDARD_SIZE in self.sizes else self.sizes[(len(self.sizes) - 1) // 2]
+
+    @property
+    def last(self) -> tuple[Family, ...]:
+        """Families at the last station."""
+        stage = self.scene.stages[-1]
+        where = stage.name, stage.stations[-1]
+        return tuple(family for family in self.families if (family.stage, family.station) == where)
+
+
+def converged(scene: Scene, sizes: Sequence[int], choices: Choices, solvers: Solvers, crew: Crew) -> Convergence:
+    """Orders and limits of a scene.
+
+    Args:
+        scene: the question.
+        sizes: N, two or more, ascending.
+        choices: the formulation and the beam theory; sizes and penetration follow from N.
+        solvers: all solvers, the exact reference among them.
+        crew: worker processes.
+
+    Raises:
+        SceneError: a solver refuses the question.
+    """
+    theory = choices.kinematics_of(scene)
+    choices = choices.within(theory)
+    runs: list[tuple[Method, str]] = [("cprbm", choices.formulation), ("fea", theory)]
+    jobs = [(getattr(solvers, method), scene, choices.of_size(n)) for method, _ in runs for n in sizes]
+    known = [] if solvers.exact is None or theory != "bending" else [(solvers.exact, scene, choices)]
+    answers = crew.answers([*jobs, *known])
+    exact, absence = exact_or_why(answers.pop() if known else None)
+    series = []
+    for place, (method, variant) in enumerate(runs):
+        own = dict(zip(sizes, answers[place * len(sizes) :], strict=False))
+        problems = {n: "; ".join(problem_sentences(scene, answer)) for n, answer in own.items()}
+        series.append(Series(method, variant, theory, own, {n: why for n, why in problems.items() if why}))
+    families, criticals = probe_families(scene, series, exact), critical_families(scene, series)
+    return Convergence(scene, tuple(sizes), tuple(series), tuple(families), tuple(criticals), absence)
 
 
 def convergence_section(
@@ -37,10 +106,7 @@ def convergence_section(
 
     Args:
         question: a scene with its shown stations, or an offset question.
-        sizes: two or more ascending N.
-        choices: the formulation and the beam theory.
-        solvers: solvers of all runs.
-        crew: worker processes.
+        sizes, choices, solvers, crew: as of :func:`converged`.
 
     Raises:
         SceneError: a solver refuses the question.
@@ -50,43 +116,39 @@ def convergence_section(
     question = at_shown(question)
     memory = AnswerMemory(pool=crew.pool, solvers=solvers)
     found = converged(question, sizes, choices, solvers, memory)
-    n = shown_size(found)
-    account = account_of(question, replace(choices, links=n, elements=2 * n), memory)
+    account = account_of(question, replace(choices, links=found.shown, elements=2 * found.shown), memory)
+    shown = (*tables.tables_of(found), budgets.budget_table(account))
     return Section(
         "Error against N, and the error budget",
-        (*sentences_of(found), *budgets.sentences_of(account)),
+        (*tables.sentences_of(found), *budgets.sentences_of(account)),
         (*convergence_figures(found), *budgets.budget_figures(account)),
-        (*convergence_tables(found), *filter(lambda table: table.rows, (budgets.budget_table(account),))),
+        tuple(table for table in shown if table.rows),
         "convergence",
-        {**document(found), **budgets.data_of(account)},
+        {**tables.document(found), **budgets.data_of(account)},
         found.completed and not account.missing,
     )
 
 
 def convergence_figures(found: Convergence) -> tuple[Figure, ...]:
     """Errors against N at the last station; no figure without errors."""
-    stage = found.scene.stages[-1]
-    last = [
-        family
-        for family in found.families
-        if (family.stage, family.station) == (stage.name, stage.stations[-1]) and _errors(family)
-    ]
+    last = [family for family in found.last if _errors(family)]
     if not last:
         return ()
-    names = list(dict.fromkeys(family.probe.name for family in last))
+    names = list(dict.fromkeys(family.probe for family in last))
     with canvas(10.4, 5.6) as drawing:
         panels = drawing.subplots(1, 2, sharey=True)
-        for axes, method, title in zip(panels, ("cprbm", "fea"), ("CPRBM", "FEA"), strict=True):
+        for axes, method, count in zip(panels, tables.NAMES, ("links", "elements"), strict=True):
             logarithmic(axes, found.sizes)
             for family in last:
-                if family.series.method == method:
-                    _draw(axes, family, names.index(family.probe.name))
-            axes.set_title(title, loc="left")
-            axes.set_xlabel("links per beam, N" if method == "cprbm" else "elements per beam, N")
+                if family.solver == method:
+                    _draw(axes, family, names.index(family.probe))
+            axes.set_title(tables.NAMES[method], loc="left")
+            axes.set_xlabel(f"{count} per beam, N")
         for axes, series in zip(panels, found.series, strict=True):
             _triangle(axes, found.sizes, series.order)
         panels[0].set_ylabel("distance from the limit / the probe's largest value")
         common_legend(drawing, "right center", 1, 8.5)
+        stage = found.scene.stages[-1]
         caption = (
             f"Distance from the limit at {at_station(found.scene, stage.name, stage.stations[-1])}; above it the "
             "limit's uncertainty, hollow where the uncertainty is larger."
@@ -98,15 +160,15 @@ def convergence_figures(found: Convergence) -> tuple[Figure, ...]:
 
 def _errors(family: Family) -> dict[int, float]:
     """Distance from the limit over the probe's scale by N, without round-off."""
-    found = {n: family.apart(n) for n in family.used}
-    return {n: far / family.scale for n, far in found.items() if far is not None and far > _LEAST * family.scale}
+    errors = {n: far / family.scale for n in family.used if (far := family.apart(n)) and family.scale > 0.0}
+    return {n: error for n, error in errors.items() if error > _LEAST}
 
 
 def _draw(axes: Axes, family: Family, place: int) -> None:
     errors, colour = _errors(family), f"C{place % _COLOURS}"
     line, marker = LINES[place // _COLOURS % len(LINES)]
-    axes.plot(list(errors), list(errors.values()), line, color=colour, linewidth=1.1, label=family.probe.name)
-    unsure = 0.0 if family.found is None else family.size(family.found.uncertainty) / family.scale
+    axes.plot(list(errors), list(errors.values()), line, color=colour, linewidth=1.1, label=family.probe)
+    unsure = 0.0 if family.found is None else size(family.found.uncertainty) / family.scale
     for n, error in errors.items():
         face = colour if error > unsure else "white"
         axes.plot([n], [error], marker, color=colour, markersize=4.5, markerfacecolor=face)
@@ -116,8 +178,8 @@ def _draw(axes: Axes, family: Family, place: int) -> None:
 
 
 def _triangle(axes: Axes, sizes: Sequence[int], order: float) -> None:
-    """The slope of an order, low at the left, below all errors."""
-    left, right = sizes[0], sizes[1]
+    """Draw the slope of an order, low at the left, below all errors."""
+    left, right = sizes[:2]
     low = 3.0 * axes.get_ylim()[0]
     high = low * (right / left) ** order
     axes.plot([left, right, left, left], [high, low, low, high], color=GREY, linewidth=1.0)

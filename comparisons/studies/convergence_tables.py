@@ -1,46 +1,56 @@
-"""Tables, sentences and documented JSON of a scene at a family of sizes."""
+"""Tables, sentences and documented JSON of values at a family of sizes."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from statistics import median
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from comparisons.display_units import at_station, display_unit, distance_text, with_unit
 from comparisons.formats import number, percent, vector
 from comparisons.plain import Plain, plain
 from comparisons.present import json_document
-from comparisons.present.columns import Column, Table, table_of
-from comparisons.studies.critical_families import CriticalFamily, critical_families
-from comparisons.studies.families import STANDARD_AT, Convergence, Family
+from comparisons.present.columns import Table, without_empty
+from comparisons.studies.families import Family, size
+from comparisons.verdict.events import mechanism
 from cprbm_scene import Scene
+
+if TYPE_CHECKING:
+    from comparisons.studies.convergence import Convergence
 
 NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
 
 
 class Pair(NamedTuple):
-    """A family of the CPRBM, and the family of the finite elements in ``bending``."""
+    """Families of both solvers for one question, in one beam theory."""
 
     cprbm: Family
     fea: Family
 
     @property
     def apart(self) -> tuple[float, float] | None:
-        """Norms of the distance of both limits and of the uncertainties, in the unit; None without a limit."""
+        """Norms of the distance of both limits and of their uncertainties, in the unit; None without a limit."""
         one, two = self.cprbm.found, self.fea.found
         if one is None or two is None or one.value.shape != two.value.shape:
             return None
-        return self.cprbm.size(one.value - two.value), self.cprbm.size(one.uncertainty + two.uncertainty)
+        return size(one.value - two.value), size(one.uncertainty + two.uncertainty)
+
+
+def pairs_of(families: Iterable[Family]) -> tuple[Pair, ...]:
+    """Families of the CPRBM beside the families of the finite elements."""
+    by_solver: dict[str, dict[tuple[object, ...], Family]] = {"cprbm": {}, "fea": {}}
+    for family in families:
+        by_solver[family.solver][family.question] = family
+    fea = by_solver["fea"]
+    return tuple(Pair(family, fea[key]) for key, family in by_solver["cprbm"].items() if key in fea)
 
 
 def document(found: Convergence) -> Plain:
     """One case of ``converge``: ``families`` has an entry per solver, probe, component, stage and station."""
+    families = (*found.families, *found.criticals)
     return {
         "case": found.scene.name,
-        "families": [
-            *(entry for family in found.families for entry in _entries(found, family)),
-            *(critical_entry(found.sizes, family) for family in critical_families(found.scene, found.series)),
-        ],
+        "families": [entry for family in families for entry in entries(found.sizes, family)],
         "runs": [
             {"n": n, **json_document.solver(answer), "complaint": series.why.get(n)}
             for series in found.series
@@ -49,246 +59,148 @@ def document(found: Convergence) -> Plain:
     }
 
 
-def _entries(found: Convergence, family: Family) -> Iterable[Plain]:
-    limit = family.found
-    errors = {n: family.error(n) for n in found.sizes}
+def entries(sizes: Sequence[int], family: Family) -> Iterator[Plain]:
+    """Entry of every component of a family; of a critical point with its place and instability."""
+    limit, errors = family.found, {n: family.error(n) for n in sizes}
+    order = None if limit is None else plain(limit.order)
     for place, component in enumerate(family.components):
-        values = [family.values.get(n) for n in found.sizes]
-        yield {
-            "solver": family.series.method,
-            "settings": plain(family.series.settings),
-            "probe": family.probe.name,
+        values = {n: value[place] for n, value in family.values.items() if value.size > place}
+        entry = {
+            "solver": family.solver,
+            "settings": plain(family.settings),
+            "probe": family.probe,
             "component": component,
             "stage": family.stage,
             "station": family.station,
             "unit": family.unit,
-            "n": list(found.sizes),
-            "values": [None if v is None or v.size <= place else plain(float(v[place])) for v in values],
-            "errors": [None if e is None else plain(float(e[place])) for e in errors.values()],
+            "n": list(sizes),
+            "values": [plain(values.get(n)) for n in sizes],
+            "errors": [None if error is None else plain(error[place]) for error in errors.values()],
             "order": plain(family.component_order(place)),
-            "order_assumed": None if limit is None else limit.assumed,
-            "order_of_probe": None if limit is None else plain(limit.order),
-            "orders_of_probe": [plain(order) for order in family.orders],
-            "limit": None if limit is None else plain(float(limit.value[place])),
-            "limit_uncertainty": None if limit is None else plain(float(limit.uncertainty[place])),
+            "order_assumed": None if limit is None else plain(limit.assumed),
+            "order_of_probe": order,
+            "orders_of_probe": plain(family.orders),
+            "limit": None if limit is None else plain(limit.value[place]),
+            "limit_uncertainty": None if limit is None else plain(limit.uncertainty[place]),
             "used": list(family.used),
             "why": family.why or None,
-            "exact": None if family.exact is None else plain(float(family.exact[place])),
+            "exact": None if family.exact is None else plain(family.exact[place]),
             "scale": family.scale,
         }
+        if family.critical:
+            last = family.critical[max(family.critical)]
+            entry |= {"place": family.place, "loss": last.loss.value, "what": last.what or None}
+        yield entry
 
 
-def critical_entry(sizes: Sequence[int], family: CriticalFamily) -> Plain:
-    """Entry of ``families``; the probe is ``critical``, the component the stage's name."""
-    limit = family.found
-    last = family.critical[max(family.critical)]
-    return {
-        "solver": family.series.method,
-        "settings": plain(family.series.settings),
-        "probe": "critical",
-        "component": family.stage,
-        "stage": family.stage,
-        "station": None,
-        "place": family.place,
-        "loss": last.loss.value,
-        "what": last.what or None,
-        "unit": family.unit,
-        "n": list(sizes),
-        "values": [plain(family.critical[n].value) if n in family.critical else None for n in sizes],
-        "errors": [plain(family.error(n)) for n in sizes],
-        "order": None if limit is None else plain(limit.order),
-        "order_assumed": None if limit is None else limit.assumed,
-        "order_of_probe": None if limit is None else plain(limit.order),
-        "orders_of_probe": [plain(order) for order in family.orders],
-        "limit": None if limit is None else plain(float(limit.value[0])),
-        "limit_uncertainty": None if limit is None else plain(float(limit.uncertainty[0])),
-        "used": list(family.used),
-        "why": family.why or None,
-        "exact": None,
-        "scale": family.span,
-    }
-
-
-def convergence_tables(found: Convergence) -> tuple[Table, ...]:
-    """Critical values, limits at the last station, and orders over all stations; tables without rows are left out."""
-    critical = critical_table(found.scene, found.sizes, critical_families(found.scene, found.series))
-    return tuple(table for table in (critical, _limits(found), _orders(found)) if table.rows)
-
-
-def sentences_of(found: Convergence) -> tuple[str, ...]:
+def sentences_of(found: Convergence) -> Iterator[str]:
     """Incomplete runs, and distances of the limits of critical values."""
-    ended = (
-        f"{NAMES[series.method]} ({series.variant}) at N = {n} gave no complete answer: {why}."
-        for series in found.series
-        for n, why in series.why.items()
-    )
-    return (*ended, *_critical_sentences(found.scene, critical_families(found.scene, found.series)))
+    for series in found.series:
+        for n, why in series.why.items():
+            yield f"{NAMES[series.method]} ({series.variant}) at N = {n} gave no complete answer: {why}."
+    for pair in pairs_of(found.criticals):
+        if pair.apart is not None:
+            distance, stated = (distance_text(found.scene, each, pair.cprbm.unit) for each in pair.apart)
+            one, two = map(_mechanism, pair)
+            same = "by the same mechanism" if one == two else "by different mechanisms"
+            yield (
+                f"The limits of the critical value in {pair.cprbm.stage} are {distance} apart in "
+                f"{found.series[0].theory}, where {stated} are stated, {same}: {one} in the CPRBM, {two} in the "
+                "finite elements."
+            )
 
 
-def shown_size(found: Convergence) -> int:
-    """The size in the table: the standard size, or else the middle size."""
-    return STANDARD_AT if STANDARD_AT in found.sizes else found.sizes[(len(found.sizes) - 1) // 2]
+def tables_of(found: Convergence) -> tuple[Table, ...]:
+    """Critical values, limits at the last station, and orders over all stations; tables without rows are left out."""
+    return tuple(table for table in (_criticals(found), _limits(found), _orders(found)) if table.rows)
 
 
-def pairs_of(found: Convergence) -> tuple[Pair, ...]:
-    """The CPRBM's families beside the finite elements'."""
-    other = {_question(family): family for family in found.families if family.series.method == "fea"}
-    return tuple(
-        Pair(family, other[_question(family)])
-        for family in found.families
-        if family.series.method == "cprbm" and _question(family) in other
-    )
+def _criticals(found: Convergence) -> Table:
+    scene, rows = found.scene, []
+    variants = {f"{series.method}": f"{NAMES[series.method]} ({series.variant})" for series in found.series}
+    for at in found.criticals:
+        values = [with_unit(scene, at.critical[n].value, at.unit, 6) if n in at.critical else "–" for n in found.sizes]
+        limit = ("–", "–", "–")
+        if at.found is not None:
+            value, stated = float(at.found.value[0]), float(at.found.uncertainty[0])
+            limit = number(at.found.order), with_unit(scene, value, at.unit, 5), distance_text(scene, stated, at.unit)
+        stage = f"{at.stage}, {at.place + 1}" if at.place else at.stage
+        rows.append((stage, variants[at.solver], _mechanism(at), *values, *limit))
+    headers = ("stage", "solver", "mechanism", *map(str, found.sizes), "order", "limit", "±")
+    note = "Of the load or drive that the stage steps. The order is observed at the three finest sizes that count."
+    return without_empty(Table(f"{scene.title or scene.name}: critical values against N", headers, tuple(rows), note))
+
+
+def _mechanism(family: Family) -> str:
+    """Mechanism of the instability at the finest size."""
+    return mechanism(family.critical[max(family.critical)])
 
 
 def _limits(found: Convergence) -> Table:
-    n, stage, scene = shown_size(found), found.scene.stages[-1], found.scene
-    last = [pair for pair in pairs_of(found) if _question(pair.cprbm)[1:] == (stage.name, stage.stations[-1])]
-
-    def unit(pair: Pair) -> tuple[float, str]:
-        limit = pair.cprbm.found
-        return (1.0, "") if limit is None else display_unit(scene, pair.cprbm.unit, pair.cprbm.size(limit.value))
-
-    def limit(solver: int, header: str) -> list[Column[Pair]]:
-        """Limit and uncertainty of a solver's family."""
-
-        def text(at: Pair) -> str | None:
-            known = at[solver].found
-            return None if known is None else vector(known.value, unit(at)[0])
-
-        def stated(at: Pair) -> str | None:
-            known = at[solver].found
-            return None if known is None else _share(at.cprbm, at[solver].size(known.uncertainty))
-
-        return [Column(header, text), Column("±", stated)]
-
-    columns = [
-        Column[Pair]("probe", lambda at: _place(scene, at.cprbm)),
-        Column("unit", lambda at: unit(at)[1]),
-        Column(
-            f"CPRBM at {n}",
-            lambda at: vector(at.cprbm.values[n], unit(at)[0]) if at.cprbm.found and n in at.cprbm.values else None,
-        ),
-        Column("from its limit", lambda at: _share(at.cprbm, at.cprbm.apart(n))),
-        *limit(0, "CPRBM limit"),
-        *limit(1, "FEA limit"),
-        Column("limits apart", lambda at: at.apart and _share(at.cprbm, at.apart[0])),
-        Column("CPRBM limit from exact", lambda at: _share(at.cprbm, _from_exact(at.cprbm))),
-        Column("no limit because", lambda at: "" if at.cprbm.found else at.cprbm.why),
-    ]
+    scene, stage = found.scene, found.scene.stages[-1]
     note = (
         f"Both solvers in {found.series[0].theory}. Limits by Richardson's extrapolation; fractions of the probe's "
         "largest value in the stage. Stresses at one place."
     )
-    absence = f" No exact values: {found.exact_absence}" if found.exact_absence else ""
-    title = f"{scene.title or scene.name}: limits at {at_station(scene, stage.name, stage.stations[-1])}"
-    return table_of(title, columns, last, note + absence)
+    return without_empty(
+        Table(
+            f"{scene.title or scene.name}: limits at {at_station(scene, stage.name, stage.stations[-1])}",
+            ("probe", "unit", f"CPRBM at {found.shown}", "from its limit", "CPRBM limit", "±", "FEA limit", "±",
+             "limits apart", "CPRBM limit from exact", "no limit because"),
+            tuple(_limit_row(scene, found.shown, pair) for pair in pairs_of(found.last)),
+            note + (f" No exact values: {found.exact_absence}" if found.exact_absence else ""),
+        )
+    )  # fmt: skip
+
+
+def _limit_row(scene: Scene, n: int, pair: Pair) -> tuple[str, ...]:
+    """Cells of a probe: value at N, both limits with their uncertainties, distances, and why there is no limit."""
+    own, place = pair.cprbm, pair.cprbm.components[0]
+    probe = own.probe + (f" at {with_unit(scene, place, 'm', 4)}" if isinstance(place, float) else "")
+    factor, unit = (1.0, "") if own.found is None else display_unit(scene, own.unit, size(own.found.value))
+    value = vector(own.values[n], factor) if own.found and n in own.values else "–"
+    limits = []
+    for family in pair:
+        known = family.found
+        limits += [vector(known.value, factor), _share(own, size(known.uncertainty))] if known else ["–", "–"]
+    off = None if own.found is None or own.exact is None else size(own.found.value - own.exact)
+    apart = _share(own, pair.apart and pair.apart[0])
+    why = "" if own.found else own.why
+    return probe, unit, value, _share(own, own.apart(n)), *limits, apart, _share(own, off), why
+
+
+def _share(family: Family, value: float | None) -> str:
+    """A distance over the scale of a family, in per cent; a dash for None."""
+    return percent(None if value is None or family.scale == 0.0 else value / family.scale)
 
 
 def _orders(found: Convergence) -> Table:
-    n, compared = shown_size(found), dict[str, list[Pair]]()
-    for pair in pairs_of(found):
+    compared, rows = dict[str, list[tuple[Pair, float, float]]](), []
+    for pair in pairs_of(found.families):
         if pair.apart is not None and pair.cprbm.why != "the contact is open":  # an open contact has no limit
-            compared.setdefault(pair.cprbm.probe.name, []).append(pair)
-    worst = {name: max(mine, key=_distance_share) for name, mine in compared.items()}
-    names = [probe.name for probe in found.scene.probes if probe.name in compared]
-
-    def from_limit(name: str) -> str:
-        shares = [apart / at.cprbm.scale for at in compared[name] if (apart := at.cprbm.apart(n)) is not None]
-        return percent(max(shares, default=None))
-
-    def distance(place: int) -> Callable[[str], str | None]:
-        return lambda name: (apart := worst[name].apart) and _share(worst[name].cprbm, apart[place])
-
-    columns = [
-        Column[str]("probe", str),
-        Column("order CPRBM", lambda name: spread([order for at in compared[name] for order in at.cprbm.orders])),
-        Column("order FEA", lambda name: spread([order for at in compared[name] for order in at.fea.orders])),
-        Column(f"CPRBM at {n} from its limit", from_limit),
-        Column("limits apart", distance(0)),
-        Column("stated", distance(1)),
-        Column("at", lambda name: at_station(found.scene, *_question(worst[name].cprbm)[1:])),
-        Column("within", lambda name: _within(compared[name])),
-    ]
-    return table_of(
-        "Orders and limits over all stations",
-        columns,
-        names,
-        "Orders observed at every three consecutive sizes, by the norm of the changes: median, least and largest; a "
-        "change that is round-off or turns back has no order. Distances at their worst.",
-    )
-
-
-def _distance_share(pair: Pair) -> float:
-    """Distance of both limits over the probe's scale."""
-    return 0.0 if pair.apart is None else pair.apart[0] / pair.cprbm.scale
-
-
-def _within(pairs: Sequence[Pair]) -> str:
-    """Number of pairs whose limits are within their uncertainties."""
-    distances = [apart for pair in pairs if (apart := pair.apart) is not None]
-    return f"{sum(far <= stated for far, stated in distances)} of {len(distances)}"
+            compared.setdefault(pair.cprbm.probe, []).append((pair, *pair.apart))
+    for probe in (probe.name for probe in found.scene.probes if probe.name in compared):
+        pairs = [pair for pair, *_ in compared[probe]]
+        (worst, _), distance, stated = max(compared[probe], key=lambda each: each[1] / (each[0].cprbm.scale or 1.0))
+        shares = [far / each.scale for each, _ in pairs if (far := each.apart(found.shown)) is not None]
+        within = sum(apart <= may for _, apart, may in compared[probe])
+        shown = [spread(order for pair in pairs for order in pair[solver].orders) for solver in (0, 1)]
+        where = at_station(found.scene, worst.stage, worst.station or 0.0)
+        sizes = percent(max(shares, default=None)), _share(worst, distance), _share(worst, stated)
+        rows.append((probe, *shown, *sizes, where, f"{within} of {len(pairs)}"))
+    return without_empty(
+        Table(
+            "Orders and limits over all stations",
+            ("probe", "order CPRBM", "order FEA", f"CPRBM at {found.shown} from its limit", "limits apart", "stated",
+             "at", "within"),
+            tuple(rows),
+            "Orders observed at every three consecutive sizes, by the norm of the changes: median, least and largest; "
+            "a change that is round-off or turns back has no order. Distances at their worst.",
+        )
+    )  # fmt: skip
 
 
 def spread(orders: Iterable[float | None]) -> str:
     """Median, least and largest of the known orders."""
     known = [order for order in orders if order is not None]
     return f"{number(median(known))} ({number(min(known), 2)} to {number(max(known), 2)})" if known else "–"
-
-
-def _from_exact(family: Family) -> float | None:
-    if family.exact is None or family.found is None:
-        return None
-    return family.size(family.found.value - family.exact)
-
-
-def _share(family: Family, value: float | None) -> str | None:
-    return None if value is None or family.scale == 0.0 else percent(value / family.scale)
-
-
-def _place(scene: Scene, family: Family) -> str:
-    """Name of the probe, of a stress with its place."""
-    place = family.components[0]
-    at = f" at {with_unit(scene, place, 'm', 4)}" if isinstance(place, float) else ""
-    return f"{family.probe.name}{at}"
-
-
-def _question(family: Family) -> tuple[str, str, float]:
-    return family.probe.name, family.stage, family.station
-
-
-def critical_table(scene: Scene, sizes: Sequence[int], families: Sequence[CriticalFamily]) -> Table:
-    """Critical values against N, and their limits."""
-
-    def at(n: int) -> Column[CriticalFamily]:
-        return Column(
-            str(n), lambda one: with_unit(scene, one.critical[n].value, one.unit, 6) if n in one.critical else None
-        )
-
-    columns = [
-        Column[CriticalFamily]("stage", lambda one: one.stage if one.place == 0 else f"{one.stage}, {one.place + 1}"),
-        Column("solver", lambda one: f"{NAMES[one.series.method]} ({one.series.variant})"),
-        Column("mechanism", lambda one: one.mechanism),
-        *map(at, sizes),
-        Column("order", lambda one: one.found and number(one.found.order)),
-        Column("limit", lambda one: one.found and with_unit(scene, float(one.found.value[0]), one.unit, 5)),
-        Column("±", lambda one: one.found and distance_text(scene, float(one.found.uncertainty[0]), one.unit)),
-    ]
-    note = "Of the load or drive that the stage steps. The order is observed at the three finest sizes that count."
-    return table_of(f"{scene.title or scene.name}: critical values against N", columns, families, note)
-
-
-def _critical_sentences(scene: Scene, families: Sequence[CriticalFamily]) -> Iterable[str]:
-    """Distances of the limits of the CPRBM and of the finite elements."""
-    fea = {(each.stage, each.place): each for each in families if each.series.method == "fea"}
-    for one in families:
-        other = fea.get((one.stage, one.place))
-        if one.series.method != "cprbm" or other is None or one.found is None or other.found is None:
-            continue
-        apart = abs(float(one.found.value[0] - other.found.value[0]))
-        stated = float(one.found.uncertainty[0] + other.found.uncertainty[0])
-        same = "by the same mechanism" if one.mechanism == other.mechanism else "by different mechanisms"
-        yield (
-            f"The limits of the critical value in {one.stage} are {distance_text(scene, apart, one.unit)} apart in "
-            f"{one.series.theory}, where {distance_text(scene, stated, one.unit)} are stated, {same}: {one.mechanism} "
-            f"in the CPRBM, {other.mechanism} in the finite elements."
-        )

@@ -1,46 +1,48 @@
-"""Run times at the discretisations of the paper's Table 1, one solve to the paper's last load in one load.
+"""Run times at the discretisations of the paper's Table 1, in a single load step to the paper's last load.
 
-A cell of the table is a case, a method and a discretisation.  All cells are solved in turn, and then again, so that
-what else the machine does falls on all of them alike; BLAS has one thread.  Each method has solved once before anything
-counts, so that no time holds an import.  A cell that a solver refuses has no time and says why; one that takes longer
-than allowed is not repeated.
+Every number of the table is a cell: a case, a method and a discretisation.  A cell is a method of its own in a
+benchmark session (:mod:`comparisons.bench.running`): the session goes through all cells, and then again, so that other
+work on the machine falls on all cells alike.  Only the first cell of a method is warmed up.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
-import numpy as np
-
 from comparisons import cases
-from comparisons.bench.timing import Method, timed
+from comparisons.bench.contenders import Contender, Run, outcome_of
+from comparisons.bench.measures import at_last_loads
+from comparisons.bench.running import CLOCKS, Plan, Session, Timing
 from comparisons.choices import Choices, Count
-from comparisons.crew import Solver
+from comparisons.formats import number
 from comparisons.pairing import Solvers
-from comparisons.studies.last_loads import at_last_loads
-from cprbm_scene import Answer, Ending, Scene, SceneError
+from comparisons.plain import plain
+from comparisons.present.canvas import BLUE, RED, canvas, finished
+from comparisons.present.columns import Figure, Section, Table
+from cprbm_scene import Scene
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.threads import one_thread
 
 THEIR_MACHINE = "Intel Core i5-8500, MATLAB R2018b for the CPRBM, ANSYS 19.1 for the finite elements"
 
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """One number of the table: what is solved, how finely, and the paper's seconds where it has them."""
+    """A number of the table: case, method, discretisation, and the paper's seconds; None without a number."""
 
     case: str
-    method: Method
+    method: Literal["cprbm", "fea"]
     size: Count
     theirs: float | None
     contact: bool = True
-    formulation: Literal["auto", "paper"] | None = None
+    formulation: Literal["auto", "paper"] = "auto"
 
     @property
     def label(self) -> str:
-        """What is solved, and by what."""
+        """Method, and whether with contact."""
         if self.method == "fea":
             return "FEA, contact" if self.contact else "FEA without contact"
         return f"CPRBM {self.formulation}"
@@ -50,13 +52,16 @@ class Cell:
         """The discretisation, as the paper writes it."""
         return f"({', '.join(map(str, self.size.values()))})" if isinstance(self.size, Mapping) else str(self.size)
 
+    @property
+    def name(self) -> str:
+        """Case, method and discretisation."""
+        return f"{self.case}, {self.label}, {self.sized}"
+
 
 def _cprbm(case: str, first: int, second: int, theirs: float | None) -> tuple[Cell, ...]:
     size = frozendict({"beam1": first, "beam2": second})
-    return tuple(Cell(case, "cprbm", size, theirs, formulation=name) for name in _FORMULATIONS)
+    return Cell(case, "cprbm", size, theirs), Cell(case, "cprbm", size, theirs, formulation="paper")
 
-
-_FORMULATIONS: tuple[Literal["auto", "paper"], ...] = ("auto", "paper")
 
 CELLS = (
     Cell("hinge", "fea", 80, 4.0),
@@ -74,72 +79,8 @@ CELLS = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Times:
-    """A cell's solves so far.
-
-    Attributes:
-        seconds: of each.
-        ending: of the last; None before there is one, and where the solver refuses.
-        why: why there is no time, or no whole answer; empty if there is.
-    """
-
-    seconds: tuple[float, ...] = ()
-    ending: Ending | None = None
-    why: str = ""
-
-    @property
-    def median(self) -> float | None:
-        """Median, s."""
-        return float(np.median(self.seconds)) if self.seconds else None
-
-    @property
-    def spread(self) -> float | None:
-        """Distance of the quartiles, s."""
-        return float(np.subtract(*np.percentile(self.seconds, (75.0, 25.0)))) if self.seconds else None
-
-
-@dataclass(frozen=True, slots=True)
-class TimeTable:
-    """All times so far, by cell, and the machine they were measured on."""
-
-    machine: Mapping[str, str | int]
-    times: Mapping[Cell, Times]
-
-    @property
-    def unfinished(self) -> bool:
-        """Whether a solve gave no whole answer."""
-        return any(times.ending not in (None, Ending.COMPLETED) for times in self.times.values())
-
-
-def begun(solvers: Solvers, machine: Mapping[str, str | int], cells: tuple[Cell, ...] = CELLS) -> TimeTable:
-    """A table without times; each of the solvers has been loaded and has solved once."""
-    for method in dict.fromkeys(cell.method for cell in cells):
-        _solve(next(cell for cell in cells if cell.method == method), solvers)
-    return TimeTable(machine, frozendict({cell: Times() for cell in cells}))
-
-
-def runs(repeat: int, cells: tuple[Cell, ...] = CELLS) -> tuple[Cell, ...]:
-    """The cells in the order in which they are solved: all of them, ``repeat`` times."""
-    return repeat * cells
-
-
-def solved(table: TimeTable, cell: Cell, solvers: Solvers, at_most: float) -> TimeTable:
-    """The table after one more solve of a cell; the same where the cell is refused or takes longer than ``at_most``."""
-    before = table.times[cell]
-    if (before.why and not before.seconds) or max(before.seconds, default=0.0) > at_most:
-        return table
-    outcome = _solve(cell, solvers)
-    if isinstance(outcome, str):
-        after = Times(why=outcome)
-    else:
-        seconds, answer = outcome
-        after = Times((*before.seconds, seconds), answer.ending, "" if answer.completed else answer.sentence)
-    return replace(table, times=frozendict({**table.times, cell: after}))
-
-
 def question(cell: Cell) -> Scene:
-    """A cell's scene: every stage's last station alone, and without contact where the cell has none."""
+    """A cell's scene: the last station of every stage, and no contact where the cell has none."""
     scene = at_last_loads(cases.opened(cell.case)).model_copy(update={"claims": ()})
     if cell.contact:
         return scene
@@ -147,14 +88,110 @@ def question(cell: Cell) -> Scene:
     return scene.model_copy(update={"contacts": frozendict(), "probes": probes})
 
 
-def _solve(cell: Cell, solvers: Solvers) -> tuple[float, Answer] | str:
-    """Seconds and answer of one solve, or why it is refused."""
-    solver: Solver = solvers.cprbm if cell.method == "cprbm" else solvers.fea
-    choices = Choices(elements=cell.size) if cell.method == "fea" else Choices(links=cell.size)
-    if cell.formulation is not None:
-        choices = replace(choices, formulation=cell.formulation)
-    try:
-        with one_thread():
-            return timed(solver, question(cell), choices)
-    except SceneError as error:
-        return "; ".join(f"{each.key}: found {each.found}; allowed: {each.allowed}" for each in error.mistakes)
+def session(
+    solvers: Solvers, machine: Mapping[str, str | int], repeat: int, at_most: float, cells: tuple[Cell, ...] = CELLS
+) -> Session:
+    """A benchmark session with all cells, each ``repeat`` times; no cell is repeated after ``at_most`` seconds."""
+    first = {cell.method: cell.name for cell in reversed(cells)}
+    plan = Plan({cell.name: (cell.size,) for cell in cells}, "shear", repeat, at_most)
+    return Session(
+        question(cells[0]),
+        plan,
+        tuple(_contender(cell, solvers) for cell in cells),
+        machine,
+        CLOCKS[plan.clock],
+        largest={cell.name: math.inf for cell in cells if cell.name not in first.values()},
+    )
+
+
+def _contender(cell: Cell, solvers: Solvers) -> Contender:
+    """A cell as a method on the scene of the cell."""
+    solver, asked = (solvers.cprbm if cell.method == "cprbm" else solvers.fea), question(cell)
+    choices = Choices(links=cell.size, elements=cell.size, formulation=cell.formulation)
+    run = Run(lambda: partial(solver, asked, choices), outcome_of)
+    return Contender(cell.name, cell.method, cell.formulation, cell.label, lambda scene, count, at_most: run)
+
+
+def result_of(measured: Session, cells: tuple[Cell, ...] = CELLS) -> Section:
+    """Result of the measurements so far."""
+    timings = {each.contender.name: each for each in measured.timings.values()}
+    times = {cell: timings[cell.name] for cell in cells if cell.name in timings}
+    taken = {cell: timing for cell, timing in times.items() if timing.seconds}
+    machine = measured.machine
+    table = Table(
+        "Seconds to the last load, in one load",
+        ("case", "method", "elements or links", "ours", "spread", "repeats", "theirs", "theirs / ours", "ended"),
+        tuple(_row(cell, times.get(cell)) for cell in cells),
+        "Ours: median of whole answers, set-up included, and the distance of the quartiles; finite elements in shear. "
+        f"Ours on {machine['cpu']}, BLAS on one thread, Python {machine['python']}, NumPy {machine['numpy']}, SciPy "
+        f"{machine['scipy']}, scikit-fem {machine['scikit-fem']}; theirs on {THEIR_MACHINE}.",
+    )
+    sentences = (
+        "Times of different programs on different machines: the paper's CPRBM is interpreted code round a general "
+        "optimiser, its finite elements are a commercial program with all that it does besides. What can be compared "
+        "is how the times of one program go with the discretisation and with contact.",
+        "The table gives the gripper's links as 40 and 30 where section 3.3 has 30 and 40; both are run.",
+        *(
+            f"{cell.name}: {'not whole' if cell in taken else 'refused'}. {timing.why}."
+            for cell, timing in times.items()
+            if timing.why
+        ),
+    )
+    data = {
+        "study": "table1",
+        "machine": dict(machine),
+        "paper_machine": THEIR_MACHINE,
+        "rows": [_record(cell, times.get(cell)) for cell in cells],
+    }
+    complete = all(timing.outcome.completed for timing in taken.values())
+    figures = (_run_times(cells, taken),) if taken else ()
+    return Section("Run times, beside Table 1 of the paper", sentences, figures, (table,), "table1", data, complete)
+
+
+def _record(cell: Cell, timing: Timing | None) -> dict[str, object]:
+    """Documented JSON of a cell."""
+    quartiles = timing.quartiles("both") if timing and timing.seconds else None
+    return {
+        "case": cell.case,
+        "method": cell.method,
+        "formulation": None if cell.method == "fea" else cell.formulation,
+        "contact": cell.contact,
+        "size": plain(cell.size),
+        "seconds": quartiles and quartiles[1],
+        "spread": quartiles and quartiles[2] - quartiles[0],
+        "repeats": len(timing.seconds) if timing else 0,
+        "ended": timing.outcome.ended if timing and quartiles else None,
+        "why": timing.why or None if timing else None,
+        "paper_seconds": cell.theirs,
+    }
+
+
+def _row(cell: Cell, timing: Timing | None) -> tuple[str, ...]:
+    """Cells of a row of the table."""
+    low, ours, high = timing.quartiles("both") if timing and timing.seconds else (math.nan,) * 3
+    ended = timing.outcome.ended or "refused" if timing else "not begun"
+    ratio = number(cell.theirs / ours) if cell.theirs and ours else "–"
+    repeats = str(len(timing.seconds)) if timing else "0"
+    return (cell.case, cell.label, cell.sized, number(ours), number(high - low, 2), repeats, number(cell.theirs), ratio,
+            ended)  # fmt: skip
+
+
+def _run_times(cells: tuple[Cell, ...], taken: Mapping[Cell, Timing]) -> Figure:
+    """Our median times with their quartiles and the paper's, a line for each cell."""
+    with canvas(7.2, 1.2 + 0.26 * len(cells)) as drawing:
+        axes = drawing.add_subplot()
+        for cell, timing in taken.items():
+            low, middle, high = timing.quartiles("both")
+            bars = [[middle - low], [high - middle]]
+            axes.errorbar(middle, cells.index(cell), xerr=bars, fmt="o", color=BLUE, markersize=5, capsize=3)
+        theirs = {place: cell.theirs for place, cell in enumerate(cells) if cell.theirs is not None}
+        axes.plot(list(theirs.values()), list(theirs), "x", color=RED, markersize=6, label="the paper's")
+        axes.plot([], [], "o", color=BLUE, label="ours")
+        axes.set_yticks(range(len(cells)), [cell.name for cell in cells])
+        axes.invert_yaxis()
+        axes.set_xscale("log")
+        axes.grid(visible=True, which="major", axis="x", color="#e4e4e4", linewidth=0.6)
+        axes.set_xlabel("seconds")
+        drawing.legend(loc="outside upper right", ncols=2)
+        caption = "Seconds to the last load: ours as medians with the quartiles, and the paper's, on another machine."
+        return finished(drawing, "table1", caption)

@@ -9,7 +9,7 @@ uncertain.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -52,37 +52,38 @@ def limits_of(scene: Scene, answers: Mapping[int, Answer]) -> Limits:
                 uncertainties[station.stage, station.value, probe.name] = stated
         # limits belong to no state: no forces are in balance with them
         stations.append(replace(station, values=frozendict(values), beams={}, forces=PointForces()))
-    probes = tuple(probe.name for probe in scene.probes if probe.name in names)
     answer = replace(fine, stations=tuple(stations), seconds=sum(each.seconds for each in answers.values()))
-    if probes:
-        settings = frozendict({**fine.settings, "extrapolated_from": [n // 2, n]})
-        answer = replace(answer, settings=settings, notes=(*fine.notes, _note(n, probes)))
+    if names:
+        answer = replace(
+            answer,
+            settings=frozendict({**fine.settings, "extrapolated_from": [n // 2, n]}),
+            notes=(
+                *fine.notes,
+                f"Extrapolated from N = {n // 2}, {n}: {', '.join(sorted(names))}; all other values, shapes and "
+                f"certificates are of N = {n}.",
+            ),
+        )
+    probes = tuple(probe.name for probe in scene.probes if probe.name in names)
     return Limits(answer, answers[n // 2], frozendict(uncertainties), probes)
-
-
-def _note(n: int, probes: Collection[str]) -> str:
-    return (
-        f"Extrapolated from N = {n // 2}, {n}: {', '.join(sorted(probes))}; all other values, shapes and certificates "
-        f"are of N = {n}."
-    )
 
 
 def _value(probe: Probe, by_size: Mapping[int, StationAnswer]) -> tuple[Array, Error | None, bool]:
     """Value (k,) at a station, its uncertainty (None without a law), and whether the value is a limit."""
-    n = max(by_size)
-    value = by_size[n].values[probe.name]
-    sizes = [size for size, station in by_size.items() if _one_law(probe, station, by_size[n])]
-    if value.size == 0 or n // 2 not in sizes:
+    fine = by_size[n := max(by_size)]
+    value = fine.values[probe.name]
+    values = {
+        size: station.values[probe.name]
+        for size, station in by_size.items()
+        if station.branch == fine.branch
+        and station.touching.keys() == fine.touching.keys()
+        and station.values[probe.name].shape == value.shape
+    }
+    if value.size == 0 or n // 2 not in values:
         return value, None, False
-    values = [by_size[size].values[probe.name] for size in sizes]
-    own, found = error(sizes, values, at=len(sizes) - 1), limit(sizes, values)
+    sizes, series = list(values), list(values.values())
+    own, found = error(sizes, series, at=len(sizes) - 1), limit(sizes, series)
     ordered = probe.quantity != "ends" or bool(np.all(np.diff(found.value) >= 0.0))
     surer = len(sizes) < 3 or found.uncertainty.sum() <= (own.even + own.uneven).sum()  # two grids show no order
     if not (ordered and surer):
         return value, own, False
     return frozen_array(found.value), Error(found.uncertainty, np.zeros_like(found.uncertainty)), True
-
-
-def _one_law(probe: Probe, station: StationAnswer, fine: StationAnswer) -> bool:
-    alike = station.branch == fine.branch and station.touching.keys() == fine.touching.keys()
-    return alike and station.values[probe.name].shape == fine.values[probe.name].shape

@@ -12,8 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from comparisons.quantities import COMPONENTS
-from comparisons.stages import begins_at, span_of
-from comparisons.stations import station_of
+from comparisons.stations import begins_at, span_of, station_of
 from cprbm_scene import Answer, Ending, Probe, Scene, StationAnswer
 from cprbm_scene.statement import STRESSES
 

@@ -6,7 +6,7 @@ symbol  meaning
 λ_c     load of an event in the CPRBM, λ_f in the finite elements, λ_o in the CPRBM in the other theory
 U       stated uncertainty of λ_c − λ_f (:mod:`comparisons.verdict.bounds`)
 θ       step of theory |λ_o − λ_c|; infinite where the CPRBM has no such critical point in the other theory
-T       tolerance of an event on the load axis (:func:`comparisons.stages.event_tolerance`)
+T       tolerance of an event on the load axis (:func:`comparisons.stations.event_tolerance`)
 W       ``verdict_limit`` of the scene times the span of the stage
 ======  ==========================================================================================
 
@@ -31,7 +31,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from comparisons.quantities import load_unit
-from comparisons.stages import event_tolerance, span_of
+from comparisons.stations import event_tolerance, span_of
 from comparisons.verdict.bounds import Bounds, bounds_of
 from comparisons.verdict.completeness import ends_at_critical
 from comparisons.verdict.runs import SOLVERS

@@ -8,7 +8,7 @@ each contact, active or not.  A part may differ between the runs:
 * If runs of one solver disagree, the part is *unsettled* as well.
 * In all other cases the part is *contradictory*.
 
-A station within T of a critical point (:func:`comparisons.stages.event_tolerance`) also lies between events: beside a
+A station within T of a critical point (:func:`comparisons.stations.event_tolerance`) also lies between events: beside a
 fold the difference grows with the square root of the distance.  Runs on mirror images behind a bifurcation are
 unsettled.
 """
@@ -22,7 +22,7 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
-from comparisons.stages import begins_at, event_tolerance
+from comparisons.stations import begins_at, event_tolerance
 from comparisons.verdict.completeness import Where
 from comparisons.verdict.events import disagree_within_a_solver
 from comparisons.verdict.point_forces import active_contacts

@@ -1,14 +1,17 @@
 """Compilation of kernels by Numba.
 
 The machine code is stored beside the module or in the user's cache.  Where neither can be written, every process
-compiles anew.  With the environment variable ``NUMBA_DISABLE_JIT=1`` the same functions are interpreted.
-An installation without stored machine code compiles at the first solve, and says so once.
+compiles anew.  A kernel contains called kernels of other modules, but Numba looks at the kernel's own module
+alone: here a change of any module with kernels makes all stored machine code out of date.  With the environment
+variable ``NUMBA_DISABLE_JIT=1`` the same functions are interpreted.  An installation without stored machine code
+compiles at the first solve, and says so once.
 """
 
 from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from pathlib import Path
 from typing import TypeVar, cast
 
 from numba import njit
@@ -18,6 +21,12 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 LOGGER = logging.getLogger("cprbm.compiled")
 """Without handlers, Python prints warnings on standard error."""
+
+
+PACKAGES = ("chain", "contact", "equilibrium", "paper")
+FILES = [path.stat() for package in PACKAGES for path in Path(__file__).parents[1].glob(f"{package}/*.py")]
+STAMP = max(file.st_mtime_ns for file in FILES), sum(file.st_size for file in FILES)
+"""Latest time, and size, of the modules with kernels."""
 
 
 class Compilation(Listener):
@@ -51,6 +60,9 @@ def compiled(function: Function) -> Function:
     """The function as machine code, with IEEE's results of divisions by zero."""
     try:
         kernel = njit(cache=True, error_model="numpy")(function)
+        stored = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
+        if stored is not None:
+            stored._source_stamp = STAMP
     except RuntimeError:
         COMPILATION.stored = False
         kernel = njit(error_model="numpy")(function)

@@ -94,11 +94,12 @@ def _body_pins(m: Mechanism) -> Iterator[Row]:
 
 def _drives(m: Mechanism) -> Iterator[Row]:
     for name, drive in m.scene.drives.items():
+        driven = m.scene.holds(drive, m.scene.stages[0].name)
         if isinstance(drive, DisplacementDrive):
             form = m.displacement(drive.point, unit_direction(drive.direction))
-            yield Row(name, form, unit=1.0 / m.units.length)
+            yield Row(name, form, driven=driven, unit=1.0 / m.units.length)
         else:
-            yield Row(name, m.rotation(drive.body), unit=1.0)
+            yield Row(name, m.rotation(drive.body), driven=driven, unit=1.0)
 
 
 def _loads(m: Mechanism) -> Iterator[Row]:

@@ -44,7 +44,7 @@ from cprbm.continuation.critical import (
 from cprbm.continuation.descent import descend
 from cprbm.continuation.jumps import jumped
 from cprbm.continuation.limits import StopChange, changed, first_event
-from cprbm.continuation.path import Reached, Way, turned
+from cprbm.continuation.path import Reached, Way, energy_before, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.contact_set import NotConvergedError
 from cprbm.equilibrium.solving import Solved, equilibrium
@@ -86,12 +86,16 @@ class StepError(Exception):
 
 @dataclass(frozen=True, eq=False)
 class Passed:
-    """A critical point on the way, ``value`` and uncertainty (SI), and the minimum after the descent."""
+    """A critical point on the way, ``value`` and uncertainty (SI), and the minimum after the descent.
+
+    ``after`` is the energy of the minimum, in units, less the work of the stepped load or drive since the point.
+    """
 
     point: CriticalPoint
     value: float
     width: float
-    landed: Solved | None
+    landed: Solved | None = None
+    after: float | None = None
 
 
 class ContactEvent(NamedTuple):
@@ -298,7 +302,7 @@ class Driver:
         """
         passed = partial(Passed, point, way.value(point.t), abs(way.value(point.width) - way.value(0.0)))
         if beyond == "stop" or (beyond is None and point.has_two_ways) or len(self.passed) >= ENDS:
-            self.passed.append(passed(None))
+            self.passed.append(passed())
             raise StepError(Ending.BRANCH_ENDS, self._told(way, point))
         furthest = max(point.t, self.reached) + 10.0 * point.width
         for ahead in AHEAD:
@@ -307,11 +311,11 @@ class Driver:
             descent = partial(descend, self.system, point.start, point.curvature, target, self.acting)
             landed = self._landed(descent, point, beside=beyond is None)
             if landed is not None:
-                self.passed.append(passed(landed))
+                self.passed.append(passed(landed, energy_before(landed, self._held(way.change), t - point.t)))
                 self._note(way, t, pressing_names(landed), opens=False)
                 self.solved, self.reached = landed, t
                 return [Reached(t, landed)]
-        self.passed.append(passed(None))
+        self.passed.append(passed())
         if beyond == "jump":
             raise StepError(Ending.STEP_TOO_SMALL, f"no minimum found to which {self._told(way, point)} leads")
         raise StepError(Ending.BRANCH_ENDS, self._told(way, point))

@@ -102,6 +102,12 @@ def power_rate(solved: Solved, change: Array, rate: Array) -> float:
     return float(slope @ rate - (change - forced) @ rate[system.rows.first :] - hidden @ system.hidden @ hidden)
 
 
+def energy_before(solved: Solved, change: Array, part: float) -> float:
+    """Π at a ``part`` of the way before a state on the same branch, by Taylor's series."""
+    rate = power_rate(solved, change, tangent(solved, change))
+    return potential(solved.system, solved.state) - part * power(solved, change) + 0.5 * part**2 * rate
+
+
 def turned(before: Solved, after: Solved) -> float:
     """Largest turn of a link or a body between two states, rad."""
     system = before.system

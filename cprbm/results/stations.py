@@ -8,10 +8,12 @@ from dataclasses import dataclass, field, replace
 
 from cprbm.chain import add_rows, mechanism_of
 from cprbm.contact import contact_geometry
-from cprbm.continuation.assembly import assembled, landing_rows
+from cprbm.continuation.assembly import assembled, landing_rows, without_repeated
 from cprbm.continuation.driver import ContactEvent, Driver, Passed, StepError
 from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium.certificate import certify
+from cprbm.equilibrium.contact_set import NotConvergedError
+from cprbm.equilibrium.solving import equilibrium
 from cprbm.equilibrium.system import System, system_of
 from cprbm.paper.contacts import paper_geometry, refuse_contacts
 from cprbm.paper.inspection import Inspection
@@ -125,25 +127,46 @@ class Run:
                     return failure.ending, f"{failure.ending.value}: {failure}; {last}"
         return Ending.COMPLETED, Ending.COMPLETED.value
 
+    def _begin(self, driver: Driver, stage: Stage) -> None:
+        """Hold the drives of a beginning stage at the present values.
+
+        Raises:
+            StepError: the drives contradict other rows.
+        """
+        m, state = self.system.mechanism, driver.solved.state
+        begun = [name for name, drive in self.scene.drives.items() if drive.begins == stage.name]
+        driven, target = state.driven.copy(), state.target.copy()
+        for name in set(begun) - self.values.keys():
+            row = m.row(name)
+            driven[row], target[row] = True, driver.solved.values[row]
+            self.values[name] = float(target[row]) / m.rows[row].unit
+        held = without_repeated(self.system, replace(state, driven=driven, target=target))
+        try:
+            driver.solved = equilibrium(self.system, held, self.settings.iterations)
+        except NotConvergedError as failure:
+            raise StepError(Ending.STEP_TOO_SMALL, f"no equilibrium with {' and '.join(begun)}: {failure}") from failure
+
     def _go(self, driver: Driver, stage: Stage, station: float) -> None:
         """Follow the path to a station and add the answer.
 
         Raises:
             StepError: the station was not reached, or its certificate does not hold.
         """
-        row = self.system.mechanism.row(stage.steps)
-        unit = self.system.mechanism.rows[row].unit
+        if any(drive.begins == stage.name and name not in self.values for name, drive in self.scene.drives.items()):
+            self._begin(driver, stage)
+        mechanism, names = self.system.mechanism, {stage.steps, *stage.together}
         begin = driver.solved.state.target
         before = self.values.get(stage.steps, 0.0)
         end = begin.copy()
-        end[row] = station * unit
+        for row in map(mechanism.row, names):
+            end[row] = station * mechanism.rows[row].unit
         driver.spent = 0
         try:
             driver.follow(Way(begin, end, (before, station), stage.steps), stage.beyond)
         finally:
             self._note(stage, driver.passed)
             self._note_contacts(stage.name, driver.events)
-        self.values[stage.steps] = station
+        self.values |= dict.fromkeys(names, station)
         certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent, driver.acting)
         if ending is not Ending.COMPLETED:
             raise StepError(ending, certificate.failures[0])
@@ -171,7 +194,7 @@ class Run:
                 curvature=point.curvature,
                 left=point.left,
                 energy=potential(system, point.last.state) * unit,
-                after=None if landed is None else potential(system, landed.state) * unit,
+                after=None if each.after is None else each.after * unit,
             )
             if landed is not None and stage.beyond is None:
                 self.gone_over.append(GoneOver(critical, turned(point.last, landed)))

@@ -16,7 +16,7 @@ from benchmarks.peers.kkt import stationarity
 from benchmarks.peers.method import discretised
 from benchmarks.peers.solving import LATE, Solved
 from comparisons import cases
-from comparisons.bench.question import asked
+from comparisons.bench.measures import asked
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer
 from cprbm.chain import add_rows, mechanism_of, row_values, strain_energy

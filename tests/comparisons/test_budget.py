@@ -1,6 +1,7 @@
 """Error budgets of made-up answers whose parts are known, and what is told of them."""
 
 import json
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from comparisons.plain import text_of
 from comparisons.store import AnswerMemory
 from comparisons.studies.budget import Budget, account_of
 from comparisons.studies.budget_section import LOOKS, budget_figures, budget_table, data_of, sentences_of
+from comparisons.studies.curved_beam import inner_edge_factor
 from cprbm_scene import Ending, Stage
 from tests.verdict.made_up import MadeUp
 
@@ -41,7 +43,7 @@ def test_each_part_is_the_planted_one(hinge):
         "elements": sign * 8e-3 / 4.0,
         "penalty": -sign * 5e-4,
     }
-    for name, part in found.parts.by_name().items():
+    for name, part in found.parts.items():
         assert part == pytest.approx(rotation * expected[name], rel=1e-9, abs=1e-15), name
     assert found.paper == pytest.approx(sign * rotation * 3e-3 / 1.001, rel=1e-9)
     assert found.off_line < 1e-15
@@ -52,8 +54,8 @@ def test_where_paper_was_chosen_the_contact_is_a_part(hinge):
     found = budget_at(hinge, solvers, Choices(formulation="paper"))
     rotation = 0.9 * LOAD
     assert found.row.difference == pytest.approx(rotation * 0.007, rel=1e-9)
-    assert found.parts.contact == found.paper == pytest.approx(rotation * 3e-3, rel=1e-9)
-    assert found.parts.links == pytest.approx(rotation * 4e-3, rel=1e-9)
+    assert found.parts["contact"] == found.paper == pytest.approx(rotation * 3e-3, rel=1e-9)
+    assert found.parts["links"] == pytest.approx(rotation * 4e-3, rel=1e-9)
 
 
 @pytest.mark.parametrize("formulation", ["auto", "paper"])
@@ -62,22 +64,22 @@ def test_the_parts_sum_to_the_difference(hinge, formulation):
     budgets = account_of(hinge, Choices(formulation=formulation), AnswerMemory(solvers=solvers)).budgets
     assert len(budgets) > 100
     for each in budgets:
-        assert sum(each.parts.by_name().values()) == pytest.approx(each.row.difference, rel=1e-9, abs=1e-18)
+        assert sum(each.parts.values()) == pytest.approx(each.row.difference, rel=1e-9, abs=1e-18)
 
 
 @pytest.mark.parametrize("theory", ["bending", "stretch", "shear"])
 def test_all_runs_of_a_budget_have_one_theory(hinge, right, theory):
     """The made-up solvers' limits are equal in every theory."""
     found = budget_at(hinge, right, Choices(theory=theory))
-    assert abs(found.parts.rest) < 1e-12
-    assert sum(found.parts.by_name().values()) == pytest.approx(found.row.difference, rel=1e-9)
+    assert abs(found.parts["rest"]) < 1e-12
+    assert sum(found.parts.values()) == pytest.approx(found.row.difference, rel=1e-9)
 
 
 def test_no_difference_has_no_parts(hinge):
     same = Solvers(MadeUp("cprbm", 0.0), MadeUp("fea", 0.0))
     found = budget_at(hinge, same, Choices())
     assert found.row.difference == 0.0
-    assert set(found.parts.by_name().values()) == {0.0}
+    assert set(found.parts.values()) == {0.0}
     assert found.all_parts == 0.0
 
 
@@ -86,8 +88,8 @@ def test_parts_that_cancel_are_told_along_the_value(hinge):
     same = Solvers(MadeUp("cprbm", 2e-3), MadeUp("fea", 8e-3))
     found = budget_at(hinge, same, Choices())
     assert found.row.difference == 0.0
-    assert found.parts.links == pytest.approx(0.9 * LOAD * 2e-3, rel=1e-9)
-    assert found.parts.elements == pytest.approx(-found.parts.links, rel=1e-9)
+    assert found.parts["links"] == pytest.approx(0.9 * LOAD * 2e-3, rel=1e-9)
+    assert found.parts["elements"] == pytest.approx(-found.parts["links"], rel=1e-9)
 
 
 def test_an_open_contact_has_no_budget(hinge, right):
@@ -104,7 +106,7 @@ def test_a_penalty_that_does_not_go_with_the_penetration_is_off_the_line(hinge, 
 
     found = budget_at(hinge, Solvers(right.cprbm, uneven))
     assert found.off_line == pytest.approx(0.9 * LOAD * 1e-3, rel=1e-9)
-    assert abs(found.parts.penalty) == pytest.approx(0.9 * LOAD * 1e-3, rel=1e-9)
+    assert abs(found.parts["penalty"]) == pytest.approx(0.9 * LOAD * 1e-3, rel=1e-9)
 
 
 def test_a_change_with_the_penetration_that_follows_no_law_spoils_no_limit(hinge, right):
@@ -115,7 +117,7 @@ def test_a_change_with_the_penetration_that_follows_no_law_spoils_no_limit(hinge
         return MadeUp("fea", 0.0, stiffness=1.0 / 1.001 if tighter else 1.0)(scene, choices)
 
     found = budget_at(hinge, Solvers(MadeUp("cprbm", 0.0), restless))
-    assert abs(found.parts.rest) < 1e-12
+    assert abs(found.parts["rest"]) < 1e-12
     assert found.rest_uncertainty == pytest.approx(0.9 * LOAD * 1e-3 / 3.0, rel=2e-2)
 
 
@@ -217,9 +219,9 @@ def test_the_picture_shows_every_part_that_there_is(hinge, right):
     (again,) = budget_figures(account)
     assert again.svg == picture.svg
     for name, (colour, _) in LOOKS.items():
-        shown = any(getattr(each.parts, name) != 0.0 for each in account.budgets)
+        shown = any(each.parts[name] != 0.0 for each in account.budgets)
         assert (colour.encode() in picture.svg) == shown or name == "contact", name
-    assert not any(each.parts.contact for each in account.budgets)
+    assert not any(each.parts["contact"] for each in account.budgets)
 
 
 def test_a_case_without_differences_has_no_picture(hinge):
@@ -251,3 +253,40 @@ def test_converge_shows_the_budget_and_writes_its_figure(right, tmp_path, capsys
     assert "Error budget at load 0.67 N·m with 40 links and 80 elements per beam" in capsys.readouterr().out
     assert (tmp_path / "hinge" / "budget.svg").read_bytes().startswith(b"<?xml")
     assert "Error budget" in (tmp_path / "index.html").read_text(encoding="utf-8")
+
+
+# -- The curved beam's inner edge
+
+
+def test_the_inner_edge_factor_is_the_quotient_of_the_two_stresses():
+    """σ_i = M (r_n − r_i)/(A e r_i) and 6 M/(w t²), with R = M = w = 1."""
+    for t in (0.02, 0.08, 0.1999, 0.2001, 0.5, 1.0, 1.9):
+        r_i, r_o = 1.0 - 0.5 * t, 1.0 + 0.5 * t
+        r_n = t / math.log(r_o / r_i)
+        curved = (r_n - r_i) / (t * (1.0 - r_n) * r_i)
+        # where the beam is slender, 1 − r_n loses digits here
+        assert inner_edge_factor(np.array([t]))[0] == pytest.approx(curved / (6.0 / t**2), rel=1e-13 / t**2), t
+
+
+def test_the_inner_edge_factor_is_of_sections_that_stay_plane():
+    """Winkler's assumption and no more: ε = a + b/r without a force, its moment about R = 1 being 1, by quadrature."""
+    points, weights = np.polynomial.legendre.leggauss(40)
+    for bentness in (0.08, 1.0):
+        r = 1.0 + 0.5 * bentness * points
+        dA = 0.5 * bentness * weights
+        force = [np.sum(dA), np.sum(dA / r)]
+        moment = [np.sum(dA * (r - 1.0)), np.sum(dA * (r - 1.0) / r)]
+        a, b = np.linalg.solve([force, moment], [0.0, 1.0])
+        inner = abs(a + b / (1.0 - 0.5 * bentness))
+        assert inner_edge_factor(np.array([bentness]))[0] == pytest.approx(inner / (6.0 / bentness**2), rel=1e-9)
+
+
+def test_the_inner_edge_factor_of_a_slender_beam_and_beyond_the_centre():
+    """K = 1 + x/3 + O(x²), and 1 for a straight beam."""
+    for bentness in (1e-7, 1e-4, 1e-2):
+        found = inner_edge_factor(np.array([bentness]))[0] - 1.0
+        assert found == pytest.approx(bentness / 3.0, rel=bentness, abs=1e-15)
+    assert inner_edge_factor(np.zeros(2)).tolist() == [1.0, 1.0]
+    for bentness in (-0.1, 2.0, math.nan):
+        with pytest.raises(ValueError, match="less than 2"):
+            inner_edge_factor(np.array([0.1, bentness]))

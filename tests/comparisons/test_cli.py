@@ -17,6 +17,7 @@ import pytest
 from comparisons import cases
 from comparisons.cli.main import commands, run
 from comparisons.pairing import Solvers
+from comparisons.present import page
 from cprbm_scene import Ending
 from tests.verdict.jumping import FORWARD, Jumping
 from tests.verdict.made_up import THEORY, MadeUp
@@ -117,6 +118,7 @@ def test_out_writes_a_report_whatever_the_verdict(right, tmp_path, capsys):
 
 def test_all_writes_the_report_where_it_stands(right, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(page, "figures_of", lambda compared: ())  # pictures of all cases take most of the time
     # a made-up contact that has just closed at a stage's only station has ten times the error of its load
     better = Solvers(cprbm=MadeUp("cprbm", 4e-4), fea=right.fea)
     assert run(["compare", "all", "--quiet"], better) == 0

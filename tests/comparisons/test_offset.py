@@ -50,12 +50,12 @@ def test_the_exact_offset_of_an_arc_is_an_arc():
     assert ordinates(arc, x[5:-5], -1.5, along_x=True) == pytest.approx(np.sqrt(3.5**2 - x[5:-5] ** 2), rel=1e-13)
 
 
-@pytest.mark.parametrize("t", [1.0, 20.0, -8.0])
-def test_the_exact_offset_of_the_parabola_is_its_parametric_one(question, t):
+def test_the_exact_offset_of_the_parabola_is_its_parametric_one(question):
     v = np.linspace(-9.99, 9.99, 57)
     speed = np.hypot(1.0, 0.12 * v)
-    x, y = v + t * 0.12 * v / speed, 10.0 - 0.06 * v**2 + t / speed
-    assert ordinates(question.curve, x, t, along_x=True) == pytest.approx(y, rel=1e-12)
+    for t in (1.0, 20.0, -8.0):
+        x, y = v + t * 0.12 * v / speed, 10.0 - 0.06 * v**2 + t / speed
+        assert ordinates(question.curve, x, t, along_x=True) == pytest.approx(y, rel=1e-12), t
 
 
 def test_beyond_the_exact_curves_ends_there_is_no_ordinate(question):
@@ -143,10 +143,10 @@ def test_compare_prints_json_alone_and_ends_with_1_if_it_differs(small, right, c
     assert json.loads(capsys.readouterr().out)["cases"][0]["verdict"] == "DIFFER"
 
 
-@pytest.mark.parametrize("command", ["solve", "bench"])
-def test_what_needs_an_equilibrium_says_so(command, capsys):
-    assert run([command, "offset"]) == 2
-    assert "no equilibrium" in capsys.readouterr().err
+def test_what_needs_an_equilibrium_says_so(capsys):
+    for command in ("solve", "bench"):
+        assert run([command, "offset"]) == 2, command
+        assert "no equilibrium" in capsys.readouterr().err
 
 
 def test_figures_are_the_same_bytes_every_time(small):
@@ -155,9 +155,8 @@ def test_figures_are_the_same_bytes_every_time(small):
     assert [picture.svg for picture in first] == [picture.svg for picture in again]
 
 
-@pytest.mark.parametrize(
-    ("key", "value", "named", "said"),
-    [
+def test_a_wrong_question_is_refused_by_its_key():
+    for key, value, named, said in (
         ("side", "right", "offsets[8]", "radius of curvature"),
         ("side", "up", "side", "'left' or 'right'"),
         ("axis", "x", "axis", "nowhere parallel"),
@@ -172,14 +171,12 @@ def test_figures_are_the_same_bytes_every_time(small):
         ("claims", [{"numbers_from": 31, "bound": 0.1}], "claims[0].numbers_from", "at most 30"),
         ("question", "area", "question", "'offset'"),
         ("file", "x", "file", ""),
-    ],
-)
-def test_a_wrong_question_is_refused_by_its_key(key, value, named, said):
-    with pytest.raises(SceneError) as error:
-        offset_from({**DATA, key: value})
-    found = {mistake.key: str(mistake) for mistake in error.value.mistakes}
-    assert named in found
-    assert said in found[named]
+    ):
+        with pytest.raises(SceneError) as error:
+            offset_from({**DATA, key: value})
+        found = {mistake.key: str(mistake) for mistake in error.value.mistakes}
+        assert named in found, (key, value)
+        assert said in found[named]
 
 
 def test_spacings_must_be_given():

@@ -240,7 +240,7 @@ def test_what_a_solver_refuses_beside_the_comparison_is_told(tmp_path, files):
     solvers = Solvers(Coarse(MadeUp("cprbm", 2e-3)), MadeUp("fea", -5e-4))
     code, page = reported(tmp_path / "out", solvers, "--without", "times", asked=files[:1])
     assert code == 0
-    assert "There is no error against N: settings.links: found 10; allowed: at least 15." in page.decode()
+    assert "A solver refuses the question: settings.links: found 10; allowed: at least 15." in page.decode()
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from comparisons import cases
+from comparisons.bench.measures import at_last_loads
 from comparisons.choices import Choices
 from comparisons.store import AnswerMemory
 from comparisons.studies.budget import Account, Budget, account_of
-from comparisons.studies.last_loads import at_last_loads
 from tests.fea_reference.cantilever import LENGTH, POISSON, WIDTH, YOUNG, cantilever, force
 from tests.references import hinge as reference
 from tests.references.small import cantilever_deflection, rectangle_second_moment, timoshenko_cantilever_deflection
@@ -29,15 +29,15 @@ def test_the_hinges_links_and_rest_are_those_of_the_exact_answer(hinge):
         way = found.row.cprbm - found.row.fea
         along = way / np.linalg.norm(way)
         # the CPRBM's error is a few parts in ten thousand; the limits are known to a thousandth of that
-        assert found.parts.links == pytest.approx(np.dot(found.row.cprbm - value, along), rel=1e-3)
-        assert abs(found.parts.rest) < 1e-6 * size
-        assert abs(found.parts.rest) <= found.rest_uncertainty
-        assert sum(found.parts.by_name().values()) == pytest.approx(found.row.difference, rel=1e-9)
+        assert found.parts["links"] == pytest.approx(np.dot(found.row.cprbm - value, along), rel=1e-3)
+        assert abs(found.parts["rest"]) < 1e-6 * size
+        assert abs(found.parts["rest"]) <= found.rest_uncertainty
+        assert sum(found.parts.values()) == pytest.approx(found.row.difference, rel=1e-9)
 
 
 def test_the_hinges_penalty_goes_with_the_penetration(hinge):
     for found in hinge.budgets:
-        assert 0.0 < found.off_line < 0.01 * abs(found.parts.penalty)
+        assert 0.0 < found.off_line < 0.01 * abs(found.parts["penalty"])
 
 
 @pytest.mark.parametrize("theory", ["bending", "shear"])
@@ -53,7 +53,7 @@ def test_a_straight_cantilever_has_no_parts(theory):
     exact = bent if theory == "bending" else timoshenko_cantilever_deflection(P, LENGTH, EI, GA, 5.0 / 6.0)
     assert found.row.cprbm[1] == pytest.approx(exact, rel=1e-6)
     assert found.row.difference < 1e-7 * bent
-    assert all(abs(part) < 1e-7 * bent for part in found.parts.by_name().values())
+    assert all(abs(part) < 1e-7 * bent for part in found.parts.values())
 
 
 def _of(scene, probe, choices) -> Budget:

@@ -18,8 +18,7 @@ from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.plain import text_of
-from comparisons.studies.calibration import Calibration, Trial, tallies, tried
-from comparisons.studies.calibration_result import result_of
+from comparisons.studies.calibration import Calibration, Trial, result_of, tallies, tried
 from comparisons.verdict.calibration import Tally
 from comparisons.verdict.rows import rows_of
 from comparisons.verdict.words import Word
@@ -69,7 +68,7 @@ def test_no_truth_is_taken_for_a_difference(case):
 
 
 def test_what_the_study_finds_can_be_told():
-    data = json.loads(text_of(result_of(Calibration(trials("wrapped"), {"wrapped": (6, 6)})).data))
+    data = json.loads(text_of(result_of(Calibration(trials("wrapped"), {"wrapped": (6, 6, None)})).data))
     counts = [trial["solvers"]["cprbm"]["rows"] for trial in data["cases"][0]["trials"]]
     assert sum(counts) == of("wrapped", "cprbm").rows
 

@@ -19,8 +19,7 @@ from comparisons.plain import text_of
 from comparisons.present import json_document
 from comparisons.present.answer_tables import answer_tables
 from comparisons.studies import convergence_tables as tables
-from comparisons.studies.critical_families import critical_families
-from comparisons.studies.families import converged
+from comparisons.studies.convergence import converged
 from cprbm_scene import Claim, Loss
 from tests.tables import tables_of
 from tests.verdict.comparing import compared
@@ -130,7 +129,7 @@ def test_critical_values_converge_though_the_branches_end(crank):
         (solver, "forward") for solver in ("cprbm", "fea")
     ]
     assert entries[0]["limit"] == pytest.approx(FORWARD, abs=1e-8)
-    (sheet,) = tables.convergence_tables(found)
+    (sheet,) = tables.tables_of(found)
     assert len(sheet.rows) == 2
     assert any("in bending, where" in sentence for sentence in tables.sentences_of(found))
 
@@ -142,7 +141,7 @@ def test_a_mechanism_that_changes_with_n_counts_from_there_on(crank):
         return replace(C, loss=Loss.CONTACT if choices.links == 20 else Loss.FOLD)(scene, choices)
 
     found = converged(crank, (20, 40, 80, 160), Choices(), Solvers(changing, F), ALONE)
-    family = critical_families(crank, found.series)[0]
+    family = found.criticals[0]
     assert family.used == (40, 80, 160)
     assert family.error(20) is None
     assert family.orders == pytest.approx((2.0,), abs=1e-2)

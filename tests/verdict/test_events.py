@@ -11,7 +11,7 @@ import pytest
 
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.stages import begins_at, event_tolerance, span_of
+from comparisons.stations import begins_at, event_tolerance, span_of
 from comparisons.verdict.events import critical_rows
 from comparisons.verdict.runs import Runs
 from comparisons.verdict.runs_table import RunsTable

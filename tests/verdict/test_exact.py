@@ -14,7 +14,7 @@ from comparisons.pairing import Solvers, solvers_of
 from comparisons.plain import text_of
 from comparisons.present import json_document
 from comparisons.studies import calibration as study
-from comparisons.studies.calibration_result import result_of
+from comparisons.studies.calibration import result_of
 from comparisons.verdict.calibration import EXACT_FACTOR, error_ratios, tally
 from cprbm_scene import Ending, Stage
 from tests.tables import tables_of
@@ -177,7 +177,7 @@ def test_solve_asks_the_exact_solver(capsys):
 
 def measured(hinge, exact):
     solvers = Solvers(C, F, exact=exact)
-    return study.with_piece(study.Calibration(), study.Piece(hinge, ((17, 40), (40, 80))), solvers)
+    return study.with_case(study.Calibration(), hinge, solvers, sizes=((17, 40), (40, 80)))
 
 
 def test_the_study_says_whose_statements_hold(hinge):
@@ -197,7 +197,7 @@ def test_the_study_says_whose_statements_hold(hinge):
 
 
 def test_the_study_is_a_command(monkeypatch, capsys, hinge, tmp_path):
-    monkeypatch.setattr(study, "pieces", lambda: (study.Piece(hinge, ((17, 40),)),))
+    monkeypatch.setattr(study, "pieces", lambda: (hinge,))
     solvers = Solvers(C, F, exact=EXACT)
     assert run(["study", "calibration", "--out", str(tmp_path)], solvers) == 0
     assert "Calibration" in capsys.readouterr().out

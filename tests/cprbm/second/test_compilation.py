@@ -6,7 +6,8 @@ import numba
 import pytest
 from numba.core.event import install_listener
 
-from cprbm.chain.compiled import COMPILATION, Compilation, compiled
+from cprbm.chain.compiled import COMPILATION, STAMP, Compilation, compiled
+from cprbm.chain.kernel import strain_energy
 
 pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
 
@@ -44,3 +45,8 @@ def test_the_compilation_of_another_program_is_not_mentioned(caplog):
     with caplog.at_level(logging.WARNING, logger="cprbm"), install_listener("numba:compile", Compilation()):
         kernel("lambda x: 3.0 * x", "elsewhere")(1.0)
     assert not caplog.records
+
+
+def test_stored_machine_code_is_out_of_date_once_any_module_with_kernels_changes():
+    """Numba's index of a kernel holds the stamp of all modules, not of the kernel's module alone."""
+    assert strain_energy._cache._cache_file._source_stamp == STAMP
