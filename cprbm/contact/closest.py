@@ -85,9 +85,19 @@ def curve_jet(
 def curve_point(
     z: Array, curves: CurveArrays, piece: int, xi: float, order: int, weights: Array
 ) -> tuple[float, float]:  # pragma: no cover
-    """C, or C' of the ``order`` 1; ``weights`` (2, STENCIL) is scratch space."""
-    x, y, u, v, _, _ = curve_jet(z, curves, piece, xi, weights, weights)
-    return (x, y) if order == 0 else (u, v)
+    """C, or C' of the ``order`` 1; writes the weights (2, STENCIL)."""
+    a, b, c, d = 1.0, xi, xi * xi, xi * xi * xi
+    if order == 1:
+        a, b, c, d = 0.0, 1.0, 2.0 * xi, 3.0 * xi * xi
+    x = y = 0.0
+    for i in range(STENCIL):
+        w, v = curves.real[piece, i], curves.imaginary[piece, i]
+        p = weights[0, i] = a * w[0] + b * w[1] + c * w[2] + d * w[3]
+        q = weights[1, i] = a * v[0] + b * v[1] + c * v[2] + d * v[3]
+        node = curves.stencil[piece, i]
+        x += p * z[node] - q * z[node + 1]
+        y += q * z[node] + p * z[node + 1]
+    return x, y
 
 
 @compiled
