@@ -13,9 +13,9 @@ The closest point minimises R − T(η): Newton's method on
 
     R (R − T)' = (C − x)·C' − R T',    R (R − T)'' ≈ |C'|² + (C − x)·C'' − R T''.
 
-A step crosses the borders of pieces.  The search rests at the ends of an open curve, and at a convex corner of a
-polyline or of the thickness.  There the steps of both pieces lead to the corner, and the closest point does not move
-along the curve.
+A step ends at the border of a piece, and the search goes on in the next piece.  The search rests at the ends of an
+open curve, and at a convex corner of a polyline or of the thickness.  There the steps of both pieces lead to the
+corner, and the closest point does not move along the curve.
 """
 
 from __future__ import annotations
@@ -184,11 +184,15 @@ def closest_point(
         curvature = square + px * kx + py * ky + 0.5 * R * force * lost_at(curves, piece, eta, 2)
         step = -slope / (curvature if curvature > LEAST_CURVATURE * square else square)
         step = min(1.0, max(-1.0, step))
-        if not 0.0 <= eta + step <= 1.0:
-            behind, before = border_pieces(curves, curve, piece, step)
-            if behind != before and is_corner(z, curves, behind, before, x, y, R, weights):
+        rests = not 0.0 <= eta + step <= 1.0
+        behind, before = border_pieces(curves, curve, piece, step) if rests else (piece, piece)
+        if behind != before:
+            if is_corner(z, curves, behind, before, x, y, R, weights):
                 return behind, 0.0, True
-        piece, eta, rests = moved_along(curves, curve, piece, eta, step)
+            # the next piece has another direction behind a corner: the search stops at the border
+            piece, eta, rests = behind if step > 0.0 else before, 0.0 if step > 0.0 else 1.0, False
+        else:
+            eta = min(1.0, max(0.0, eta + step))
         if abs(step) < max(ARRIVED, ROUNDED / sqrt(square)) or (rests and abs(step) < 1.0):
             break
     return piece, eta, rests

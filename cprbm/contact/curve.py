@@ -210,17 +210,17 @@ def _line_weights(chain: BeamChain) -> tuple[Ints, Array]:
 
 def _lost(m: Mechanism, chain: BeamChain) -> Array:
     """Lost compliance of a beam's pieces; none for the plain chain: a polygon spreads no force."""
-    inner, held, free = lost_compliance()
-    lost = np.tile(inner, (chain.links, 1))
     if not chain.corrected:
-        return np.zeros(lost.shape)
-    beam, h = m.scene.beams[chain.name], chain.borders[1] - chain.borders[0]
-    lost[0] = free if isinstance(beam.start, FreeEnd) else held
-    at_end = free if isinstance(beam.end, FreeEnd) else held
-    backwards = np.polynomial.Polynomial(at_end)(np.polynomial.Polynomial([1.0, -1.0])).coef
-    lost[-1] = np.resize(backwards, POWERS)
+        return np.zeros((chain.links, POWERS))
+    beam, h, kind = (
+        m.scene.beams[chain.name],
+        chain.borders[1] - chain.borders[0],
+        np.zeros(chain.links, dtype=np.int64),
+    )
+    kind[0], kind[-1] = 1 + isinstance(beam.start, FreeEnd), 3 + isinstance(beam.end, FreeEnd)
     bending = 12.0 * h * (chain.lean + chain.half_lean / chain.link_length)
-    return np.asarray(lost * bending[:, None])
+    sheared = lost_compliance("shear")[kind] * (h * chain.shear)[:, None]
+    return np.asarray(lost_compliance("bending")[kind] * bending[:, None] + sheared)
 
 
 @dataclass(eq=False)

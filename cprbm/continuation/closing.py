@@ -96,7 +96,7 @@ def kept_open(state: State, pairs: frozenset[int]) -> State:
     contacts = state.contacts
     kept = ~np.isin(contacts.places.pair, list(pairs))
     places, closed = taken(contacts.places, kept), contacts.closed[kept]
-    apart = taken(contacts.places, ~kept & ~contacts.closed) if pairs else None
+    apart = taken(contacts.places, ~kept & ~contacts.closed) if pairs else contacts.apart
     return replace(state, contacts=replace(contacts, places=places, closed=closed, kept_open=pairs, apart=apart))
 
 

@@ -4,7 +4,8 @@ After every solve the rule looks at runs of neighbouring closed joints:
 
 * one or two closed joints with a minimum of the gap nearby become a moving place;
 * a moving place with a closed joint nearby, or with a gap of negative curvature, becomes joints again;
-* joints beside a moving place with less than a small part of the force open.
+* joints beside a moving place with less than a small part of the force open.  A light joint that closes again and
+  again is part of a length: the moving place becomes joints.
 
 The equilibrium is solved again until the rule changes nothing.  Where moving places fail, joints alone are solved first
 and made points anew; then the moving place with the flattest gap is given up.
@@ -43,12 +44,15 @@ from cprbm.equilibrium.contact_set import (
 )
 from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.iteration import OVERLAP, beside_points
-from cprbm.equilibrium.neighbours import ISOLATED, as_point, given_up, short_runs
+from cprbm.equilibrium.neighbours import ISOLATED, LIGHT, as_point, given_up, short_runs
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
 
 ROUNDS = 12
 """Solves under the same targets."""
+
+RETRIES = 6
+"""First solves, half of all, after which light joints open, and a moving place that became joints may move again."""
 
 
 def touched_equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Touched:
@@ -67,7 +71,7 @@ def touched_equilibrium(system: System, start: State, iterations: int, springs: 
     contacts = with_fixed_places(geometry, start.z, contacts)
     joints_tried, before = False, start.z
     old = contacts.places if not contacts.kept_open else _of_all_pairs(geometry, before, contacts)
-    for _ in range(ROUNDS):
+    for number in range(ROUNDS):
         try:
             solved = solve_set(system, replace(start, contacts=contacts), iterations, springs)
         except NotConvergedError:
@@ -81,7 +85,7 @@ def touched_equilibrium(system: System, start: State, iterations: int, springs: 
             joints_tried = True
             contacts = with_fixed_places(geometry, start.z, contacts)
             continue
-        revised = _revised(geometry, solved)
+        revised = _revised(geometry, solved, LIGHT if number < RETRIES else 0.0)
         if revised is None:
             new = _come_near(geometry, solved)
             every = partial(_of_all_pairs, geometry, solved.state.z, solved.contacts)
@@ -90,6 +94,9 @@ def touched_equilibrium(system: System, start: State, iterations: int, springs: 
             if new is None:
                 return solved
             revised = new
+        if number < RETRIES and not joints_tried:
+            # the joints beside a place may open with the joints in its stead: the place is tried again
+            revised = replace(revised, given_up=frozenset())
         start, contacts = solved.state, with_fixed_places(geometry, solved.state.z, revised)
     raise NotConvergedError("the places of contact do not settle")
 
@@ -99,12 +106,15 @@ def _of_all_pairs(geometry: Geometry, z: Array, contacts: Contacts) -> Places:
     return with_fixed_places(geometry, z, replace(contacts, kept_open=frozenset())).places
 
 
-def _revised(geometry: Geometry, solved: Touched) -> Contacts | None:
-    """Contacts with other places, or None if the places are right."""
+def _revised(geometry: Geometry, solved: Touched, least: float) -> Contacts | None:
+    """Contacts with other places, or None if the places are right.
+
+    Joints beside a point with at most the ``least`` part of its force open.
+    """
     if geometry.joints_alone:
         return None
     contacts, places = solved.contacts, solved.contacts.places
-    gone, light = given_up(geometry.arrays, geometry.sites, places, contacts.closed, solved.curvatures)
+    gone, light = given_up(geometry.arrays, geometry.sites, places, contacts.closed, solved.curvatures, least)
     if gone.any():
         return _without(geometry, contacts, gone)
     if light.any():

@@ -151,9 +151,12 @@ def short_runs(
 
 @compiled
 def given_up(
-    curves: CurveArrays, sites: Sites, places: Places, closed: Flags, curvatures: Array
+    curves: CurveArrays, sites: Sites, places: Places, closed: Flags, curvatures: Array, least: float
 ) -> tuple[Flags, Flags]:  # pragma: no cover
-    """Whether moving places become joints again, and whether joints beside moving places open."""
+    """Whether moving places become joints again, and whether joints beside moving places open.
+
+    Joints open with at most the ``least`` part of the moving place's force.
+    """
     count = closed.size
     gone, light = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
     if not np.any(places.moves):
@@ -168,7 +171,7 @@ def given_up(
             near[j] = places.pair[j] == places.pair[k] and places.curve[j] == places.curve[k] and closed[j]
             near[j] = near[j] and not places.moves[j] and span <= apart < ISOLATED * span
             force += places.force[j] if near[j] else 0.0
-        gone[k] = force > LIGHT * places.force[k] or not (closed[k] and curvatures[k] > 0.0 and allowed[k])
+        gone[k] = force > least * places.force[k] or not (closed[k] and curvatures[k] > 0.0 and allowed[k])
         if not gone[k]:
             light |= near
     return gone, light

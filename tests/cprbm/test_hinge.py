@@ -51,6 +51,13 @@ def test_auto_converges_with_order_four_whatever_the_parity_of_n(truth):
         assert np.all(errors[n] < 3e-5)
 
 
+@pytest.mark.parametrize(("links", "within"), [(20, 1e-4), (40, 1e-5)])
+def test_the_contact_force_in_shear(links, within):
+    """Finite elements in shear: 8.856116 N with 160 elements and 8.856186 N with 320, 8.85621 N in the limit."""
+    force = solved(links, theory="shear").stations[-1].values["contact.force"][0]
+    assert force == pytest.approx(8.85621, rel=within)
+
+
 @pytest.mark.parametrize("beam", [1, 2])
 def test_auto_stress_everywhere_up_to_the_clamps_and_through_the_kink_at_the_contact(truth, beam):
     # reference: tests.references.hinge

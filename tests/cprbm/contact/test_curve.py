@@ -96,19 +96,20 @@ def test_lines_have_no_thickness_and_circles_no_length():
 
 
 def simple_beam_compliance(weights, places, length):
-    """Compliance h = EI = 1 of the chain of fourth order between two pins under forces on its nodes."""
+    """Compliances of bending and of shear, h = EI = GA = 1, of the chain between two pins under forces on its nodes."""
     right = weights @ places / length
     forces = -weights
     forces[0] += 1.0 - right
     forces[-1] += right
     moments = [np.sum(np.where(places < joint, (joint - places) * forces, 0.0)) for joint in places[1:-1]]
     shears = np.cumsum(forces)[:-1]
-    return np.sum(np.square(moments)) + np.sum(np.diff(places) * shears**2) / 12.0
+    sheared = np.sum(np.diff(places) * shears**2)
+    return np.sum(np.square(moments)) + sheared / 12.0, sheared
 
 
 @pytest.mark.parametrize("xi", [0.0, 0.2, 0.5, 0.9])
 def test_inner_lost_compliance_does_not_depend_on_the_supports(xi):
-    """A beam between two pins, by statics; the exact compliance is a² b²/(3 (a + b))."""
+    """A beam between two pins, by statics; the exact compliances are a² b²/(3 (a + b)) and a b/(a + b)."""
     count = 30
     m, _, _ = mechanism(count)
     curve = beam_curve(m, "lower", thick=True)
@@ -118,19 +119,23 @@ def test_inner_lost_compliance_does_not_depend_on_the_supports(xi):
     weights = np.zeros(count + 2)
     first = m.beam_nodes("lower")[0]
     np.add.at(weights, (curve.stencil[piece] - first) // 5, (curve.weights[piece] @ xi ** np.arange(4)).real)
-    chain = simple_beam_compliance(weights, curve.arcs / h, float(count))
+    chain, sheared = simple_beam_compliance(weights, curve.arcs / h, float(count))
     exact = place**2 * (count - place) ** 2 / (3.0 * count)
-    assert np.polyval(lost_compliance()[INNER][::-1], xi) == pytest.approx(exact - chain, abs=1e-9)
+    assert np.polyval(lost_compliance("bending")[INNER][::-1], xi) == pytest.approx(exact - chain, abs=1e-9)
+    by_shear = place * (count - place) / count - sheared
+    assert np.polyval(lost_compliance("shear")[INNER][::-1], xi) == pytest.approx(by_shear, abs=1e-9)
     # stored with h³/EI; the unit of EI is the largest EI of the upper beam
     stiffer = (2.2 / 2.1) ** 3
     assert np.polyval(curve.lost[piece][::-1], xi) == pytest.approx((exact - chain) * h**3 * stiffer, rel=1e-6)
 
 
 def test_half_links_lose_nothing_at_a_joint_and_little_at_a_free_end():
-    _, held, free = lost_compliance()
+    held, free = lost_compliance("bending")[[HELD, FREE]]
     assert abs(held[0]) < 1e-5
     assert np.polyval(held[::-1], 1.0) == pytest.approx(2e-5, abs=1e-5)
-    assert np.polyval(free[::-1], 1.0) == pytest.approx(np.polyval(lost_compliance()[INNER][::-1], 0.0), rel=0.02)
+    assert np.polyval(free[::-1], 1.0) == pytest.approx(
+        np.polyval(lost_compliance("bending")[INNER][::-1], 0.0), rel=0.02
+    )
 
 
 def test_the_plain_chain_touches_by_its_polygon():
