@@ -135,7 +135,7 @@ FEATURES = (
         "rotation",
         cantilever(drives={"r": {"kind": "rotation", "body": "tip"}}, asked=(*ASKED, "tip.reaction_moment")),
     ),
-    Feature("drives", "from a stage on", pressed_then_held(), NONE),
+    Feature("drives", "from a stage on", pressed_then_held(), CPRBM),
     Feature("contacts", "two beams by their edges", two_beams()),
     Feature("contacts", "two beams as lines", two_beams(thick=False), NOT_SOLID),
     Feature("contacts", "two beams by their edges, of thickness that varies", two_tapered(), THREE),
@@ -157,7 +157,7 @@ FEATURES = (
     Feature("contacts", "beam with itself", itself(), THREE),
     Feature("contacts", "beam with itself, of thickness that varies", itself_tapered(), THREE),
     Feature("contacts", "none: two beams that may cross", crossing()),
-    Feature("stages", "loads stepped together", stepped_together(), NONE),
+    Feature("stages", "loads stepped together", stepped_together(), CPRBM),
     Feature("stages", "assembly first, by moments and pins", bowed(), NOT_EXACT),
     Feature(
         "probes",

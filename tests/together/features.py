@@ -319,7 +319,7 @@ def three_points() -> Data:
 def pressed_then_held() -> Data:
     """A cantilever under a force at its tip; in a second stage a drive holds the tip and lowers the tip."""
     drive = {"kind": "displacement", "point": "T", "direction": [0.0, -1.0], "from": "hold"}
-    stages = [("press", "F", [FORCE]), ("hold", "d", [0.01])]
+    stages = [("press", "F", [FORCE]), ("hold", "d", [0.008])]
     return edited(
         ("drives", {"d": drive}),
         ("stages", [{"name": name, "steps": steps, "stations": values} for name, steps, values in stages]),
