@@ -61,6 +61,7 @@ def arch(*, edge="half-plane", joint="pin", end="start", thick=False, turn=0.0, 
     return scene_from(
         {
             "name": "arch",
+            "theory": "bending",
             "materials": MATERIALS,
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"far": [-LENGTH, -LENGTH]} if moves else {"R": [0.0, 0.0]}},
@@ -227,6 +228,7 @@ def beside(contact):
     return scene_from(
         {
             "name": "beside",
+            "theory": "bending",
             "materials": MATERIALS,
             "bodies": {
                 "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},

@@ -50,6 +50,7 @@ def four_bar(*, pinned, spring=False):
     drag = {**STRIP, "curve": line(at(b), at(far)), "start": pin("B"), "end": weld("S")}
     return {
         "name": "four-bar",
+        "theory": "bending",
         "materials": MATERIALS,
         "bodies": bodies,
         "pins": pins,

@@ -40,7 +40,6 @@ point = [0.0173981, -0.0056798]
 normal = [-0.1942, 0.981]
 [[stages]]
 name = "press"
-theory = "bending"
 steps = "press"
 stations = [0.005688, 0.008532, 0.009479]
 [[probes]]

@@ -28,6 +28,7 @@ def lever(r):
     return scene_from(
         {
             "name": "lever",
+            "theory": "bending",
             "materials": MATERIALS,
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"G": [LENGTH, r]}},
@@ -67,6 +68,7 @@ def wheel(towards, end, limits, stations, drawn_at=0.0):
     return scene_from(
         {
             "name": "wheel",
+            "theory": "bending",
             "materials": MATERIALS,
             "bodies": {
                 "wheel": {"motion": "turns", "about": "A", "points": {"A": [0.0, 0.0], "W": other}},
@@ -92,6 +94,7 @@ def bowed(alpha, *, moment, stop=None):
     x, y, _ = elastica(alpha)
     data = {
         "name": "bowed",
+        "theory": "bending",
         "materials": MATERIALS,
         "bodies": {
             "ground": {

@@ -49,17 +49,16 @@ def states(solve, parts):
     return found
 
 
-# open: from 11.9° of the first crank on the way without stations between, a load has a second state
-REFUSED = pytest.mark.xfail(strict=True, reason="joints and a moving place on the circle are two certified states")
-
-
-@pytest.fixture(scope="module", params=["fea", pytest.param("cprbm", marks=REFUSED)])
+@pytest.fixture(scope="module", params=["fea", "cprbm"])
 def ways(request):
     return {name: states(SOLVERS[request.param], parts) for name, parts in WAYS.items()}
 
 
 @pytest.mark.parametrize("way", ["back", "turns", "last"])
-def test_the_way_does_not_matter(ways, way):
+def test_the_way_does_not_matter(ways, way, request):
+    if way == "back" and "cprbm" in request.node.name:
+        # open: joints and a moving place on the circle are two certified states, 3e-5 of the energy apart
+        request.applymarker(pytest.mark.xfail(strict=True))
     first, other = ways["first"], ways[way]
     met = [at for at in other if at in first and at[1] > 0]
     assert len(met) == {"back": 3, "turns": 3, "last": 1}[way]
