@@ -25,6 +25,7 @@ from dataclasses import replace
 import numpy as np
 
 from cprbm.chain import Mechanism, Row, apart_ends, stop_angle
+from cprbm.chain.rows import unit_direction
 from cprbm.continuation.closing import CLOSED, drawn_names, kept_open, least_gap, pressing_names
 from cprbm.continuation.driver import Driver, StepError
 from cprbm.continuation.limits import located
@@ -40,7 +41,6 @@ from cprbm_scene.statement import SlidingBody
 
 PASSED = 1e-6
 """Turn, rad, by which the assembled state may be beyond a stop's limit."""
-
 
 SHORTEST = 1e-3
 """First way in a search for a contact, longest beams or rad; every further way is twice as long."""
@@ -141,8 +141,7 @@ def landing_rows(m: Mechanism) -> Iterator[Row]:
     for name in loose_bodies(m.scene) if m.scene.contacts else ():
         body = m.scene.bodies[name]
         if isinstance(body, SlidingBody):
-            along = np.array(body.along) / np.hypot(*body.along)
-            yield Row(f"landing.{name}", m.displacement(next(iter(body.points)), (float(along[0]), float(along[1]))))
+            yield Row(f"landing.{name}", m.displacement(next(iter(body.points)), unit_direction(body.along)))
         else:
             yield Row(f"landing.{name}", m.rotation(name))
 

@@ -175,7 +175,7 @@ def critical_point(trail: list[Reached], beyond: float, change: Array) -> Critic
 def _along(solved: Solved, mode: Mode, change: Array) -> float:
     """Part of the branch's tangent along the mode, from 0 to 1."""
     system = solved.system
-    tau, phi = tangent(solved, change)[system.angles], mode.change[system.angles]
+    tau, phi = tangent(solved, change)[system.angles], mode.turns
     if float(np.abs(tau).max()) < STILL or not np.any(phi):
         return 0.0
     sizes = np.sqrt((system.metric @ tau**2) * (system.metric @ phi**2))

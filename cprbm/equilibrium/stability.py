@@ -33,10 +33,10 @@ VECTORS = 6
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """Smallest ``curvature`` κ and the change of all unknowns (size,) along the mode, the largest turn 1 rad."""
+    """Smallest ``curvature`` κ and the turns φ (links,) of the mode."""
 
     curvature: float
-    change: Array
+    turns: Array
 
 
 def softest(solved: Solved) -> Mode:
@@ -46,20 +46,19 @@ def softest(solved: Solved) -> Mode:
     system = solved.system
     root, count = np.sqrt(system.metric), len(system.metric)
 
-    def response(vector: Array) -> Array:
+    def turned(x: Array) -> Array:
         load = np.zeros(system.size)
-        load[system.angles] = root * vector
-        return solved.response(load)
+        load[system.angles] = root * x.ravel()
+        return np.asarray(root * solved.response(load)[system.angles])
 
-    compliance = LinearOperator((count, count), matvec=lambda x: root * response(x.ravel())[system.angles], dtype=float)
+    compliance = LinearOperator((count, count), matvec=turned, dtype=float)
     start, largest = root * (1.0 + np.cumsum(system.metric)), "SA" if solved.lost else "LA"
     try:
         found = eigsh(compliance, k=1, which=largest, v0=start, ncv=min(VECTORS, count), tol=ACCURACY)
     except ArpackNoConvergence:
-        return Mode(float("nan"), np.zeros(system.size))
+        return Mode(float("nan"), np.zeros(count))
     value, vector = float(found[0][0]), found[1][:, 0]
     stiffest = float(np.max(np.maximum(system.metric[:-1], system.metric[1:]))) / float(np.max(system.joints.stiffness))
     if abs(value) <= STIFF * stiffest:
-        return Mode(float("inf"), np.zeros(system.size))
-    change = response(vector)
-    return Mode(1.0 / value, change / float(np.abs(change[system.angles]).max()))
+        return Mode(float("inf"), np.zeros(count))
+    return Mode(1.0 / value, vector / root)

@@ -127,16 +127,20 @@ class Run:
                     return failure.ending, f"{failure.ending.value}: {failure}; {last}"
         return Ending.COMPLETED, Ending.COMPLETED.value
 
-    def _begin(self, driver: Driver, stage: Stage) -> None:
-        """Hold the drives of a beginning stage at the present values.
+    def _hold_drives(self, driver: Driver, stage: Stage) -> None:
+        """Hold the drives that begin with a stage, and have no value yet, at the present values.
 
         Raises:
             StepError: the drives contradict other rows.
         """
         m, state = self.system.mechanism, driver.solved.state
-        begun = [name for name, drive in self.scene.drives.items() if drive.begins == stage.name]
+        begun = [
+            name for name, drive in self.scene.drives.items() if drive.begins == stage.name and name not in self.values
+        ]
+        if not begun:
+            return
         driven, target = state.driven.copy(), state.target.copy()
-        for name in set(begun) - self.values.keys():
+        for name in begun:
             row = m.row(name)
             driven[row], target[row] = True, driver.solved.values[row]
             self.values[name] = float(target[row]) / m.rows[row].unit
@@ -152,8 +156,7 @@ class Run:
         Raises:
             StepError: the station was not reached, or its certificate does not hold.
         """
-        if any(drive.begins == stage.name and name not in self.values for name, drive in self.scene.drives.items()):
-            self._begin(driver, stage)
+        self._hold_drives(driver, stage)
         mechanism, names = self.system.mechanism, {stage.steps, *stage.together}
         begin = driver.solved.state.target
         before = self.values.get(stage.steps, 0.0)
