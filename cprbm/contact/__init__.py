@@ -11,6 +11,7 @@
 """
 
 from cprbm.contact.candidates import (
+    TOUCHING,
     Columns,
     Geometry,
     Law,
@@ -26,7 +27,7 @@ from cprbm.contact.candidates import (
     taken,
 )
 from cprbm.contact.closest import curve_point, lost_at
-from cprbm.contact.contacts import TOUCHING, Contacts, open_contacts, touching_as_drawn
+from cprbm.contact.contacts import Contacts, open_contacts, touching_as_drawn
 from cprbm.contact.curve import BEND, CORNER, STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
 from cprbm.contact.edges import corner_sides, is_left, left_corner
 from cprbm.contact.fixed import REACH, Sites, contact_places, matched, movable, picked

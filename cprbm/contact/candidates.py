@@ -33,6 +33,9 @@ from cprbm_scene import FreeEnd, Scene, WeldedEnd
 from cprbm_scene.answer import Array, Flags, Ints
 from cprbm_scene.freedoms import FREEDOMS, Freedoms
 
+TOUCHING = 1e-9
+"""Gap, over the longest beam, below which curves touch: round-off of a scene's coordinates."""
+
 
 class Columns(NamedTuple):
     """Border columns of closed places: columns of forces first, then columns of local motions.
@@ -186,7 +189,8 @@ def may_move(geometry: Geometry, places: Places) -> Flags:
 def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:
     """Sides (pairs, 2) of a state as drawn: of rigid curves by the scene, of two beams at the least distance.
 
-    Parallel beams lie left and right of each other, antiparallel beams both left or both right.
+    Parallel beams lie left and right of each other, antiparallel beams both left or both right.  A point on the other
+    beam's neutral line has no side.
     """
     sides = np.array([(pair.side, pair.side) for pair in geometry.pairs], dtype=float).reshape(-1, 2)
     unknown = np.array([pair.side == 0 and not pair.itself for pair in geometry.pairs], dtype=bool)
@@ -199,11 +203,11 @@ def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:
     signed = np.where(places.at_point, np.inf, gaps + half_thicknesses(arrays, places))
     weights = np.empty((4, 2, STENCIL))
     for number in np.flatnonzero(unknown):
-        mine = np.flatnonzero(places.pair == number)
-        best = int(mine[np.argmin(np.abs(signed[mine]))]) if len(mine) else 0
-        if not len(mine) or not np.isfinite(signed[best]):
+        distance = np.where((places.pair == number) & (np.abs(signed) > TOUCHING), np.abs(signed), np.inf)
+        if distance.min(initial=np.inf) == np.inf:
             sides[number] = 1.0
             continue
+        best = int(np.argmin(distance))
         along = gap_frame(z, arrays, places, best, weights).along
         role = int(places.curve[best] != geometry.columns[number, 0])
         side = 1.0 if signed[best] >= 0.0 else -1.0

@@ -43,6 +43,9 @@ LEAST_CURVATURE = 0.1
 PASSED_OVER = 1e-9
 """Share of a distance by which a chord must be farther away to be passed over: more than round-off."""
 
+BEYOND = 0.1
+"""Share of the half thicknesses, or of a piece for lines, by which a place is on the other side of a beam."""
+
 TURNED_BACK = 2.6
 """Turn of a beam between two places, rad, from which the beam may touch itself: nearly half a turn."""
 
@@ -98,6 +101,19 @@ def curve_point(
         x += p * z[node] - q * z[node + 1]
         y += q * z[node] + p * z[node + 1]
     return x, y
+
+
+@compiled
+def thickness_between(curves: CurveArrays, piece: int, xi: float, foot: int, eta: float) -> float:  # pragma: no cover
+    """Sum of the half thicknesses of two points."""
+    thickness: float = curves.thickness[piece] + xi * curves.thickening[piece] + curves.thickness[foot]
+    return thickness + eta * curves.thickening[foot]
+
+
+@compiled
+def depth_beyond(curves: CurveArrays, piece: int, thickness: float) -> float:  # pragma: no cover
+    """Largest overlap of two beams in contact; with a larger overlap a point is on the other side of a beam."""
+    return BEYOND * (thickness if thickness > 0.0 else curves.span[piece])
 
 
 @compiled

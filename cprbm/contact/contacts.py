@@ -6,13 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm.contact.candidates import Geometry, copied, fixed_places, half_thicknesses, sides_at_rest, taken
+from cprbm.contact.candidates import TOUCHING, Geometry, copied, fixed_places, half_thicknesses, sides_at_rest, taken
 from cprbm.contact.gap import Places
 from cprbm.contact.settling import new_counters, settle
 from cprbm_scene.answer import Array, Flags, Ints
-
-TOUCHING = 1e-9
-"""Gap, over the longest beam, below which curves touch: round-off of a scene's coordinates."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cprbm.chain.compiled import compiled
+from cprbm.contact.closest import depth_beyond, thickness_between
 from cprbm.contact.curve import STENCIL, CurveArrays
 from cprbm.contact.gap import Places
 from cprbm.contact.settling import choose_sides, find_bends, find_feet, near_pairs, settle_place
@@ -24,9 +25,6 @@ BESIDE = 1
 
 REACH = 0.1
 """Distance of two boxes, over the longest beam, for places of a pair: farther boxes cannot meet in a step."""
-
-BEYOND = 0.1
-"""Share of the half thicknesses, or of a piece for lines, by which a place is on the other side of a beam."""
 
 ROUNDS = 5
 """Rounds from chord to chord for the place of a bend."""
@@ -176,13 +174,10 @@ def _turn_side(
     """
     foot, eta, at_point = places.foot[k], places.eta[k], places.at_point[k]
     settle_place(z, curves, places, k, room[0], room[1], counters, 0, weights)
-    piece, new = places.piece[k], places.foot[k]
-    thickness = curves.thickness[piece] + places.xi[k] * curves.thickening[piece]
-    thickness += curves.thickness[new] + places.eta[k] * curves.thickening[new]
-    depth = BEYOND * (thickness if thickness > 0.0 else curves.span[piece])
+    thickness = thickness_between(curves, places.piece[k], places.xi[k], places.foot[k], places.eta[k])
     if places.at_point[k]:
         places.side[k] = 0.0
-    elif room[0, k] + thickness < -depth:
+    elif room[0, k] + thickness < -depth_beyond(curves, places.piece[k], thickness):
         places.side[k] *= -1.0
     places.foot[k], places.eta[k], places.at_point[k] = foot, eta, at_point
 

@@ -48,7 +48,7 @@ from math import hypot, sqrt
 from typing import NamedTuple
 
 from cprbm.chain.compiled import compiled
-from cprbm.contact.closest import curve_jet, lost_at
+from cprbm.contact.closest import curve_jet, lost_at, thickness_between
 from cprbm.contact.curve import STENCIL, CurveArrays
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -148,8 +148,7 @@ def gap_frame(z: Array, curves: CurveArrays, places: Places, k: int, weights: Ar
     rx, ry = ax - bx, ay - by
     force = places.force[k] if places.moves[k] else 0.0
     own, own1, own2, other, other1, other2 = _lost(curves, places, k)
-    thickness = curves.thickness[piece] + xi * curves.thickening[piece] + curves.thickness[foot]
-    thickness += eta * curves.thickening[foot]
+    thickness = thickness_between(curves, piece, xi, foot, eta)
     if places.at_point[k]:
         other1 = 0.0
         R = hypot(rx, ry)

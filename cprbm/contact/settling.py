@@ -6,6 +6,8 @@ unknowns follows from the linear equation of :mod:`cprbm.contact.gap`.
 
 from __future__ import annotations
 
+from math import hypot
+
 import numpy as np
 
 from cprbm.chain.compiled import compiled
@@ -17,7 +19,9 @@ from cprbm.contact.closest import (
     closest_point,
     curve_boxes,
     curve_point,
+    depth_beyond,
     moved_along,
+    thickness_between,
     write_chords,
 )
 from cprbm.contact.curve import STENCIL, CurveArrays
@@ -29,9 +33,6 @@ BOX_TESTS, SEARCHES, GAPS = range(3)
 
 FINDING = 40
 """Iterations of a moving place on a frozen state."""
-
-ON_LINE = 1e-9
-"""Distance of a point from a neutral line, over the longest beam, below which the point lies on the line: round-off."""
 
 LONGEST_STEP = 0.7
 """Change of a place in one iteration, pieces: less than a piece, so that a minimum is not jumped over."""
@@ -258,19 +259,19 @@ def _sweeps_over(
 ) -> bool:  # pragma: no cover
     """True if the part of a beam next to a point of a piece lies on the other side of the point after a step.
 
-    A point on the beam's neutral line has no side: a common joint, and a line that touches.
+    A point near the beam's neutral line has no side: a common joint, and a line that touches.
     """
     weights = np.empty((2, STENCIL))
     for z in (before, after):
         cx, cy = curve_point(z, curves, point, at, 0, weights)
-        piece, xi, distance = closest_chord(z, curves, beam, cx, cy, weights)
-        if distance < ON_LINE or curves.thickness[piece] + curves.thickness[point] == 0.0:
-            continue
+        piece, xi, _ = closest_chord(z, curves, beam, cx, cy, weights)
         ax, ay = curve_point(before, curves, piece, xi, 0, weights)
         bx, by = curve_point(before, curves, point, at, 0, weights)
         cx, cy = curve_point(after, curves, piece, xi, 0, weights)
         dx, dy = curve_point(after, curves, point, at, 0, weights)
-        if (ax - bx) * (cx - dx) + (ay - by) * (cy - dy) < 0.0:
+        nearest = min(hypot(ax - bx, ay - by), hypot(cx - dx, cy - dy))
+        beside = nearest > depth_beyond(curves, piece, thickness_between(curves, piece, xi, point, at))
+        if beside and (ax - bx) * (cx - dx) + (ay - by) * (cy - dy) < 0.0:
             return True
     return False
 

@@ -45,6 +45,8 @@ def closed_forces(bordered: Bordered, reduced: Array, size: int, forces: Array, 
     from scipy.optimize import nnls  # sets that settle at once load no optimisers
 
     count = len(forces)
+    if count == 0:
+        return np.zeros(0, dtype=bool)  # SciPy's nnls frees its memory twice without unknowns
     G = np.tril(bordered.border) + np.tril(bordered.border, -1).T
     mine = np.zeros(len(G), dtype=bool)
     mine[size : size + count] = True

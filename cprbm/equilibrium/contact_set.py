@@ -161,7 +161,7 @@ def solve_set(system: System, start: State, iterations: int, springs: Springs | 
     for iteration in range(1, iterations + 1):
         before, most = closed.copy(), 0 if iteration == 1 else few if returned else len(closed)
         wrong, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
-        if returned and wrong > most > 1:
+        if returned and wrong > 0 and most > 1:
             most = _choose_set(geometry, linear, settling)
             _, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
         changed = bool(np.any(closed != before))
