@@ -201,7 +201,10 @@ def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> lis
 
     def force(share: float) -> float:
         solved = solve(share, frozenset())
-        return Pressed(pair).force(solved) if pair in pressing(solved) else -_gap(solved, pair)
+        if pair in pressing(solved):
+            return Pressed(pair).force(solved)
+        gap = _gap(solved, pair)
+        return -gap if gap > CLOSED else 0.0  # closer than a closing is located
 
     before = force(0.0)
     if not before > 0.0 > force(1.0):
