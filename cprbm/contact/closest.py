@@ -106,8 +106,9 @@ def curve_point(
 @compiled
 def thickness_between(curves: CurveArrays, piece: int, xi: float, foot: int, eta: float) -> float:  # pragma: no cover
     """Sum of the half thicknesses of two points."""
-    thickness: float = curves.thickness[piece] + xi * curves.thickening[piece] + curves.thickness[foot]
-    return thickness + eta * curves.thickening[foot]
+    return float(
+        curves.thickness[piece] + xi * curves.thickening[piece] + curves.thickness[foot] + eta * curves.thickening[foot]
+    )
 
 
 @compiled

@@ -170,5 +170,5 @@ def contact_measures(solved: Solved) -> tuple[float, float, float]:
     corner = on_edge(geometry.arrays, places)
     free = ~closed & ~follows & ~beside & (~places.moves | corner) & (thick | ~places.at_point)
     overlap = float(np.max(-gaps[free] - depth[free], initial=0.0))
-    violation = float(np.abs(solved.contact_values).max(initial=0.0))
+    violation = float(np.abs(solved.factors.bordered.columns.values).max(initial=0.0))
     return violation, overlap, float(np.max(-places.force[closed], initial=0.0))

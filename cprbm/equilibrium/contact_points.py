@@ -233,8 +233,7 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
         if not overlaps or curvature <= 0.0 or not may_move(geometry, trial)[0]:
             continue
         at = arc_of(geometry, trial)[0]
-        others = _same(places, best) & contacts.closed
-        others[run] = False
+        others = _same(places, best) & contacts.closed & ~np.isin(np.arange(len(arcs)), run)
         around = np.concatenate([arcs[others], arc_of(geometry, created)[created.pair == places.pair[best]]])
         lonely = not np.any(np.abs(around - at) < ISOLATED * span[best])
         if lonely and np.any(np.abs(arcs[run] - at) < span[best]):

@@ -1,8 +1,8 @@
 """Newton's method with an active set of contact places.
 
 Every iteration moves the feet, opens pulling places, closes overlapping places, and solves the linear system of the
-closed places.  Where the set returns and more than a few places have a wrong sign, the linearised problem chooses the
-set (:mod:`cprbm.equilibrium.complementary`).  The first iteration keeps the set: under new targets it is the prediction
+closed places.  Where the set returns, the linearised problem chooses the set
+(:mod:`cprbm.equilibrium.complementary`).  The first iteration keeps the set: under new targets it is the prediction
 along the path's tangent.  A moving place is an unknown; a closed moving place stands for the fixed places within a
 piece.
 """
@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -35,14 +34,14 @@ from cprbm.contact import (
 )
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.complementary import closed_forces
-from cprbm.equilibrium.factors import SingularError, Springs, factors_of, new_work, pulls, solved_border
+from cprbm.equilibrium.factors import Springs, new_work, pulls
 from cprbm.equilibrium.iteration import (
-    begin_by_law,
-    begin_iteration,
     change_set,
     closable,
-    end_iteration,
     follow_leaders,
+    newton_step,
+    settle_set,
+    step_with_columns,
 )
 from cprbm.equilibrium.linear import Numbers, Work, reduced_system
 from cprbm.equilibrium.neighbours import ISOLATED
@@ -62,10 +61,7 @@ FREE_CHANGES = 12
 """Iterations in which all places with a wrong sign change."""
 
 RETURNS = 2
-"""Returns of a set after which not all places change together."""
-
-FEW_CHANGES = 4
-"""Places that change together after a return; the linearised problem chooses where more have a wrong sign."""
+"""Returns of a set after which the linearised problem chooses."""
 
 ARRIVED = 1e-6
 """Largest last change of a moving place, pieces."""
@@ -154,72 +150,84 @@ def solve_set(system: System, start: State, iterations: int, springs: Springs | 
     gaps, curvatures, room = np.empty(len(closed)), np.empty(len(closed)), np.zeros(len(closed))
     linear = z, m, driven, start.target, *pulls(system, springs), work
     settling = curves, places, closed, gaps, curvatures, room, contacts.counters
-    begin = begin_iteration if geometry.law is None else partial(begin_by_law, geometry.law)
     settle_near(z, *settling, FINDING)
     seen: dict[bytes, int] = {}
-    last, few, returned = np.inf, 1 if geometry.joints_alone else FEW_CHANGES, False
+    last, returned = np.inf, False
     for iteration in range(1, iterations + 1):
-        before, most = closed.copy(), 0 if iteration == 1 else few if returned else len(closed)
-        wrong, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
-        if returned and wrong > 0 and most > 1:
-            most = _choose_set(geometry, linear, settling)
-            _, bordered, change, reduced = begin(*linear, *settling, geometry.columns, most)
+        before = closed.copy()
+        if iteration > 1:
+            _change_set(geometry, linear, settling, returned=returned)
         changed = bool(np.any(closed != before))
         if changed:
             times = seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
             if times > 2 * RETURNS:
                 raise NotConvergedError("the set of closed places returns")
             returned = returned or times > RETURNS or iteration >= FREE_CHANGES
-        try:
-            factors = factors_of(system, driven, work, bordered)
-        except SingularError as singular:
-            raise NotConvergedError("the system is singular") from singular
-        moving = m.beams, m.border, m.turns, m.motions, curves, places, closed, bordered.reached, change
-        size, moved = end_iteration(z, *moving, solved_border(factors.factored, factors.order, reduced), room)
+        size, moved = _step(geometry, linear, settling)
         if not np.isfinite(size):
             raise NotConvergedError("the correction is not finite")
         size = size if moved < ARRIVED else max(size, moved)
-        arrived = has_converged(size, last)
-        last = size
-        if arrived and not changed and _stays(geometry, z, settling):
-            settled = replace(contacts, places=places, closed=closed)
-            return Touched(replace(start, z=z, contacts=settled), gaps, curvatures, iteration)
+        arrived, last = size < CLOSE or SHRINKING * last < size < ROUNDED, size
+        if arrived and not changed:
+            room[:] = 0.0
+            if _settle_set(geometry, z, settling, len(closed), FINDING) == 0:
+                settled = replace(contacts, places=places, closed=closed)
+                return Touched(replace(start, z=z, contacts=settled), gaps, curvatures, iteration)
     raise NotConvergedError(f"{iterations} iterations did not converge")
 
 
-def has_converged(size: float, last: float) -> bool:
-    """Whether a correction of this size after the ``last`` is as small as it gets."""
-    return size < CLOSE or SHRINKING * last < size < ROUNDED
+def _settle_set(geometry: Geometry, z: Array, settling: Settling, most: int, steps: int = 0) -> int:
+    """Settle places in at most ``steps`` and change the set; the number of places with a wrong sign."""
+    if geometry.law is None:
+        return settle_set(z, *settling, geometry.columns, most, steps)
+    curves, places, closed, gaps, *_ = settling
+    settle_near(z, *settling, steps)
+    geometry.law.write_gaps(z, places, gaps)
+    return change_set(curves, places, closed, gaps, geometry.columns, most)
 
 
-def _stays(geometry: Geometry, z: Array, settling: Settling) -> bool:
-    """Move the feet of all places; True if the set of closed places stays as it is."""
-    curves, places, closed, gaps, _, room, _ = settling
-    room[:] = 0.0
-    settle_near(z, *settling, FINDING)
-    if geometry.law is not None:
-        geometry.law.write_gaps(z, places, gaps)
-    return not change_set(curves, places, closed, gaps, geometry.columns, len(closed))
+def _change_set(geometry: Geometry, linear: Linear, settling: Settling, *, returned: bool) -> None:
+    """Close overlapping places and open pulling places; where the set has ``returned`` by the linearised problem.
+
+    Where the linearised problem is not convex, the worst place alone changes.
+    """
+    wrong = _settle_set(geometry, linear[0], settling, 0 if returned else len(settling[2]))
+    if returned and wrong and not _choose_set(geometry, linear, settling):
+        _settle_set(geometry, linear[0], settling, 1)
 
 
-def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> int:
-    """Close the places that press in the linearised problem and open all others; number of changes still allowed.
+def _step(geometry: Geometry, linear: Linear, settling: Settling) -> tuple[float, float]:
+    """Sizes of a Newton step, :func:`cprbm.equilibrium.iteration.step_with_columns`.
 
-    The number is 0, or 1 where the linearised problem is not convex.
+    Raises:
+        NotConvergedError: the system is singular.
+    """
+    z, (curves, places, closed, _, _, room, _) = linear[0], settling
+    try:
+        if geometry.law is None:
+            return newton_step(*linear, curves, places, closed, room)
+        terms = contact_terms(geometry, z, places, closed)
+        return step_with_columns(*linear, curves, places, closed, room, *terms)
+    except np.linalg.LinAlgError as singular:
+        raise NotConvergedError("the system is singular") from singular
+
+
+def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> bool:
+    """Close the places that press in the linearised problem and open all others; False if the problem is not convex.
 
     Raises:
         NotConvergedError: joints close beside a moving place.
     """
-    z, m, curves, places, closed = linear[0], linear[1], *settling[:3]
+    z, m, curves, places, closed, gaps = linear[0], linear[1], *settling[:4]
     allowed, beside, depth = closable(curves, places, closed, geometry.columns)
     leaders = np.arange(len(closed)) + places.shares
-    trial = (allowed | (closed & ~beside))[leaders]
+    trial = ((allowed & np.isfinite(gaps)) | (closed & ~beside))[leaders]
     columns, gradient = contact_terms(geometry, z, places, trial)
     bordered, _, reduced = reduced_system(*linear, columns, gradient)
     own = trial & (places.shares == 0)
     pressed = closed_forces(bordered, reduced, m.border.size, places.force[own], np.where(closed, 0.0, depth)[own])
     if pressed is None:
-        return 1
+        return False
     closed[:] = False
     closed[own] = pressed
     follow_leaders(places, closed)
@@ -228,7 +236,7 @@ def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> int:
     near = np.abs(arcs[joints, None] - arcs[points]) < ISOLATED * curves.span[places.piece[points]]
     if np.any(near & (places.pair[joints, None] == places.pair[points])):
         raise NotConvergedError("a point of contact becomes a length")
-    return 0
+    return True
 
 
 def arc_of(geometry: Geometry, places: Places) -> Array:

@@ -12,8 +12,8 @@ import numpy as np
 from scipy.linalg.lapack import dsytrf, dsytrs
 
 from cprbm.chain import empty_blocks
-from cprbm.contact import Columns
-from cprbm.equilibrium.linear import NO_COLUMNS, Bordered, Work, linearise, reduced_load, restored
+from cprbm.equilibrium.columns import contact_terms
+from cprbm.equilibrium.linear import Bordered, Work, linearise, reduced_load, restored
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -81,15 +81,14 @@ def pulls(system: System, springs: Springs | None) -> tuple[Array, Array]:
     return springs.strength * system.metric, springs.anchor
 
 
-def factorise(
-    system: System, state: State, springs: Springs | None = None, columns: Columns = NO_COLUMNS
-) -> tuple[Factors, Array]:
-    """Factors at a state with the columns of closed places, and the gradient there without the contact forces.
+def factorise(system: System, state: State, springs: Springs | None = None) -> tuple[Factors, Array]:
+    """Factors at a state with the columns of closed places, and the gradient (size,) there.
 
     Raises:
         SingularError: no number is left to divide by.
     """
-    m, work, gradient, pulled = system.numbers, new_work(system), np.zeros(system.size), pulls(system, springs)
+    m, work, pulled = system.numbers, new_work(system), pulls(system, springs)
+    columns, gradient = contact_terms(system.geometry, state.z, state.contacts.places, state.contacts.closed)
     bordered = linearise(state.z, m, state.driven, state.target, *pulled, work, columns, gradient)
     return factors_of(system, state.driven, work, bordered), gradient
 

@@ -7,10 +7,9 @@ from math import isfinite
 import numpy as np
 
 from cprbm.chain.compiled import compiled
-from cprbm.contact import BEND, CORNER, CurveArrays, Law, Places, move_places, settle_near
+from cprbm.contact import BEND, CORNER, Columns, CurveArrays, Places, move_places, settle_near
 from cprbm.equilibrium.columns import contact_columns
-from cprbm.equilibrium.elimination import Beams, Border, Reached
-from cprbm.equilibrium.linear import Bordered, Numbers, Work, correction, reduced_system, restored
+from cprbm.equilibrium.linear import Numbers, Work, correction, reduced_system, restored
 from cprbm_scene.answer import Array, Flags, Ints
 
 OVERLAP = 1e-12
@@ -141,14 +140,8 @@ def place_on_beam(curves: CurveArrays, places: Places, k: int) -> tuple[int, flo
 
 
 @compiled
-def begin_iteration(
+def settle_set(
     z: Array,
-    m: Numbers,
-    driven: Flags,
-    target: Array,
-    stiffness: Array,
-    anchor: Array,
-    work: Work,
     curves: CurveArrays,
     places: Places,
     closed: Flags,
@@ -158,73 +151,69 @@ def begin_iteration(
     counters: Ints,
     pairs: Ints,
     most: int,
-) -> tuple[int, Bordered, Array, Array]:  # pragma: no cover
-    """Changes of the set, the border, the chains' solution for minus the gradient, and the border's load.
-
-    Settles the places that may close; the set stays with more changes than ``most``, and unless ``most`` is positive.
-    """
-    settle_near(z, curves, places, closed, gaps, curvatures, room, counters, 0)
-    changes = change_set(curves, places, closed, gaps, pairs, most) if most > 0 else 0
-    gradient = np.zeros(z.size)
-    columns = contact_columns(z, curves, places, closed, gradient)
-    bordered, load, reduced = reduced_system(z, m, driven, target, stiffness, anchor, work, columns, gradient)
-    return changes, bordered, load, reduced
-
-
-def begin_by_law(
-    law: Law,
-    z: Array,
-    m: Numbers,
-    driven: Flags,
-    target: Array,
-    stiffness: Array,
-    anchor: Array,
-    work: Work,
-    curves: CurveArrays,
-    places: Places,
-    closed: Flags,
-    gaps: Array,
-    curvatures: Array,
-    room: Array,
-    counters: Ints,
-    pairs: Ints,
-    most: int,
-) -> tuple[int, Bordered, Array, Array]:
-    """The same as :func:`begin_iteration` where a ``law`` measures gaps."""
-    settle_near(z, curves, places, closed, gaps, curvatures, room, counters, 0)
-    law.write_gaps(z, places, gaps)
-    changes = change_set(curves, places, closed, gaps, pairs, most) if most > 0 else 0
-    gradient = np.zeros(z.size)
-    columns = law.columns(z, places, closed, gradient)
-    bordered, load, reduced = reduced_system(z, m, driven, target, stiffness, anchor, work, columns, gradient)
-    return changes, bordered, load, reduced
+    steps: int,
+) -> int:  # pragma: no cover
+    """Settle the places that may close in at most ``steps``, and change the set by :func:`change_set`."""
+    settle_near(z, curves, places, closed, gaps, curvatures, room, counters, steps)
+    return change_set(curves, places, closed, gaps, pairs, most)
 
 
 @compiled
-def end_iteration(
+def newton_step(
     z: Array,
-    beams: Beams,
-    border: Border,
-    turns: Ints,
-    motions: Ints,
+    m: Numbers,
+    driven: Flags,
+    target: Array,
+    stiffness: Array,
+    anchor: Array,
+    work: Work,
     curves: CurveArrays,
     places: Places,
     closed: Flags,
-    reached: Reached,
-    change: Array,
-    solution: Array,
     room: Array,
+) -> tuple[float, float]:  # pragma: no cover
+    """A step of Newton's method with the closed places of the smooth curves, :func:`step_with_columns`."""
+    gradient = np.zeros(z.size)
+    columns = contact_columns(z, curves, places, closed, gradient)
+    return step_with_columns(
+        z, m, driven, target, stiffness, anchor, work, curves, places, closed, room, columns, gradient
+    )
+
+
+@compiled
+def step_with_columns(
+    z: Array,
+    m: Numbers,
+    driven: Flags,
+    target: Array,
+    stiffness: Array,
+    anchor: Array,
+    work: Work,
+    curves: CurveArrays,
+    places: Places,
+    closed: Flags,
+    room: Array,
+    columns: Columns,
+    gradient: Array,
 ) -> tuple[float, float]:  # pragma: no cover
     """Largest correction of a displacement or an angle, inf if not finite, and of a place, in pieces.
 
-    Changes unknowns, forces and places by the border's ``solution`` and the chains' solution ``change``, a link by at
-    most ``LARGEST_TURN``; nothing if the correction is not finite.
+    Changes unknowns, forces and places, a link by at most ``LARGEST_TURN``; nothing if the correction is not finite.
+    A place with ``room`` loses as much as the nodes move.
+
+    Raises:
+        LinAlgError: the border is singular.
     """
-    restored(beams, border, reached, solution, change)
-    size, share = correction(change, motions, turns)
+    bordered, change, reduced = reduced_system(z, m, driven, target, stiffness, anchor, work, columns, gradient)
+    for i in range(reduced.size):
+        for j in range(i):
+            bordered.border[j, i] = bordered.border[i, j]
+    solution = np.linalg.solve(bordered.border, reduced)
+    restored(m.beams, m.border, bordered.reached, solution, change)  # type: ignore[arg-type]
+    size, share = correction(change, m.motions, m.turns)
     if not isfinite(size):
         return np.inf, 0.0
-    by_force, column = np.zeros(closed.size), border.size
+    by_force, column = np.zeros(closed.size), m.border.size
     for k in range(closed.size):
         if closed[k] and places.shares[k] == 0:
             by_force[k] = solution[column]

@@ -58,17 +58,6 @@ class Bordered(NamedTuple):
     reached: Reached
 
 
-NO_COLUMNS = Columns(
-    np.zeros(0),
-    0,
-    np.zeros(0),
-    np.zeros(0),
-    np.zeros(0, dtype=np.int64),
-    np.zeros(0, dtype=np.int64),
-    np.zeros(0),
-)
-
-
 @compiled
 def add_gradient(
     z: Array, m: Numbers, driven: Flags, target: Array, stiffness: Array, anchor: Array, blocks: Blocks, gradient: Array

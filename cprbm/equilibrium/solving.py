@@ -12,7 +12,6 @@ from functools import cached_property
 import numpy as np
 
 from cprbm.chain import row_values
-from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.contact_points import touched_equilibrium
 from cprbm.equilibrium.contact_set import NotConvergedError
 from cprbm.equilibrium.factors import Factors, SingularError, Springs, factorise
@@ -28,7 +27,7 @@ REPEATED = 1e-9
 class Solved:
     """An equilibrium, the Hessian's factors and the gradient there, and the number of Newton iterations.
 
-    The gradient belongs to the unknowns; ``contact_values`` are the values of the closed places' rows.
+    The gradient belongs to the unknowns.
     """
 
     system: System
@@ -36,7 +35,6 @@ class Solved:
     factors: Factors
     gradient: Array
     iterations: int
-    contact_values: Array
 
     @property
     def lost(self) -> int:
@@ -99,12 +97,11 @@ def at_state(system: System, state: State, springs: Springs | None = None, itera
     Raises:
         NotConvergedError: the Hessian is singular.
     """
-    columns, pressing = contact_terms(system.geometry, state.z, state.contacts.places, state.contacts.closed)
     try:
-        factors, gradient = factorise(system, state, springs, columns)
+        factors, gradient = factorise(system, state, springs)
     except SingularError as singular:
         raise NotConvergedError("the system is singular") from singular
-    return Solved(system, state, factors, gradient + pressing, iterations, columns.values)
+    return Solved(system, state, factors, gradient, iterations)
 
 
 def _contradicted(solved: Solved) -> int | None:

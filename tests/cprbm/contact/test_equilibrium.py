@@ -11,7 +11,6 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from cprbm.contact import new_counters, open_contacts, settle, taken
-from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.contact_points import touched_equilibrium
 from cprbm.equilibrium.contact_set import NotConvergedError
 from cprbm.equilibrium.factors import factorise
@@ -91,9 +90,10 @@ def residual(system, geometry, state, places, closed):
     """Gradient by the unknowns and by the forces, places and feet moved to λ's stationary point."""
     gaps = np.empty(len(closed))
     settle(state.z, geometry.arrays, places, gaps, gaps.copy(), new_counters(), FINDING)
-    _, gradient = factorise(system, state)
-    columns, pressing = contact_terms(geometry, state.z, places, closed)
-    return np.concatenate([gradient + pressing, -columns.values])
+    factors, gradient = factorise(
+        system, replace(state, contacts=replace(state.contacts, places=places, closed=closed))
+    )
+    return np.concatenate([gradient, -factors.bordered.columns.values])
 
 
 @pytest.mark.parametrize(
@@ -119,7 +119,7 @@ def test_solutions_and_lost_directions_are_those_of_the_dense_matrix(name, stati
     matrix = np.array([(at(step * unit) - at(-step * unit)) / (2.0 * step) for unit in units])
     np.testing.assert_allclose(matrix, matrix.T, atol=1e-6 * np.abs(matrix).max())
     residual(system, geometry, state, places, closed)
-    factors, _ = factorise(system, state, columns=contact_terms(geometry, state.z, places, closed)[0])
+    factors, _ = factorise(system, replace(state, contacts=replace(state.contacts, places=places, closed=closed)))
     load = np.zeros(size + len(own))
     load[kept] = np.random.default_rng(2).normal(size=len(kept))
     found = np.concatenate(factors.solve_both(load[:size], load[size:]))[kept]

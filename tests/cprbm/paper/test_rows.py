@@ -83,16 +83,16 @@ def test_solution_and_inertia_are_those_of_the_dense_matrix(case, seed):
     def at(offset):
         moved = contacts.places._replace(force=places.force.copy())
         moved.force[own] += offset[size:]
-        here = replace(state, z=state.z + offset[:size])
+        here = replace(state, z=state.z + offset[:size], contacts=replace(contacts, places=moved))
         settled(geometry, here.z, moved)
-        columns, pressing = contact_terms(geometry, here.z, moved, closed)
-        return np.concatenate([factorise(system, here)[1] + pressing, -columns.values])[kept]
+        factors, gradient = factorise(system, here)
+        return np.concatenate([gradient, -factors.bordered.columns.values])[kept]
 
     step = 1e-6
     units = step * np.eye(size + len(own))[kept]
     matrix = np.array([(at(unit) - at(-unit)) / (2.0 * step) for unit in units])
     matrix = 0.5 * (matrix + matrix.T)
-    factors, _ = factorise(system, state, columns=contact_terms(geometry, state.z, places, closed)[0])
+    factors, _ = factorise(system, replace(state, contacts=contacts))
     load = np.zeros(size + len(own))
     load[kept] = np.random.default_rng(seed).normal(size=len(kept))
     found = np.concatenate(factors.solve_both(load[:size], load[size:]))[kept]

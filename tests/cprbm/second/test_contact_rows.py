@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from cprbm.contact import STENCIL, gap_frame, may_move, new_counters, on_edge, settle, settle_near, taken
-from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.factors import factorise
 from cprbm.equilibrium.system import system_of
 from tests.cprbm.contact.workshop import FINDING, all_places, mechanism, settled
@@ -54,8 +53,10 @@ def residual(system, geometry, state, places, closed):
     """Gradient by the unknowns and by the forces; feet and moving places follow the state."""
     gaps = np.empty(len(closed))
     settle(state.z, geometry.arrays, places, gaps, gaps.copy(), new_counters(), FINDING)
-    columns, pressing = contact_terms(geometry, state.z, places, closed)
-    return np.concatenate([factorise(system, state)[1] + pressing, -columns.values])
+    factors, gradient = factorise(
+        system, replace(state, contacts=replace(state.contacts, places=places, closed=closed))
+    )
+    return np.concatenate([gradient, -factors.bordered.columns.values])
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -77,7 +78,8 @@ def test_solution_and_inertia_with_contacts_are_those_of_the_dense_matrix(seed):
     matrix = np.array([(at(unit) - at(-unit)) / (2.0 * step) for unit in units])
     matrix = 0.5 * (matrix + matrix.T)
     residual(system, geometry, state, places, closed)
-    factors, _ = factorise(system, state, columns=contact_terms(geometry, state.z, places, closed)[0])
+    contacts = replace(state.contacts, places=places, closed=closed)
+    factors, _ = factorise(system, replace(state, contacts=contacts))
     load = np.zeros(size + len(own))
     load[kept] = np.random.default_rng(seed).normal(size=len(kept))
     found = np.concatenate(factors.solve_both(load[:size], load[size:]))[kept]
@@ -98,8 +100,8 @@ def test_the_random_states_hold_all_kinds_of_rows():
             for a, b, c in zip(places.at_point[closed], places.moves[closed], places.shares[closed] != 0, strict=True)
         }
         kinds |= {geometry.pairs[k].name for k in places.pair[closed]}
-        columns, _ = contact_terms(geometry, state.z, places, closed)
-        lost.add(factorise(system, state, columns=columns)[0].lost)
+        contacts = replace(state.contacts, places=places, closed=closed)
+        lost.add(factorise(system, replace(state, contacts=contacts))[0].lost)
     assert {(at_point, moves, False) for at_point in (False, True) for moves in (False, True)} < kinds
     assert (False, False, True) in kinds
     assert {"beams", "circle", "line", "plane", "graph", "ellipse", "ring"} < kinds
