@@ -63,6 +63,9 @@ FREE_CHANGES = 12
 RETURNS = 2
 """Returns of a set after which the linearised problem chooses."""
 
+FEW_CHANGES = 4
+"""Places that may change together where the linearised problem is not convex."""
+
 ARRIVED = 1e-6
 """Largest last change of a moving place, pieces."""
 
@@ -189,11 +192,11 @@ def _settle_set(geometry: Geometry, z: Array, settling: Settling, most: int, ste
 def _change_set(geometry: Geometry, linear: Linear, settling: Settling, *, returned: bool) -> None:
     """Close overlapping places and open pulling places; where the set has ``returned`` by the linearised problem.
 
-    Where the linearised problem is not convex, the worst place alone changes.
+    Where the linearised problem is not convex, a few places change together, or the worst place alone.
     """
     wrong = _settle_set(geometry, linear[0], settling, 0 if returned else len(settling[2]))
     if returned and wrong and not _choose_set(geometry, linear, settling):
-        _settle_set(geometry, linear[0], settling, 1)
+        _settle_set(geometry, linear[0], settling, wrong if wrong <= FEW_CHANGES else 1)
 
 
 def _step(geometry: Geometry, linear: Linear, settling: Settling) -> tuple[float, float]:
