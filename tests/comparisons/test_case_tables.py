@@ -10,7 +10,7 @@ from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.cli.main import run
-from comparisons.contact_model import contact_model
+from comparisons.third import contact_model
 from comparisons.pairing import Solvers, paired
 from comparisons.present.answer_tables import answer_tables, branch_table
 from comparisons.present.case_tables import case_sections

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from comparisons.choices import Choices
-from comparisons.contact_model import contact_model
+from comparisons.third import contact_model
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict.rows import rows_of
 from cprbm_scene import Mistake, Probe, SceneError, Stage
