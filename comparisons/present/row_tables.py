@@ -34,7 +34,13 @@ MANY_TIMES = 10.0
 """Fraction above which a distance prints with its unit."""
 
 _SOLVERS = ("CPRBM", "FEA")
-_VALUES = {"CPRBM": "row.cprbm", "FEA": "row.fea", "exact": "row.exact"}
+BOTH = {"CPRBM": "row.cprbm", "FEA": "row.fea"}
+"""Paths of the values of both solvers, by header."""
+
+ERROR = {"error": "row.difference"}
+"""Path of the difference."""
+
+_VALUES = {**BOTH, "exact": "row.exact"}
 
 
 class Judged(NamedTuple):
@@ -83,13 +89,13 @@ _PROBE = Column[Any]("probe", "row.probe.name")
 _WORD = Column("word", judgement)
 
 
-def _shares(paths: Mapping[str, str]) -> list[Column[Any]]:
-    """Columns of sizes of rows as shares, by header; the items of the table have a ``row``."""
+def share_columns(paths: Mapping[str, str]) -> list[Column[Any]]:
+    """Columns of sizes as shares, by header and path; the items of the table have a ``row``."""
     return columns_of(lambda item, size: share(item.row, size), paths)
 
 
-def _values(scene: Scene, items: Sequence[Any], paths: Mapping[str, str]) -> list[Column[Any]]:
-    """Probe, unit, and columns of values by header; the ``items`` of the table have a ``row``."""
+def value_columns(scene: Scene, items: Sequence[Any], paths: Mapping[str, str]) -> list[Column[Any]]:
+    """Probe, unit, and columns of values by header and path; the ``items`` of the table have a ``row``."""
     units = row_units(scene, (item.row for item in items))
 
     def text(item: Any, values: Array) -> str:  # noqa: ANN401
@@ -100,7 +106,7 @@ def _values(scene: Scene, items: Sequence[Any], paths: Mapping[str, str]) -> lis
 
 def value_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
     """Values of one station."""
-    columns = [*_values(compared.scene, rows, _VALUES), *_shares({"error": "row.difference"}), _WORD]
+    columns = [*value_columns(compared.scene, rows, _VALUES), *share_columns(ERROR), _WORD]
     return table_of(f"Values at {at_station(compared.scene, *rows[0].row.where)}", columns, rows)
 
 
@@ -120,8 +126,8 @@ def error_tables(compared: Comparison, last: Sequence[Judged]) -> tuple[Table, .
         "by about t/(3R)."
     )
     columns = [
-        *_values(scene, last, _VALUES),
-        *_shares({"error": "row.difference", "error of max": "row.largest_difference"}),
+        *value_columns(scene, last, _VALUES),
+        *share_columns({**ERROR, "error of max": "row.largest_difference"}),
         Column("t/(3R)", lambda at: percent(bentness(scene.beams[at.row.probe.of]) / 3.0)
                if at.row.probe.quantity in STRESSES else None),
         Column("largest error", lambda at: worst.get(at.row.probe.name), lambda found: share(*found) or ""),
@@ -157,7 +163,7 @@ def verdict_table(rows: Sequence[Judged]) -> Table:
         "The difference must stay within the stated uncertainty, which follows from further discretisations of each "
         "solver. Theory: the step of the CPRBM to the other theory. Fractions as in the tables of errors."
     )
-    return table_of("Differences and stated uncertainties", [_PROBE, *_shares(paths), _WORD], rows, note)
+    return table_of("Differences and stated uncertainties", [_PROBE, *share_columns(paths), _WORD], rows, note)
 
 
 def theory_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
@@ -165,7 +171,7 @@ def theory_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
     runs = compared.runs
     paths = {f"CPRBM in {runs.other_theory}": "row.other", f"CPRBM in {runs.theory}": "row.cprbm"}
     paths[f"FEA in {runs.theory}"] = "row.fea"
-    columns = [*_values(compared.scene, rows, paths), *_shares({"theory": "row.theory"})]
+    columns = [*value_columns(compared.scene, rows, paths), *share_columns({"theory": "row.theory"})]
     note = "Theory: distance of the CPRBM's values in both theories, in the formulation auto."
     return table_of("Both theories", columns, [at for at in rows if at.row.other is not None], note)
 
@@ -230,10 +236,10 @@ def solid_table(compared: Comparison) -> Table:
     last = [one for one in thirds if one.row.where == thirds[-1].row.where]
     off = {"u solid": "uncertainty", "CPRBM off": "cprbm", "FEA off": "fea"}
     off[f"CPRBM in {compared.runs.other_theory} off"] = "other"
-    values = {"CPRBM": "row.cprbm", "FEA": "row.fea", "solid": "solid"}
+    values = {**BOTH, "solid": "solid"}
     return table_of(
         "The beam theories beside a solid, at the last station",
-        [*_values(compared.scene, last, values), *_shares(off)],
+        [*value_columns(compared.scene, last, values), *share_columns(off)],
         last,
         "The solid's values are extrapolated from its meshes; distances are measured from these values.",
     )
