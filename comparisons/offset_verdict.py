@@ -22,7 +22,7 @@ import numpy as np
 
 from comparisons.case import Verdict
 from comparisons.formats import percent
-from comparisons.offset_exact import ordinates
+from comparisons.geometry import ordinates
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
 from comparisons.verdict.uncertainty import SAFETY
 from comparisons.verdict.words import Word, worst_of

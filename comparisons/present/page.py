@@ -97,17 +97,21 @@ def report_page(
     chapters: Sequence[Chapter], further: Sequence[Section] = (), machine: Mapping[str, str | int] | None = None
 ) -> Page:
     """The page of verdicts."""
-    lead = (
+    return Page(
+        "CPRBM beside finite elements",
         "The chained pseudo-rigid-body model and corotational finite elements answer the same questions. Each solver "
-        "states its uncertainty; the verdict says whether the answers agree within these uncertainties."
+        "states its uncertainty; the verdict says whether the answers agree within these uncertainties.",
+        chapters,
+        further,
+        machine or {},
     )
-    return Page("CPRBM beside finite elements", lead, chapters, further, machine or {})
 
 
 def convergence_page(chapters: Sequence[Chapter]) -> Page:
     """The page of errors against N."""
-    lead = "Both solvers at a family of sizes: limits, orders and errors of all numbers."
-    return Page("Error against N", lead, chapters)
+    return Page(
+        "Error against N", "Both solvers at a family of sizes: limits, orders and errors of all numbers.", chapters
+    )
 
 
 def figures_of(compared: Comparison | OffsetComparison) -> tuple[Figure, ...]:
@@ -247,8 +251,12 @@ def put_case(folder: Path, compared: Comparison | OffsetComparison, figures: Ite
     put_section(own, Section("", figures=tuple(figures), name=name, data={"cases": [document_of(compared)]}))
     if isinstance(compared, Comparison):
         runs = compared.runs
-        others = {"cprbm paper": runs.paper, "cprbm perturbed": runs.perturbed, "exact": runs.exact}
-        others[f"cprbm {runs.other_theory}"] = runs.other
+        others = {
+            "cprbm paper": runs.paper,
+            "cprbm perturbed": runs.perturbed,
+            "exact": runs.exact,
+            f"cprbm {runs.other_theory}": runs.other,
+        }
         found = {name: each for name, each in others.items() if each is not None}
         write(own / "answers.json.gz", packed({**dict(runs.everything()), **found}))
         write(own / _CONTACT_FORCES, contact_csv(compared.scene, (runs.cprbm[0], runs.reference)))

@@ -169,8 +169,11 @@ def verdict_table(rows: Sequence[Judged]) -> Table:
 def theory_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
     """Values of one station in both theories; without rows where the CPRBM has no value in the other theory."""
     runs = compared.runs
-    paths = {f"CPRBM in {runs.other_theory}": "row.other", f"CPRBM in {runs.theory}": "row.cprbm"}
-    paths[f"FEA in {runs.theory}"] = "row.fea"
+    paths = {
+        f"CPRBM in {runs.other_theory}": "row.other",
+        f"CPRBM in {runs.theory}": "row.cprbm",
+        f"FEA in {runs.theory}": "row.fea",
+    }
     columns = [*value_columns(compared.scene, rows, paths), *share_columns({"theory": "row.theory"})]
     note = "Theory: distance of the CPRBM's values in both theories, in the formulation auto."
     return table_of("Both theories", columns, [at for at in rows if at.row.other is not None], note)
@@ -234,8 +237,12 @@ def solid_table(compared: Comparison) -> Table:
     """Rows of the last station beside the solid."""
     thirds = thirds_of(compared)
     last = [one for one in thirds if one.row.where == thirds[-1].row.where]
-    off = {"u solid": "uncertainty", "CPRBM off": "cprbm", "FEA off": "fea"}
-    off[f"CPRBM in {compared.runs.other_theory} off"] = "other"
+    off = {
+        "u solid": "uncertainty",
+        "CPRBM off": "cprbm",
+        "FEA off": "fea",
+        f"CPRBM in {compared.runs.other_theory} off": "other",
+    }
     values = {**BOTH, "solid": "solid"}
     return table_of(
         "The beam theories beside a solid, at the last station",
