@@ -53,12 +53,9 @@ def at_shown(scene: Scene) -> Scene:
 
 def find_station(answer: Answer, stage: str, value: float) -> StationAnswer | None:
     """An answer's station of a stage at a value of the load or drive; None without this station."""
-    near = (
-        station
-        for station in answer.stations
-        if station.stage == stage and math.isclose(station.value, value, rel_tol=_SAME, abs_tol=0.0)
-    )
-    return min(near, key=lambda station: abs(station.value - value), default=None)
+    mine = [station for station in answer.stations if station.stage == stage]
+    near = (station for station in mine if math.isclose(station.value, value, rel_tol=_SAME, abs_tol=0.0))
+    return next((station for station in mine if station.value == value), None) or next(near, None)
 
 
 def station_of(answer: Answer, stage: str, value: float) -> StationAnswer:

@@ -182,10 +182,6 @@ def run_into(out: Path | None, solvers: Solvers, names: tuple[str, ...] = (), pr
         shutil.rmtree(ended, ignore_errors=True)
 
 
-def _silent(text: str) -> None:
-    """Print nothing."""
-
-
 @dataclass(frozen=True, slots=True)
 class AnswerMemory(Crew):
     """A crew with a memory of the answers of ``solvers``.
@@ -197,7 +193,7 @@ class AnswerMemory(Crew):
     """
 
     solvers: Solvers = field(default_factory=Solvers)
-    say: Callable[[str], None] = _silent
+    say: Callable[[str], None] = lambda text: None
     known: dict[Job, Answer] = field(default_factory=dict)
 
     def answers(self, jobs: list[Job]) -> list[Answer]:

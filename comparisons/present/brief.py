@@ -85,8 +85,12 @@ def nearest_rows(compared: Comparison, rows: Sequence[Judged], count: int) -> Ta
         body += _lines(judged, *units[row.unit])
     others = Counter(word.value if word else "without a word" for _, word, _ in (rows[at] for at in order[count:]))
     note = ", ".join(f"{times} more {'row' if times == 1 else 'rows'} {word}" for word, times in others.items())
-    headers = ("probe", "unit", "CPRBM", "FEA", "difference", "stated", "word")
-    return Table("", headers, tuple(body), f"{note} (-v)" if note else "")
+    return Table(
+        "",
+        ("probe", "unit", "CPRBM", "FEA", "difference", "stated", "word"),
+        tuple(body),
+        f"{note} (-v)" if note else "",
+    )
 
 
 def summary(finished: Sequence[Comparison | OffsetComparison]) -> Table:
