@@ -90,6 +90,22 @@ class Comparison:
     tolerances: tuple[Tolerance, ...] = ()
     audits: Mapping[str, Audit] = frozendict()
 
+    @property
+    def question(self) -> Scene:
+        """The scene."""
+        return self.scene
+
+    @property
+    def pressures(self) -> list[float]:
+        """Differences of the rows over their stated uncertainties."""
+        return [said.pressure(row) for row in self.rows if row.bounds is not None]
+
+    @property
+    def seconds(self) -> Mapping[str, float]:
+        """Seconds of the compared runs, of the run in the other theory and of the exact reference, by name."""
+        answers = {**dict(self.runs.everything()), "other": self.runs.other, "exact": self.runs.exact}
+        return {name: answer.seconds for name, answer in answers.items() if answer is not None}
+
 
 def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
     """The comparison of all runs of a scene.

@@ -87,6 +87,11 @@ class OffsetComparison:
     seconds: Mapping[str, float]
     shown: tuple[Array, ...]
 
+    @property
+    def pressures(self) -> list[float]:
+        """Differences of the rows over their stated uncertainties."""
+        return [row.pressure for row in self.rows]
+
 
 def compared_offset(question: OffsetQuestion, construct: OffsetConstruction = cprbm_offset_points) -> OffsetComparison:
     """Both routes for every spacing, N and t of a question."""

@@ -128,16 +128,11 @@ def document_of(compared: Comparison | OffsetComparison) -> Plain:
     return json_document.comparison(compared)
 
 
-def question_of(compared: Comparison | OffsetComparison) -> Question:
-    """The question of a case."""
-    return compared.question if isinstance(compared, OffsetComparison) else compared.scene
-
-
 def case_chapter(
     compared: Comparison | OffsetComparison, figures: Sequence[Figure], further: Sequence[Section] = ()
 ) -> Chapter:
     """The chapter of a case with figures and further sections."""
-    verdict, chapter = compared.verdict, section_chapter(question_of(compared), further)
+    verdict, chapter = compared.verdict, section_chapter(compared.question, further)
     if isinstance(compared, OffsetComparison):
         sections, names = offset.offset_sections(compared, figures), ["comparison.json"]
         claims, steps = offset.claim_rows(compared), None
@@ -247,7 +242,7 @@ def put_case(folder: Path, compared: Comparison | OffsetComparison, figures: Ite
     Raises:
         OSError: the folder cannot be written to.
     """
-    own, name = own_folder(folder, question_of(compared).name), "comparison"
+    own, name = own_folder(folder, compared.question.name), "comparison"
     put_section(own, Section("", figures=tuple(figures), name=name, data={"cases": [document_of(compared)]}))
     if isinstance(compared, Comparison):
         runs = compared.runs
