@@ -86,8 +86,7 @@ class Stepper:
 def stepper(compared: Comparison) -> Stepper | None:
     """The common stations of both answers; None without a common station."""
     scene, beams = compared.scene, compared.scene.beams
-    both = (compared.runs.cprbm[0], compared.runs.reference)
-    cprbm, fea = (complete_stations(scene, answer) for answer in both)
+    cprbm, fea = (complete_stations(scene, answer) for answer in (compared.runs.cprbm[0], compared.runs.reference))
     common = [where for where in fea if where in cprbm]
     if not common:
         return None
@@ -103,16 +102,16 @@ def stepper(compared: Comparison) -> Stepper | None:
 
     names = [probe.name for probe in scene.probes if probe.quantity not in STRESSES]
     rows = {(at.row.probe.name, *at.row.where): at for at in judged_rows(compared)}
-    columns = [*value_columns(scene, [*rows.values()], BOTH), *share_columns(ERROR)][1:]
-    columns += [Column("word", "word.value")]
-    units = {name: columns[0].cell(at) for (name, *_), at in rows.items()}
+    _, unit_of, *values = value_columns(scene, [*rows.values()], BOTH)
+    columns = [*values, *share_columns(ERROR), Column("word", "word.value")]
+    units = {name: unit_of.cell(at) for (name, *_), at in rows.items()}
     labels = names_by_place(views[-1].points, 1.0 / scale)
     leaders = [text.partition(", ")[0] for text in labels]
     stations, moving = [], dict[str, str]()
     for where, view in zip(common, views, strict=True):
         moving = dict(_moving(view, cprbm[where], bounds, place))
         known = (rows.get((name, *where)) for name in names)
-        cells = tuple(tuple(with_minus(column.cell(at)) if at else NOTHING for column in columns[1:]) for at in known)
+        cells = tuple(tuple(with_minus(column.cell(at)) if at else NOTHING for column in columns) for at in known)
         spots = tuple("{:g} {:g}".format(*np.round(place(view.points[point]))) for point in leaders)
         stations.append((view_title(scene, view), tuple(moving.values()), spots, cells))
     rest = (points(beam.curve, np.linspace(0.0, length(beam.curve), 121)) for beam in beams.values())
