@@ -56,7 +56,7 @@ ALONE = Crew()
 
 @contextmanager
 def crew_of(count: int) -> Iterator[Crew]:
-    """A crew of ``count`` worker processes, which end with the context; a crew of one worker is this process itself."""
+    """A crew of ``count`` processes, which end with the context; with a ``count`` of 1 this process works alone."""
     if count == 1:
         yield ALONE
         return

@@ -1,4 +1,4 @@
-"""Processes beside this process: children that answer call by call, each with the thread that waits for its values.
+"""Processes beside this process: children that answer call by call, and threads that wait for the values.
 
 A child of :func:`workers` is forked from this process on Linux, and takes over all loaded modules: several children pay
 for the imports once.  Elsewhere a fork may break libraries of the system, and a fork of a process with threads may copy
@@ -178,8 +178,9 @@ def call_fresh(call: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T
 def _serve(line: Connection, level: int) -> None:
     """Answer calls until the line closes; log records from ``level`` on reach standard error.
 
-    Signals end the process without a message.  The garbage collector runs less often and skips loaded modules: the
-    records of a load path are many and make no cycles.
+    An interrupt of all processes ends the asking process, and thereby the children; the other signals end this process
+    without a message.  The garbage collector runs less often and skips loaded modules: the records of a load path are
+    many and make no cycles.
     """
     parent = parent_process()
     assert parent is not None, "this process was started by another process"
@@ -187,7 +188,8 @@ def _serve(line: Connection, level: int) -> None:
     logs.print_from(level)
     gc.freeze()
     gc.set_threshold(*COLLECTED)
-    for number in (signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)):
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in (signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)):
         signal.signal(number, signal.SIG_DFL)
     with suppress(EOFError):
         while True:
@@ -207,7 +209,7 @@ def _end_with(process: int) -> None:
 
 @contextmanager
 def _interrupts_ignored() -> Iterator[None]:
-    """Context in which new processes ignore interrupts until they state otherwise.
+    """Context in which new processes ignore interrupts from the beginning.
 
     A process takes over that an interrupt is ignored.  An interrupt during the imports of a process would print a
     traceback.
