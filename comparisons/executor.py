@@ -16,7 +16,7 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from multiprocessing import current_process, get_context, parent_process
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -168,11 +168,8 @@ def call_fresh(call: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T
     Raises:
         WorkerDiedError: the process ended by force.
     """
-    child = Child()
-    try:
+    with closing(Child()) as child:
         return child.call(None, call, *arguments, **named)
-    finally:
-        child.close()
 
 
 def _serve(line: Connection, level: int) -> None:

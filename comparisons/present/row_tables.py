@@ -22,13 +22,20 @@ from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES, Quantity
 
-GROUPS: tuple[tuple[str, frozenset[Quantity]], ...] = (
-    ("Errors in displacement", frozenset({"displacement", "rotation", "angle", "centre", "ends"})),
-    ("Errors in stress", STRESSES),
-    ("Errors in force and reaction", frozenset({"force", "moment", "reaction", "reaction_moment", "closing_load"})),
-    ("Error in energy", frozenset({"potential_energy"})),
+STRESS = "Errors in stress"
+GROUPS: Mapping[str, frozenset[Quantity]] = {
+    "Errors in displacement": frozenset({"displacement", "rotation", "angle", "centre", "ends"}),
+    STRESS: STRESSES,
+    "Errors in force and reaction": frozenset({"force", "moment", "reaction", "reaction_moment", "closing_load"}),
+    "Error in energy": frozenset({"potential_energy"}),
+}
+"""Quantities of the tables of errors by title, in the manner of the paper."""
+
+_OF_STRESSES = (
+    "Largest magnitudes along the beam. The error is the largest difference anywhere a thickness or more from held "
+    "ends and from ends of contacts. A beam of initial radius R has a true stress at its inner edge that is larger by "
+    "about t/(3R)."
 )
-"""Tables of errors by quantity, in the manner of the paper."""
 
 MANY_TIMES = 10.0
 """Fraction above which a distance prints with its unit."""
@@ -112,19 +119,9 @@ def value_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
 
 def error_tables(compared: Comparison, last: Sequence[Judged]) -> tuple[Table, ...]:
     """Tables of the last station by quantity, with the largest error over all stations."""
-    scene, runs, tables = compared.scene, compared.runs, list[Table]()
-    counted = (judged.row for judged in judged_rows(compared) if judged.word is not None)
-    worst = _largest_by_probe((row, row.difference) for row in counted)
+    scene, runs = compared.scene, compared.runs
+    worst = _largest_by_probe((at.row, at.row.difference) for at in judged_rows(compared) if at.word is not None)
     absence = f" No exact values: {runs.exact_absence}" if runs.exact_absence else ""
-    note = (
-        f"CPRBM beside the finite elements, both in the theory {runs.theory}. Errors are fractions of the FEA's value, "
-        f"or of the probe's largest value where the value may vanish. Exact values are those in bending.{absence}"
-    )
-    of_stresses = (
-        "Largest magnitudes along the beam. The error is the largest difference anywhere a thickness or more from held "
-        "ends and from ends of contacts. A beam of initial radius R has a true stress at its inner edge that is larger "
-        "by about t/(3R)."
-    )
     columns = [
         *value_columns(scene, last, _VALUES),
         *share_columns({**ERROR, "error of max": "row.largest_difference"}),
@@ -134,12 +131,15 @@ def error_tables(compared: Comparison, last: Sequence[Judged]) -> tuple[Table, .
         Column("at", lambda at: worst.get(at.row.probe.name), lambda found: at_station(scene, *found[0].where)),
         _WORD,
     ]  # fmt: skip
-    for title, quantities in GROUPS:
-        rows = [judged for judged in last if judged.row.probe.quantity in quantities]
-        if rows:
-            explained = of_stresses if quantities is STRESSES else "" if tables else note
-            tables.append(table_of(f"{title} at {at_station(scene, *last[0].row.where)}", columns, rows, explained))
-    return tuple(tables)
+    groups = {title: [at for at in last if at.row.probe.quantity in quantities] for title, quantities in GROUPS.items()}
+    titles = [title for title, rows in groups.items() if rows]
+    first = (
+        f"CPRBM beside the finite elements, both in the theory {runs.theory}. Errors are fractions of the FEA's value, "
+        f"or of the probe's largest value where the value may vanish. Exact values are those in bending.{absence}"
+    )
+    notes = dict.fromkeys(titles[:1], first) | {STRESS: _OF_STRESSES}
+    where = at_station(scene, *last[0].row.where) if last else ""
+    return tuple(table_of(f"{title} at {where}", columns, groups[title], notes.get(title, "")) for title in titles)
 
 
 def _largest_by_probe(sizes: Iterable[tuple[Row, float]]) -> dict[str, tuple[Row, float]]:
