@@ -155,8 +155,7 @@ def _value(kind: Any, data: Any, arrays: list[Array]) -> Any:  # noqa: ANN401 - 
         return None if data is None else _value(parts[0], data, arrays)
     origin = get_origin(kind)
     if origin is np.ndarray:
-        column, row = data
-        return arrays[column][row]
+        return arrays[data[0]][data[1]]
     if origin is tuple:
         return tuple(_value(parts[0], each, arrays) for each in data)
     if origin is not None:

@@ -90,6 +90,22 @@ class Comparison:
     tolerances: tuple[Tolerance, ...] = ()
     audits: Mapping[str, Audit] = frozendict()
 
+    @property
+    def question(self) -> Scene:
+        """The scene."""
+        return self.scene
+
+    @property
+    def pressures(self) -> list[float]:
+        """Differences of the rows over their stated uncertainties."""
+        return [said.pressure(row) for row in self.rows if row.bounds is not None]
+
+    @property
+    def seconds(self) -> Mapping[str, float]:
+        """Seconds of the compared runs, of the run in the other theory and of the exact reference, by name."""
+        answers = {**dict(self.runs.everything()), "other": self.runs.other, "exact": self.runs.exact}
+        return {name: answer.seconds for name, answer in answers.items() if answer is not None}
+
 
 def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
     """The comparison of all runs of a scene.
@@ -108,8 +124,13 @@ def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
         answer.solver: look(scene, replace(answer, stations=tuple(table.stations[name].values())))
         for name, answer in zip(SOLVERS, table.pair, strict=True)
     }
-    verdict = _verdict(table, rows, judged, criticals, closings, audits)
-    return Comparison(scene, runs, rows, verdict, criticals, _reactions(table), audits=audits)
+    lacking = any(name in table.problems for name in SOLVERS)
+    completed = not lacking or (
+        all(map(ends_at_critical, table.pair)) and bool(criticals) and criticals[-1].word is Word.AGREE
+    )
+    verdict = _verdict(table, rows, judged, criticals, closings, audits, completed=completed)
+    found = () if lacking else _reactions(table)
+    return Comparison(scene, runs, rows, verdict, criticals, found, audits=audits)
 
 
 def _verdict(
@@ -119,10 +140,11 @@ def _verdict(
     criticals: Sequence[CriticalRow],
     closings: Sequence[ClosingRow],
     audits: Mapping[str, Audit],
+    *,
+    completed: bool,
 ) -> Verdict:
     """All findings with their sentences; the worst decides, and its sentence comes first."""
     scene, of_rows = table.scene, judge_case(rows, judged)
-    completed = _completed(table, criticals)
     crossings = next((found.crossings for found in audits.values() if found.crossings), ())
     findings: list[Finding] = [
         *((Word.DIFFER, Reason.EVENTS, said.closing_sentence(scene, row)) for row in closings),
@@ -161,39 +183,24 @@ def _rank(finding: Finding) -> tuple[int, int]:
     return SEVERITY.index(word), 0 if reason is None else list(Reason).index(reason)
 
 
-def _completed(table: RunsTable, criticals: Sequence[CriticalRow]) -> bool:
-    """Whether both compared answers are complete, or end at critical points that agree."""
-    if not _lacking(table):
-        return True
-    return all(map(ends_at_critical, table.pair)) and bool(criticals) and criticals[-1].word is Word.AGREE
-
-
-def _lacking(table: RunsTable) -> bool:
-    """Whether a compared answer is not complete."""
-    return any(name in table.problems for name in SOLVERS)
-
-
 def _branch_verdicts(rows: Sequence[Row], words: Sequence[Word | None]) -> tuple[BranchVerdict, ...]:
     """Word of every branch, in the order of the path."""
     found: dict[tuple[str, int], list[tuple[Row, Word | None]]] = {}
     for row, word in zip(rows, words, strict=True):
         if row.branch is not None:
             found.setdefault((row.stage, row.branch), []).append((row, word))
-    verdicts = []
-    for (stage, number), mine in found.items():
-        places = {row.station: row.place for row, _ in mine}
-        near = sum(place is Place.BETWEEN for place in places.values())
-        word = worst_of(word for _, word in mine)
-        verdicts.append(
-            BranchVerdict(stage, number, next(iter(places)), next(reversed(places)), len(places), near, word)
-        )
-    return tuple(verdicts)
+    return tuple(_branch_verdict(*branch, mine) for branch, mine in found.items())
+
+
+def _branch_verdict(stage: str, number: int, mine: Sequence[tuple[Row, Word | None]]) -> BranchVerdict:
+    """Word of the rows of a branch."""
+    places = {row.station: row.place for row, _ in mine}
+    near, word = sum(place is Place.BETWEEN for place in places.values()), worst_of(word for _, word in mine)
+    return BranchVerdict(stage, number, next(iter(places)), next(reversed(places)), len(places), near, word)
 
 
 def _reactions(table: RunsTable) -> tuple[WorkEnergyReaction, ...]:
-    """Reactions of drives by two ways, where both compared answers are complete."""
-    if _lacking(table):
-        return ()
+    """Reactions of drives by two ways, of two complete answers."""
     asked, perturbed = perturbed_scene(table.scene), table.runs.perturbed
     if asked is None:
         return reactions(table.scene, *table.pair, None)

@@ -44,16 +44,11 @@ class Standing:
         return self.met == self.stations
 
 
-def claim_of(scene: Scene, row: Row) -> Claim | None:
-    """The claim about a row's station, otherwise about every station of the probe; None without a claim."""
+def claim_of(scene: Scene, row: Row | CriticalRow) -> Claim | None:
+    """The claim about a station, or about a stage with a critical value, otherwise about all; None without a claim."""
+    place = "stage" if isinstance(row, CriticalRow) else "station"
     about = [claim for claim in scene.claims if _is_about(claim, row)]
-    return min(about, key=lambda claim: claim.station is None, default=None)
-
-
-def claim_of_critical(scene: Scene, row: CriticalRow) -> Claim | None:
-    """The claim about the critical value of a stage, otherwise of all stages; None without a claim."""
-    about = [claim for claim in scene.claims if _is_about(claim, row)]
-    return min(about, key=lambda claim: claim.stage is None, default=None)
+    return min(about, key=lambda claim: getattr(claim, place) is None, default=None)
 
 
 def _is_about(claim: Claim, row: Row | CriticalRow) -> bool:
@@ -70,22 +65,19 @@ def claim_difference(row: Row) -> float | None:
     return (replace(row, denominator=own) if of_the_value else row).fraction(row.difference)
 
 
-def claimed_difference(claim: Claim, row: Row) -> float | None:
+def claimed_difference(claim: Claim, row: Row | CriticalRow) -> float | None:
     """Difference from a claimed value, otherwise between the solvers, a fraction; None without such a difference."""
+    if isinstance(row, CriticalRow):
+        reference = row.fea.value if claim.value is None and row.fea is not None else claim.value
+        if row.cprbm is None or reference is None:
+            return None
+        return abs(row.cprbm.value - reference) / (abs(reference) or row.span)
     if claim.value is None:
         return claim_difference(row)
     return abs(float(row.cprbm[0]) - claim.value) / (abs(claim.value) or row.scale) if row.cprbm.size == 1 else None
 
 
-def critical_difference(claim: Claim, row: CriticalRow) -> float | None:
-    """Difference of the CPRBM's critical value from the claimed value, otherwise from the finite elements' value."""
-    reference = row.fea.value if claim.value is None and row.fea is not None else claim.value
-    if row.cprbm is None or reference is None:
-        return None
-    return abs(row.cprbm.value - reference) / (abs(reference) or row.span)
-
-
-def claim_met(claim: Claim | None, row: Row) -> bool | None:
+def claim_met(claim: Claim | None, row: Row | CriticalRow) -> bool | None:
     """Whether the difference stays below the claimed bound; None without a claim or a difference."""
     found = None if claim is None else claimed_difference(claim, row)
     return None if claim is None or found is None else found <= claim.bound
@@ -94,13 +86,10 @@ def claim_met(claim: Claim | None, row: Row) -> bool | None:
 def standings(scene: Scene, rows: Sequence[Row], criticals: Sequence[CriticalRow] = ()) -> tuple[Standing, ...]:
     """Every claim with a row or critical value, in the scene's order."""
     found: list[Standing] = []
-    candidates: tuple[Row | CriticalRow, ...] = (*rows, *criticals)
     for claim in scene.claims:
-        mine = []
-        for row in candidates:
-            off = critical_difference(claim, row) if isinstance(row, CriticalRow) else claimed_difference(claim, row)
-            if _is_about(claim, row) and off is not None:
-                mine.append((off, row))
+        about: list[Row | CriticalRow] = [row for row in rows if _is_about(claim, row)]
+        about += (row for row in criticals if _is_about(claim, row))
+        mine = [(off, row) for row in about if (off := claimed_difference(claim, row)) is not None]
         if mine:
             off, worst = max(mine, key=lambda each: each[0])
             found.append(Standing(claim, worst, off, sum(each <= claim.bound for each, _ in mine), len(mine)))

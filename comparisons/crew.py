@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import Executor, Future, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import starmap
 
 from comparisons.choices import Choices
-from comparisons.executor import NoWorkersError, interrupts_ignored, workers
+from comparisons.executor import call_limited, workers
 from cprbm_scene import Answer, Mistake, Scene, SceneError
 
 _LOG = logging.getLogger(__name__)
@@ -19,14 +20,14 @@ Job = tuple[Solver, Scene, Choices]
 Decided = Callable[[Answer, Answer], bool]
 """Whether the answers to the first two jobs make the other jobs useless."""
 
-_Pending = Future[Answer | tuple[Mistake, ...]]
+_Result = Answer | tuple[Mistake, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Crew:
     """Processes for the solves of one case after the other; without a pool all solves run in this process."""
 
-    pool: ProcessPoolExecutor | None = None
+    pool: Executor | None = None
 
     def answers(self, jobs: list[Job]) -> list[Answer]:
         """The answers to jobs, in the order of the jobs.
@@ -43,11 +44,10 @@ class Crew:
         returns these two alone, and cancels the other jobs.  Without a pool the work begins with the call.
         """
         if self.pool is None:
-            return lambda: _one_by_one(jobs, decided)
+            return lambda: _collected(enumerate(starmap(_solve, jobs)), len(jobs), decided)
         # The finest runs take longest and stand last: begun right behind the first two jobs, they leave no worker idle.
         places = [*range(len(jobs))[:2], *reversed(range(len(jobs))[2:])]
-        with interrupts_ignored():  # until the workers are prepared
-            futures: dict[_Pending, int] = {self.pool.submit(_solve, *jobs[place]): place for place in places}
+        futures = {self.pool.submit(call_limited, None, _solve, *jobs[place]): place for place in places}
         return lambda: _awaited(futures, decided)
 
 
@@ -56,56 +56,39 @@ ALONE = Crew()
 
 @contextmanager
 def crew_of(count: int) -> Iterator[Crew]:
-    """A crew of ``count`` worker processes, which end with the context; a crew of one worker is this process itself.
-
-    Where the system permits no further process, this process does all the work.
-    """
-    with ExitStack() as stack:
-        crew = ALONE
-        if count > 1:
-            try:
-                crew = Crew(stack.enter_context(workers(count)))
-            except NoWorkersError as error:
-                _LOG.info("one process does all of the work: %s", error)
-        yield crew
+    """A crew of ``count`` processes, which end with the context; with a ``count`` of 1 this process works alone."""
+    if count == 1:
+        yield ALONE
+        return
+    with workers(count) as pool:
+        yield Crew(pool)
 
 
-def _one_by_one(jobs: Sequence[Job], decided: Decided) -> list[Answer]:
-    """The answers, in this process."""
-    answers: list[Answer] = []
-    for solver, scene, choices in jobs:
-        answers.append(solver(scene, choices))
-        _report(answers[-1], len(answers), len(jobs))
-        if len(answers) == 2 and decided(*answers):
-            break
-    return answers
-
-
-def _awaited(futures: Mapping[_Pending, int], decided: Decided) -> list[Answer]:
-    """The answers in the order of the places; the first refusal cancels the other jobs."""
-    answers: dict[int, Answer] = {}
+def _awaited(futures: Mapping[Future[_Result], int], decided: Decided) -> list[Answer]:
+    """The answers of processes; the first refusal, and a decision, cancel the other jobs."""
     try:
-        for future in as_completed(futures):
-            result = future.result()
-            if isinstance(result, tuple):
-                raise SceneError(result)
-            answers[futures[future]] = result
-            _report(result, len(answers), len(futures))
-            if futures[future] < 2 and {0, 1} <= answers.keys() and decided(answers[0], answers[1]):
-                return [answers[0], answers[1]]
+        return _collected(((futures[each], each.result()) for each in as_completed(futures)), len(futures), decided)
     finally:
         for future in futures:
             future.cancel()
-    return [answers[place] for place in range(len(futures))]
 
 
-def _report(answer: Answer, done: int, whole: int) -> None:
-    """Log the end of a run, with the number of finished runs, of ``whole``."""
-    report = answer.scene, done, whole, answer.solver, answer.ending.name, answer.seconds
-    _LOG.info("%s: run %d of %d is done: %s, %s after %.2f s", *report, extra={"done": done, "whole": whole})
+def _collected(results: Iterable[tuple[int, _Result]], count: int, decided: Decided) -> list[Answer]:
+    """The answers in the order of their places, logged as they come."""
+    answers: dict[int, Answer] = {}
+    for place, result in results:
+        if isinstance(result, tuple):
+            raise SceneError(result)
+        answers[place] = result
+        done = {"done": len(answers), "whole": count}
+        report = result.scene, *done.values(), result.solver, result.ending.name, result.seconds
+        _LOG.info("%s: run %d of %d is done: %s, %s after %.2f s", *report, extra=done)
+        if place < 2 and {0, 1} <= answers.keys() and decided(answers[0], answers[1]):
+            return [answers[0], answers[1]]
+    return [answers[place] for place in range(count)]
 
 
-def _solve(solver: Solver, scene: Scene, choices: Choices) -> Answer | tuple[Mistake, ...]:
+def _solve(solver: Solver, scene: Scene, choices: Choices) -> _Result:
     """The answer, or the mistakes as plain records, since pickle rebuilds an exception from the text alone."""
     try:
         return solver(scene, choices)

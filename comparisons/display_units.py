@@ -25,8 +25,6 @@ _POWERS = {
 }
 """Powers of the file's units by SI unit, and the name of the product."""
 
-_SYMBOLS = {"deg": "°", "um": "µm", "uN": "µN"}
-
 DEGREE = math.radians(1.0)
 
 
@@ -103,9 +101,7 @@ def at_station(scene: Scene, stage: str, value: float) -> str:
 
 def _with_symbols(size: float, name: str) -> tuple[float, str]:
     """Size and name of a unit, with the symbols of degree and of micro."""
-    for plain, symbol in _SYMBOLS.items():
-        name = name.replace(plain, symbol)
-    return size, name
+    return size, name.replace("deg", "°").replace("um", "µm").replace("uN", "µN")
 
 
 def _in_degrees(value: float, unit: str) -> str:

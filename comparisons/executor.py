@@ -1,13 +1,11 @@
-"""Processes beside this process: a pool of workers that share the work, and a child that answers call by call.
+"""Processes beside this process: children that answer call by call, and threads that wait for the values.
 
-On Linux the workers of a pool are forked from this process, which has loaded all modules: several workers pay for the
-imports once.  Elsewhere a fork may break libraries of the system, and a fork of a process with threads may copy a
-locked lock; there every worker is a fresh Python.  A child is always a fresh Python.
+A child of :func:`workers` is forked from this process on Linux, and takes over all loaded modules: several children pay
+for the imports once.  Elsewhere a fork may break libraries of the system, and a fork of a process with threads may copy
+a locked lock; there, and for all other calls, a child is a fresh Python.
 
-Every process ends with the process that asked for the work, also where that process was killed.
-
-Python counts the objects that a pool passes over by semaphores, which on Linux are files in ``/dev/shm``; in a
-container this folder may be absent or read-only.  A child needs no semaphore.
+Every child ends with the process that asked for the work, also where that process was killed.  A child needs no
+semaphores, which on Linux are files in ``/dev/shm``; in a container this folder may be absent or read-only.
 """
 
 from __future__ import annotations
@@ -17,12 +15,12 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
-from contextlib import contextmanager, suppress
+from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
+from contextlib import closing, contextmanager, suppress
 from multiprocessing import current_process, get_context, parent_process
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from typing import Literal, ParamSpec, TypeVar
 from weakref import WeakSet
 
 from comparisons import logs
@@ -31,73 +29,36 @@ T = TypeVar("T")
 P = ParamSpec("P")
 
 COLLECTED = (50_000, 20, 100)
-"""Thresholds of a worker's garbage collector: new objects, and collections of the younger generations."""
-
+"""Thresholds of a child's garbage collector: new objects, and collections of the younger generations."""
 
 _THREADS = Path("/proc/self/task")
 """On Linux a folder with an entry for every thread of this process."""
-
-
-class NoWorkersError(RuntimeError):
-    """The system permits no worker processes; the text states the reason and a remedy."""
 
 
 class TimeLimitError(RuntimeError):
     """A call was ended at its time limit."""
 
 
-class WorkerDiedError(RuntimeError):
+class WorkerDiedError(BrokenExecutor):
     """A process ended without the value or the exception of its call."""
 
 
-@contextmanager
-def workers(count: int) -> Iterator[ProcessPoolExecutor]:
-    """Pool of ``count`` processes that end with the context, whatever they still solve.
-
-    Raises:
-        NoWorkersError: the system has no semaphores.
-    """
-    forks = len(list(_THREADS.glob("*"))) == 1
-    context = get_context("fork") if forks else get_context("spawn")
-    reading, lifeline = context.Pipe(duplex=False)
-    given = reading, lifeline if forks else None, logs.level()
-    try:
-        pool = ProcessPoolExecutor(count, mp_context=context, initializer=_prepare_worker, initargs=given)
-    except (OSError, NotImplementedError, ImportError) as error:
-        raise NoWorkersError(
-            f"no processes beside this one ({error}); on Linux they need a writable /dev/shm"
-        ) from None
-    try:
-        yield pool
-    finally:
-        lifeline.close()  # the workers end
-        pool.shutdown(cancel_futures=True)
-        reading.close()
-
-
-def obstacle() -> str:
-    """Why the system permits no worker processes; empty if the system permits workers."""
-    try:
-        with workers(1):
-            return ""
-    except NoWorkersError as error:
-        return str(error)
-
-
 class Child:
-    """A fresh Python that answers call by call; a child that died or took too long is replaced at the next call."""
+    """A process that answers call by call: a fresh Python (``spawn``), or a copy of this process (``fork``)."""
 
-    def __init__(self) -> None:
-        self._start()
-        _children.add(self)
-
-    def _start(self) -> None:
-        context = get_context("spawn")
+    def __init__(self, method: Literal["spawn", "fork"] = "spawn") -> None:
+        context = get_context(method)
         self._line, line = context.Pipe()
-        self._process = context.Process(target=_serve, args=(line,), daemon=True)
-        with interrupts_ignored():
+        self._process = context.Process(target=_serve, args=(line, logs.level()), daemon=True)  # type: ignore[attr-defined]
+        with _interrupts_ignored():
             self._process.start()
         line.close()
+        _children.add(self)
+
+    @property
+    def closed(self) -> bool:
+        """True if the child answers no further call."""
+        return self._line.closed
 
     def call(self, seconds: float | None, function: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
         """Value of a call in the child; an exception of the call is raised here.
@@ -112,8 +73,6 @@ class Child:
             TimeLimitError: the time limit passed.
             WorkerDiedError: the child ended by force.
         """
-        if self._line.closed:
-            self._start()
         try:
             self._line.send((function, arguments, named))
             if seconds is not None and not self._line.poll(seconds):
@@ -158,22 +117,27 @@ def permit_children() -> None:
 def call_limited(seconds: float | None, call: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
     """Value of a call in the child of this thread, which keeps its loaded modules and kernels from call to call.
 
+    A child that died or took too long is replaced at the next call.
+
     Raises:
         TimeLimitError: the call took more than ``seconds``.
         WorkerDiedError: the child ended by force, or all children were ended.
     """
-    if not hasattr(_local, "child"):
-        _local.child = Child()
+    child: Child | None = getattr(_local, "child", None)
+    if child is None or child.closed:
+        child = _local.child = Child()
     if _ended.is_set():
         raise WorkerDiedError("the calls of this process were ended")
-    child: Child = _local.child
     return child.call(seconds, call, *arguments, **named)
 
 
 @contextmanager
-def threads(count: int) -> Iterator[ThreadPoolExecutor]:
-    """Pool of ``count`` threads for :func:`call_limited`, whose children end with the context."""
-    pool = ThreadPoolExecutor(count)
+def threads(count: int, children: list[Child] | None = None) -> Iterator[ThreadPoolExecutor]:
+    """Pool of ``count`` threads for :func:`call_limited`, whose children end with the context.
+
+    A thread takes the last of the ``children``, as long as there are any; other threads begin children of their own.
+    """
+    pool = ThreadPoolExecutor(count, initializer=_take_child, initargs=(children or [],))
     try:
         yield pool
     finally:
@@ -184,25 +148,46 @@ def threads(count: int) -> Iterator[ThreadPoolExecutor]:
         _ended.clear()
 
 
+def _take_child(children: list[Child]) -> None:
+    """Take a child for this thread."""
+    with suppress(IndexError):
+        _local.child = children.pop()
+
+
+@contextmanager
+def workers(count: int) -> Iterator[ThreadPoolExecutor]:
+    """Pool of ``count`` threads with children that have the modules of this process, where the system permits forks."""
+    method: Literal["fork", "spawn"] = "fork" if len(list(_THREADS.glob("*"))) == 1 else "spawn"
+    with threads(count, [Child(method) for _ in range(count)]) as pool:
+        yield pool
+
+
 def call_fresh(call: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
     """Value of a call in a fresh Python, as :meth:`Child.call` without a time limit.
 
     Raises:
         WorkerDiedError: the process ended by force.
     """
-    child = Child()
-    try:
+    with closing(Child()) as child:
         return child.call(None, call, *arguments, **named)
-    finally:
-        child.close()
 
 
-def _serve(line: Connection) -> None:
-    """Answer calls until the line closes."""
+def _serve(line: Connection, level: int) -> None:
+    """Answer calls until the line closes; log records from ``level`` on reach standard error.
+
+    An interrupt of all processes ends the asking process, and thereby the children; the other signals end this process
+    without a message.  The garbage collector runs less often and skips loaded modules: the records of a load path are
+    many and make no cycles.
+    """
     parent = parent_process()
     assert parent is not None, "this process was started by another process"
-    _follow(parent.sentinel)
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+    logs.print_from(level)
+    gc.freeze()
+    gc.set_threshold(*COLLECTED)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in (signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)):
+        signal.signal(number, signal.SIG_DFL)
     with suppress(EOFError):
         while True:
             function, arguments, named = line.recv()
@@ -213,9 +198,15 @@ def _serve(line: Connection) -> None:
             line.send(result)
 
 
+def _end_with(process: int) -> None:
+    """End this process as soon as the ``process`` of a sentinel ends."""
+    wait([process])
+    os._exit(1)
+
+
 @contextmanager
-def interrupts_ignored() -> Iterator[None]:
-    """Context in which new processes ignore interrupts until they state otherwise.
+def _interrupts_ignored() -> Iterator[None]:
+    """Context in which new processes ignore interrupts from the beginning.
 
     A process takes over that an interrupt is ignored.  An interrupt during the imports of a process would print a
     traceback.
@@ -228,29 +219,3 @@ def interrupts_ignored() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
-
-
-def _prepare_worker(reading: Connection, lifeline: Connection | None, level: int) -> None:
-    """Prepare a worker: signals end it without a message, log records from ``level`` on reach standard error.
-
-    The garbage collector runs less often and skips loaded modules: the records of a load path are many and make no
-    cycles.
-    """
-    if lifeline is not None:  # a forked worker has a copy of the end that only the asking process may own
-        lifeline.close()
-    logs.print_from(level)
-    gc.freeze()
-    gc.set_threshold(*COLLECTED)
-    for number in (signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)):
-        signal.signal(number, signal.SIG_DFL)
-    _follow(reading)
-
-
-def _follow(lifeline: Connection | int) -> None:
-    """End this process as soon as the other end of ``lifeline`` closes; only the asking process owns the other end."""
-
-    def end_with() -> None:
-        wait([lifeline])
-        os._exit(1)
-
-    threading.Thread(target=end_with, daemon=True).start()

@@ -35,10 +35,7 @@ def scaled_unit(unit: str, size: float) -> tuple[float, str]:
     """Size in SI and name of the unit with the prefix for values of about ``size``; radians have no prefix."""
     if unit in ("rad", "") or size == 0.0 or not math.isfinite(size):
         return 1.0, unit
-    for factor, prefix in _PREFIXES:
-        if size >= factor:
-            return factor, prefix + unit
-    return 1.0, unit
+    return next(((factor, prefix + unit) for factor, prefix in _PREFIXES if size >= factor), (1.0, unit))
 
 
 def component_names(quantity: Quantity) -> tuple[str, ...]:

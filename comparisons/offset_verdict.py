@@ -15,17 +15,17 @@ more than the verdict limit (or a point lies beyond the exact curve's ends), and
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from comparisons.case import Verdict
 from comparisons.formats import percent
-from comparisons.offset_exact import ordinates
+from comparisons.geometry import ordinates
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
 from comparisons.verdict.uncertainty import SAFETY
-from comparisons.verdict.words import Word
+from comparisons.verdict.words import Word, worst_of
 from cprbm_scene import OffsetClaim, OffsetQuestion
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
@@ -87,27 +87,29 @@ class OffsetComparison:
     seconds: Mapping[str, float]
     shown: tuple[Array, ...]
 
+    @property
+    def pressures(self) -> list[float]:
+        """Differences of the rows over their stated uncertainties."""
+        return [row.pressure for row in self.rows]
+
 
 def compared_offset(question: OffsetQuestion, construct: OffsetConstruction = cprbm_offset_points) -> OffsetComparison:
     """Both routes for every spacing, N and t of a question."""
-    distances = question.sign * np.array(question.offsets)
+    distances, graph = question.sign * np.array(question.offsets), 0 if question.axis == "y" else 1
     chains = [(name, n) for name in question.spacings for n in question.numbers]
     begun = time.perf_counter()
     found = [construct(question.curve, question.spacings[name], n, distances) for name, n in chains]
     between = time.perf_counter()
-    graph = 0 if question.axis == "y" else 1
-    breaks = np.cumsum([n for _, n in chains])[:-1]
-    exact = [
-        np.split(ordinates(question.curve, at, float(distance), along_x=graph == 0), breaks)
-        for distance, at in zip(
-            distances, np.concatenate([each.points[..., graph] for each in found], axis=1), strict=True
-        )
-    ]
+    places = np.concatenate([each.points[..., graph] for each in found], axis=1)  # (k, all points)
+    exact = np.stack(
+        [ordinates(question.curve, *at, along_x=graph == 0) for at in zip(places, distances.tolist(), strict=True)]
+    )
     seconds = {"cprbm": between - begun, "exact": time.perf_counter() - between}
+    parts = np.split(exact, np.cumsum([n for _, n in chains])[:-1], axis=1)
     rows = tuple(
-        _row(question, name, place, each, exact[place][chain])
-        for chain, ((name, _), each) in enumerate(zip(chains, found, strict=True))
-        for place in range(len(distances))
+        row
+        for (name, _), each, part in zip(chains, found, parts, strict=True)
+        for row in _rows(question, name, each, part)
     )
     return OffsetComparison(question, rows, _judged(question, rows), frozendict(seconds), _shown(question, construct))
 
@@ -118,22 +120,21 @@ def claim_of_offset(question: OffsetQuestion, n: int) -> OffsetClaim | None:
     return min(claims, key=lambda claim: claim.bound, default=None)
 
 
-def _row(question: OffsetQuestion, name: str, place: int, found: Offsets, exact: Array) -> OffsetRow:
-    """The row of a chain at the offset in a ``place`` of the question's list."""
-    points, t = found.points[place], question.offsets[place]
-    apart = np.abs(points[:, 1 if question.axis == "y" else 0] - exact)
+def _rows(question: OffsetQuestion, name: str, found: Offsets, exact: Array) -> Iterator[OffsetRow]:
+    """The rows of a chain, with exact ordinates (k, n) at the k offsets of the question."""
     tilt = np.abs(np.cos(found.tangents) if question.axis == "y" else np.sin(found.tangents))
-    over = np.full(len(exact), t) if question.relative_to == "offset" else np.abs(exact)
-    stated = SAFETY * np.max(found.off_curve[place] / tilt)
-    return OffsetRow(
-        name,
-        len(exact),
-        t,
-        differences=apart / over,
-        stated=stated / over,
-        round_off=_ROUND_OFF * (np.max(np.abs(points)) + t) / tilt / over,
-        over_offset=float(np.max(apart)) / t,
-    )
+    for t, points, off_curve, o in zip(question.offsets, found.points, found.off_curve, exact, strict=True):
+        apart = np.abs(points[:, 1 if question.axis == "y" else 0] - o)
+        over = np.full(len(o), t) if question.relative_to == "offset" else np.abs(o)
+        yield OffsetRow(
+            name,
+            len(o),
+            t,
+            differences=apart / over,
+            stated=SAFETY * np.max(off_curve / tilt) / over,
+            round_off=_ROUND_OFF * (np.max(np.abs(points)) + t) / tilt / over,
+            over_offset=float(np.max(apart)) / t,
+        )
 
 
 def _shown(question: OffsetQuestion, construct: OffsetConstruction) -> tuple[Array, ...]:
@@ -143,27 +144,24 @@ def _shown(question: OffsetQuestion, construct: OffsetConstruction) -> tuple[Arr
     return tuple(construct(question.curve, spacing, n, distances).points for n in question.shown.numbers)
 
 
-def _judged(question: OffsetQuestion, rows: tuple[OffsetRow, ...]) -> Verdict:
-    words = [row.word(question.verdict_limit) for row in rows]
-    for word in (Word.DIFFER, Word.UNDECIDED, Word.AGREE):
-        those = [row for row, said in zip(rows, words, strict=True) if said is word]
-        if those:
-            break
-    row = max(those, key=lambda row: row.pressure if np.isfinite(row.pressure) else np.inf)
+def _judged(question: OffsetQuestion, rows: Sequence[OffsetRow]) -> Verdict:
+    """The worst word of all rows, with the row that decides."""
+    words = tuple(row.word(question.verdict_limit) for row in rows)
+    word = worst_of(words) or Word.UNDECIDED
+    mine = [row for row, found in zip(rows, words, strict=True) if found is word]
+    row = max(mine, key=lambda row: row.pressure if np.isfinite(row.pressure) else np.inf)
     if not np.isfinite(row.pressure):
-        said = "some offset point lies beyond the ends of the exact curve"
+        cause = "some offset point lies beyond the ends of the exact curve"
+    elif word is Word.UNDECIDED:
+        largest = max(float(np.max(row.stated)) for row in mine)
+        cause = f"the stated uncertainty reaches {percent(largest)}, more than {percent(question.verdict_limit)}"
     else:
         i = int(np.argmax(row.differences / (row.stated + row.round_off)))
-        said = f"{percent(row.differences[i])} against a stated {percent(row.stated[i] + row.round_off[i])}"
-    if word is Word.UNDECIDED and np.isfinite(row.pressure):
-        largest = max(float(np.max(row.stated)) for row in those)
-        said = f"the stated uncertainty reaches {percent(largest)}, more than {percent(question.verdict_limit)}"
-    place = f"{row.spacing} at N = {row.n}, t = {row.offset:g}: {said}"
-    match word:
-        case Word.AGREE:
-            sentence = f"All {len(rows)} rows agree; the closest call is {place}."
-        case Word.DIFFER:
-            sentence = f"{len(those)} of {len(rows)} rows differ, most of all {place}."
-        case Word.UNDECIDED:
-            sentence = f"{len(those)} of {len(rows)} rows are undecided, first of all {place}."
-    return Verdict(word, (sentence,), tuple(words), completed=all(np.isfinite(each.difference) for each in rows))
+        cause = f"{percent(row.differences[i])} against a stated {percent(row.stated[i] + row.round_off[i])}"
+    beginning = {
+        Word.AGREE: f"All {len(rows)} rows agree; the closest call is",
+        Word.DIFFER: f"{len(mine)} of {len(rows)} rows differ, most of all",
+        Word.UNDECIDED: f"{len(mine)} of {len(rows)} rows are undecided, first of all",
+    }
+    sentence = f"{beginning[word]} {row.spacing} at N = {row.n}, t = {row.offset:g}: {cause}."
+    return Verdict(word, (sentence,), words, completed=all(np.isfinite(each.difference) for each in rows))

@@ -30,7 +30,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Protocol
+from typing import TYPE_CHECKING, TypeAlias
 
 from pydantic import ValidationError
 
@@ -42,6 +42,9 @@ from cprbm_scene import Answer, Ending, Mistake, RigidContact, Scene, SceneError
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import BodyLoad, Curve, Spline
+
+if TYPE_CHECKING:
+    from cprbm import OffsetPoints
 
 Prepared = Callable[[], Answer]
 
@@ -187,18 +190,8 @@ def solid_answer(scene: Scene, choices: Choices) -> Answer:
     return solid.answer(scene, settings)
 
 
-class Offsets(Protocol):
-    """Offset points (k, n, 2), m, at k distances, angles of the tangents (n,), errors of the points (k, n), m."""
-
-    @property
-    def points(self) -> Array: ...  # noqa: D102
-    @property
-    def tangents(self) -> Array: ...  # noqa: D102
-    @property
-    def off_curve(self) -> Array: ...  # noqa: D102
-
-
-OffsetConstruction = Callable[[Curve, Spacing, int, Array], Offsets]
+Offsets: TypeAlias = "OffsetPoints"
+OffsetConstruction = Callable[[Curve, Spacing, int, Array], "OffsetPoints"]
 """Arguments: a curve, a spacing, N and signed distances (k,), m, positive to the left."""
 
 

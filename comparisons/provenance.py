@@ -53,9 +53,7 @@ def page_origin() -> dict[str, str | int]:
 
 def _processor() -> str:
     """Name of the processor as the system states the name."""
-    if _PROCESSORS.is_file():
-        for line in _PROCESSORS.read_text(encoding="utf-8", errors="replace").splitlines():
-            key, _, value = line.partition(":")
-            if key.strip() == "model name":
-                return value.strip()
-    return platform.processor() or "unknown"
+    text = _PROCESSORS.read_text(encoding="utf-8", errors="replace") if _PROCESSORS.is_file() else ""
+    pairs = (line.partition(":") for line in text.splitlines())
+    names = (value.strip() for key, _, value in pairs if key.strip() == "model name")
+    return next(names, platform.processor() or "unknown")

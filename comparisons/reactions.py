@@ -39,14 +39,15 @@ F₁ − 2F + F₂ = Jh(1 − ξ). A quarter of |F₁ − 2F + F₂| bounds both
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from enum import Enum
 from itertools import chain
 
 import numpy as np
 
 from comparisons.quantities import VANISHING
-from comparisons.stations import kept, station_of
+from comparisons.stations import find_station, kept, station_of
 from cprbm_scene import Answer, Drive, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.freedoms import unit
 from cprbm_scene.statement import DisplacementDrive
@@ -94,21 +95,6 @@ class Absence(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Interval:
-    """The interval from d − h to d + h around a station of the CPRBM.
-
-    Attributes:
-        states: the states at d − h, d and d + h; none if a perturbed state is missing.
-        changes: contacts and stops that are active in some of the states, but not in all.
-        absence: why no difference is taken; None on a smooth interval.
-    """
-
-    states: tuple[StationAnswer, ...]
-    changes: tuple[str, ...] = ()
-    absence: Absence | None = None
-
-
-@dataclass(frozen=True, slots=True)
 class WorkEnergyReaction:
     """A drive's reaction at a station, in ``unit``; positive along the drive.
 
@@ -121,11 +107,11 @@ class WorkEnergyReaction:
         multiplier: F of the CPRBM.
         fea: F of the finite elements.
         scale: divisor of differences: \\|F\\|, or the stage's largest \\|F\\| where F vanishes.
-        work_energy: R; None on an interval with an event or a missing state.
+        touches: whether contacts are closed at the station.
+        work_energy: R; None on an interval from d − h to d + h with an event, or without a state at an end.
         truncation: bound of the truncation error of R, in ``unit``; 0 without R.
         round_off: bound of the round-off of R, in ``unit``; 0 without R.
-        touches: whether contacts are closed at the station.
-        changes: contacts and stops that change within the interval.
+        changes: contacts and stops that are active in some states of the interval, but not in all.
         absence: the reason for a missing R.
     """
 
@@ -137,12 +123,12 @@ class WorkEnergyReaction:
     multiplier: float
     fea: float
     scale: float
-    work_energy: float | None
-    truncation: float
-    round_off: float
     touches: bool
-    changes: tuple[str, ...]
-    absence: Absence | None
+    work_energy: float | None = None
+    truncation: float = 0.0
+    round_off: float = 0.0
+    changes: tuple[str, ...] = ()
+    absence: Absence | None = None
 
     @property
     def difference(self) -> float | None:
@@ -182,19 +168,16 @@ def perturbed_scene(scene: Scene) -> Scene | None:
 
     Stages of loads and of other drives keep their stations, and long stages the stations that tables show.
     """
-    if not any(_has_reaction(scene, stage) and not is_long(stage) for stage in scene.stages):
+    perturbed = [stage for stage in scene.stages if _has_reaction(scene, stage) and not is_long(stage)]
+    if not perturbed:
         return None
-    stages = []
-    for stage in scene.stages:
-        stations = stage.stations
-        if is_long(stage):
-            stations = kept(stage)
-        elif _has_reaction(scene, stage):
-            pairs = ((d - h, d + h) for d, h in _steps(stage).items())
-            stations = (*chain.from_iterable(pairs), stage.stations[-1])
-        stages.append(stage.model_copy(update={"stations": stations}))
+    stations = {stage.name: kept(stage) if is_long(stage) else stage.stations for stage in scene.stages}
+    for stage in perturbed:
+        ends = ((d - h, d + h) for d, h in _steps(stage).items())
+        stations[stage.name] = (*chain.from_iterable(ends), stage.stations[-1])
+    stages = tuple(stage.model_copy(update={"stations": stations[stage.name]}) for stage in scene.stages)
     probes = (ENERGY, *(probe for probe in scene.probes if probe.quantity in _STATE))
-    return scene.model_copy(update={"stages": tuple(stages), "probes": probes, "claims": ()})
+    return scene.model_copy(update={"stages": stages, "probes": probes, "claims": ()})
 
 
 def reactions(scene: Scene, cprbm: Answer, fea: Answer, perturbed: Answer | None) -> tuple[WorkEnergyReaction, ...]:
@@ -211,62 +194,60 @@ def reactions(scene: Scene, cprbm: Answer, fea: Answer, perturbed: Answer | None
     """
     found = []
     for stage in (stage for stage in scene.stages if _has_reaction(scene, stage)):
-        intervals = smooth_intervals(scene, stage, cprbm, perturbed)
-        stations = [station_of(cprbm, stage.name, d) for d in stage.stations]
-        largest = max(abs(multiplier(scene, stage, here)) for here in stations)
-        for here, interval in zip(stations, intervals, strict=True):
-            F = multiplier(scene, stage, here)
-            R, truncation, round_off = _central_difference(scene, stage, interval)
-            found.append(
-                WorkEnergyReaction(
-                    stage=stage.name,
-                    station=here.value,
-                    drive=stage.steps,
-                    unit="N" if isinstance(scene.drives[stage.steps], DisplacementDrive) else "N·m",
-                    branch=here.branch,
-                    multiplier=F,
-                    fea=multiplier(scene, stage, station_of(fea, stage.name, here.value)),
-                    scale=abs(F) if abs(F) >= VANISHING * largest else largest,
-                    work_energy=R,
-                    truncation=truncation,
-                    round_off=round_off,
-                    touches=bool(here.touching),
-                    changes=interval.changes,
-                    absence=interval.absence,
-                )
+        beside = cprbm if is_long(stage) else perturbed
+        probes = {probe.name for probe in scene.probes_in(stage.name)}
+        steps = {} if is_long(stage) and ENERGY.name not in probes else _steps(stage)
+        ends = [point.end for answer in (cprbm, beside) if answer is not None for point in answer.gone_over]
+        passed = [end.value for end in ends if end.stage == stage.name]
+        forces = [multiplier(scene, stage, station_of(cprbm, stage.name, d)) for d in stage.stations]
+        largest = max(map(abs, forces))
+        for d, F in zip(stage.stations, forces, strict=True):
+            here = station_of(cprbm, stage.name, d)
+            row = WorkEnergyReaction(
+                stage=stage.name,
+                station=here.value,
+                drive=stage.steps,
+                unit="N" if isinstance(scene.drives[stage.steps], DisplacementDrive) else "N·m",
+                branch=here.branch,
+                multiplier=F,
+                fea=multiplier(scene, stage, station_of(fea, stage.name, d)),
+                scale=abs(F) if abs(F) >= VANISHING * largest else largest,
+                touches=bool(here.touching),
             )
+            if d not in steps or beside is None:
+                found.append(replace(row, absence=Absence.NOT_PERTURBED))
+                continue
+            before, after = (find_station(beside, stage.name, d + step) for step in (-steps[d], steps[d]))
+            if before is None or after is None:
+                found.append(replace(row, absence=Absence.NOT_REACHED))
+                continue
+            found.append(_with_work_energy(scene, stage, row, (before, here, after), passed))
     return tuple(found)
 
 
-def smooth_intervals(scene: Scene, stage: Stage, cprbm: Answer, perturbed: Answer | None) -> tuple[Interval, ...]:
-    """The interval around every station of a stage; an interval with an event states the reason against R."""
-    beside = cprbm if is_long(stage) else perturbed
-    answers = [answer for answer in (cprbm, beside) if answer is not None]
-    passed = [point.end.value for answer in answers for point in answer.gone_over if point.end.stage == stage.name]
-    steps, asked = _steps(stage), {probe.name for probe in scene.probes_in(stage.name)}
-    found = []
-    for d in stage.stations:
-        if d not in steps or beside is None or (is_long(stage) and ENERGY.name not in asked):
-            found.append(Interval((), absence=Absence.NOT_PERTURBED))
-            continue
-        h = steps[d]
-        try:
-            states = tuple(
-                station_of(answer, stage.name, value)
-                for answer, value in ((beside, d - h), (cprbm, d), (beside, d + h))
-            )
-        except KeyError:
-            found.append(Interval((), absence=Absence.NOT_REACHED))
-            continue
-        active = [_active(scene, state) for state in states]
-        changes = tuple(sorted(frozenset.union(*active) - frozenset.intersection(*active)))
-        events = {
-            Absence.BRANCH: len({state.branch for state in states}) > 1,
-            Absence.CRITICAL_POINT: any(d - h <= value <= d + h for value in passed),
-            Absence.CONTACT: bool(changes),
-        }
-        found.append(Interval(states, changes, next((event for event, met in events.items() if met), None)))
-    return tuple(found)
+def _with_work_energy(
+    scene: Scene,
+    stage: Stage,
+    row: WorkEnergyReaction,
+    states: tuple[StationAnswer, StationAnswer, StationAnswer],
+    passed: Sequence[float],
+) -> WorkEnergyReaction:
+    """The row with R from states at d − h, d and d + h, or with the event on the interval that forbids a difference."""
+    before, _, after = states
+    active = [_active(scene, state) for state in states]
+    changes = tuple(sorted(frozenset.union(*active) - frozenset.intersection(*active)))
+    events = {
+        Absence.BRANCH: len({state.branch for state in states}) > 1,
+        Absence.CRITICAL_POINT: any(before.value <= value <= after.value for value in passed),
+        Absence.CONTACT: bool(changes),
+    }
+    if any(events.values()):
+        return replace(row, changes=changes, absence=next(event for event, met in events.items() if met))
+    U1, U2 = (float(state.values[ENERGY.name][0]) for state in (before, after))
+    F1, F, F2 = (multiplier(scene, stage, state) for state in states)
+    width = after.value - before.value
+    left = before.certificate.residual_floor * abs(U1) + after.certificate.residual_floor * abs(U2)
+    return replace(row, work_energy=(U2 - U1) / width, truncation=abs(F1 - 2.0 * F + F2) / 4.0, round_off=left / width)
 
 
 def multiplier(scene: Scene, stage: Stage, station: StationAnswer) -> float:
@@ -290,9 +271,8 @@ def multiplier(scene: Scene, stage: Stage, station: StationAnswer) -> float:
 
 def _has_reaction(scene: Scene, stage: Stage) -> bool:
     """Whether a stage moves a drive whose reaction is a probe of the scene."""
-    probes = {probe.name for probe in scene.probes_in(stage.name)}
-    moves = stage.steps in scene.drives and any(stage.stations)
-    return moves and reaction_probe(scene.drives[stage.steps]).name in probes
+    drive = scene.drives.get(stage.steps) if any(stage.stations) else None
+    return drive is not None and reaction_probe(drive).name in {probe.name for probe in scene.probes_in(stage.name)}
 
 
 def _steps(stage: Stage) -> dict[float, float]:
@@ -315,15 +295,3 @@ def _active(scene: Scene, station: StationAnswer) -> frozenset[str]:
     """The closed contacts, and the holding stops among the stops with a moment probe."""
     moments = {probe.of: station.values[probe.name] for probe in scene.probes if probe.quantity == "moment"}
     return frozenset(station.touching) | {name for name, moment in moments.items() if moment.any()}
-
-
-def _central_difference(scene: Scene, stage: Stage, interval: Interval) -> tuple[float | None, float, float]:
-    """R with truncation error and round-off; None and zeros without R."""
-    if interval.absence is not None:
-        return None, 0.0, 0.0
-    before, _, after = interval.states
-    U1, U2 = (float(state.values[ENERGY.name][0]) for state in (before, after))
-    F1, F, F2 = (multiplier(scene, stage, state) for state in interval.states)
-    width = after.value - before.value
-    left = before.certificate.residual_floor * abs(U1) + after.certificate.residual_floor * abs(U2)
-    return (U2 - U1) / width, abs(F1 - 2.0 * F + F2) / 4.0, left / width

@@ -59,15 +59,13 @@ def place(scene: Scene, row: Row) -> str:
 def calibration_sentence(scene: Scene, rows: Sequence[Row]) -> str:
     """Comparison of true errors with stated ones in a sentence; empty without an exact value."""
     ratios = error_ratios(rows)
-    beyond = []
-    for solver in SOLVERS:
-        mine = tally(ratios, solver, worst=1)
-        if mine.rows > mine.within:
-            worst = mine.worst[0]
-            beyond.append(
-                f"{NAMES[solver]} exceed the stated error in {mine.rows - mine.within} of {mine.rows} rows, at most "
-                f"{number(worst.ratio)} times ({place(scene, worst.row)})"
-            )
+    tallies = {NAMES[solver]: tally(ratios, solver, worst=1) for solver in SOLVERS}
+    beyond = [
+        f"{name} exceed the stated error in {mine.rows - mine.within} of {mine.rows} rows, at most "
+        f"{number(mine.worst[0].ratio)} times ({place(scene, mine.worst[0].row)})"
+        for name, mine in tallies.items()
+        if mine.rows > mine.within
+    ]
     if beyond:
         return f"Beside the exact answer {'; '.join(beyond)}."
     return "All true errors beside the exact answer in bending are within the stated ones." if ratios else ""
@@ -75,32 +73,26 @@ def calibration_sentence(scene: Scene, rows: Sequence[Row]) -> str:
 
 def wider_limits(scene: Scene) -> str:
     """Probes with a wider limit than the scene's in a sentence; empty without any."""
-    wider = [probe for probe in scene.probes if scene.limit(probe) > scene.verdict_limit]
-    if not wider:
-        return ""
-    limits = ", ".join(f"{percent(scene.limit(probe))} for {probe.name}" for probe in wider)
-    return f"The scene allows stated uncertainties of {percent(scene.verdict_limit)} of the scale; {limits}."
+    limits = {probe.name: scene.limit(probe) for probe in scene.probes}
+    wider = ", ".join(f"{percent(limit)} for {name}" for name, limit in limits.items() if limit > scene.verdict_limit)
+    allowed = f"The scene allows stated uncertainties of {percent(scene.verdict_limit)} of the scale; {wider}."
+    return allowed if wider else ""
 
 
 def theory_sentence(scene: Scene, runs: Runs, rows: Sequence[Row]) -> str:
     """The largest step of theory, or why the CPRBM has no value in the other theory; empty without this run."""
     other = runs.other
     if other is None:
-        absence = f"The CPRBM does not answer in {runs.other_theory}: {runs.other_absence}."
-        return absence if runs.other_absence else ""
+        return f"The CPRBM does not answer in {runs.other_theory}: {runs.other_absence}." if runs.other_absence else ""
+    parts, inside = [], f"In {runs.other_theory} the CPRBM"
     steps = [(row.theory / row.scale, row) for row in rows if math.isfinite(row.theory)]
-    parts = []
     if steps:
         largest, row = max(steps, key=lambda step: step[0])
-        parts.append(
-            f"In {runs.other_theory} the CPRBM's values are at most {percent(largest)} of the scale away "
-            f"({place(scene, row)})."
-        )
+        parts.append(f"{inside}'s values are at most {percent(largest)} of the scale away ({place(scene, row)}).")
     if other.completed and not runs.cprbm[0].completed:
-        parts.append(f"In {runs.other_theory} the CPRBM has a complete answer: `--theory {runs.other_theory}`.")
+        parts.append(f"{inside} has a complete answer: `--theory {runs.other_theory}`.")
     elif runs.cprbm[0].completed and not other.completed:
-        ending = _first(problem_sentences(scene, other))
-        parts.append(f"In {runs.other_theory} the CPRBM has no complete answer: {ending}.")
+        parts.append(f"{inside} has no complete answer: {_first(problem_sentences(scene, other))}.")
     return " ".join(parts)
 
 
@@ -125,12 +117,11 @@ def audit_sentence(solver: str, complaints: Sequence[str]) -> str:
 
 def critical_sentence(scene: Scene, row: CriticalRow) -> str:
     """Loads and mechanisms of a critical point in both solvers, and its word."""
-    found = {"the CPRBM": row.cprbm, "the finite elements": row.fea}
     parts = " and ".join(
         f"nowhere in {name}"
         if one is None
         else f"{with_unit(scene, one.value, row.unit, 5)} ({mechanism(one)}) in {name}"
-        for name, one in found.items()
+        for name, one in zip(NAMES.values(), (row.cprbm, row.fea), strict=True)
     )
     if row.bounds is not None:
         sizes = (row.difference, row.bounds.total, row.allowed)
@@ -165,10 +156,9 @@ def passed_sentences(table: RunsTable, rows: Sequence[Row], judged: Sequence[Jud
     differing = [row for row, (word, _) in zip(rows, judged, strict=True) if word is Word.DIFFER]
     if not differing:
         return
-    names = [stage.name for stage in table.scene.stages]
-    current = names.index(differing[0].stage)
-    stage, before = table.scene.stages[current], names[:current]
-    index = stage.stations.index(differing[0].station)
+    stages = {stage.name: stage for stage in table.scene.stages}
+    stage = stages[differing[0].stage]
+    before, index = [*stages][: [*stages].index(stage.name)], stage.stations.index(differing[0].station)
     for name, answer in zip(NAMES.values(), table.pair, strict=True):
         earlier = [one for one in answer.gone_over if one.end.stage in before]
         mine = [one for one in answer.gone_over if one.end.stage == stage.name]
@@ -231,14 +221,12 @@ def _coarse(table: RunsTable, row: Row) -> str:
     """The solver with too large an uncertainty, and a sufficient size."""
     assert row.bounds is not None
     limit = table.scene.limit(row.probe)
-    needed = {}
-    for solver, stated in (("cprbm", row.bounds.cprbm), ("fea", row.bounds.fea)):
-        option, key = _OPTIONS[solver]
-        size = table.answers[solver].settings.get(key)
-        room = 0.4 * limit * row.scale
+    needed, room = [], 0.4 * limit * row.scale
+    for solver, (option, key) in _OPTIONS.items():
+        size, stated = table.answers[solver].settings.get(key), getattr(row.bounds, solver)
         if isinstance(size, int) and stated > room:
-            needed[solver] = f"{option} {math.ceil(size * math.sqrt(stated / room) / 10.0) * 10}"
-    hint = f" `{' '.join(needed.values())}` would do." if needed else " Refine both solvers."
+            needed.append(f"{option} {math.ceil(size * math.sqrt(stated / room) / 10.0) * 10}")
+    hint = f" `{' '.join(needed)}` would do." if needed else " Refine both solvers."
     whose = NAMES["cprbm" if row.bounds.cprbm >= row.bounds.fea else "fea"]
     return (
         f"the stated uncertainty is {_of_scale(row.bounds.total, row)} of the scale, more than {percent(limit)}, most "

@@ -51,19 +51,20 @@ def at_shown(scene: Scene) -> Scene:
     return scene.model_copy(update={"stages": tuple(stages)})
 
 
+def find_station(answer: Answer, stage: str, value: float) -> StationAnswer | None:
+    """An answer's station of a stage at a value of the load or drive; None without this station."""
+    mine = [station for station in answer.stations if station.stage == stage]
+    near = (station for station in mine if math.isclose(station.value, value, rel_tol=_SAME, abs_tol=0.0))
+    return next((station for station in mine if station.value == value), None) or next(near, None)
+
+
 def station_of(answer: Answer, stage: str, value: float) -> StationAnswer:
     """An answer's station of a stage at a value of the load or drive.
 
     Raises:
         KeyError: the answer lacks the station.
     """
-    mine = (station for station in answer.stations if station.value == value and station.stage == stage)
-    near = (
-        station
-        for station in answer.stations
-        if station.stage == stage and math.isclose(station.value, value, rel_tol=_SAME, abs_tol=0.0)
-    )
-    station = next(mine, None) or next(near, None)
+    station = find_station(answer, stage, value)
     if station is None:
         raise KeyError(f"{answer.solver} has no station {stage} {value:g}")
     return station

@@ -88,40 +88,28 @@ def read(path: Path) -> Answer | None:
         return None
 
 
-@dataclass(frozen=True, slots=True)
-class KeptSolver:
-    """A solver whose answers are kept in a folder, and read from there at the second question.
+def _kept_answer(solver: Solver, name: str, folder: Path, scene: Scene, choices: Choices) -> Answer:
+    """The answer of a solver with a ``name``: from a ``folder``, or else solved and written into the folder.
 
-    Attributes:
-        solver: the function that answers.
-        name: of the solver.
-        folder: of the files.
+    Raises:
+        SceneError: the solver refuses the question.
+        OSError: the answer cannot be kept.
     """
-
-    solver: Solver
-    name: str
-    folder: Path
-
-    def __call__(self, scene: Scene, choices: Choices) -> Answer:
-        """The answer, kept or new.
-
-        Raises:
-            SceneError: the solver refuses the question.
-            OSError: the answer cannot be kept.
-        """
-        own = getattr(self.solver, "__qualname__", None) or repr(self.solver)
-        path = self.folder / f"{key(self.name, scene, choices, own)}.json.gz"
-        answer = read(path)
-        if answer is None:
-            answer = self.solver(scene, choices)
-            write(path, packed({"answer": answer}))
-        return answer
+    own = getattr(solver, "__qualname__", None) or repr(solver)
+    path = folder / f"{key(name, scene, choices, own)}.json.gz"
+    answer = read(path)
+    if answer is None:
+        answer = solver(scene, choices)
+        write(path, packed({"answer": answer}))
+    return answer
 
 
 def kept(solvers: Solvers, folder: Path) -> Solvers:
     """The solvers with their answers kept in a folder."""
     own = {name: getattr(solvers, name) for name in _CHOSEN}
-    changes: dict[str, Any] = {name: KeptSolver(each, name, folder) for name, each in own.items() if each is not None}
+    changes: dict[str, Any] = {
+        name: partial(_kept_answer, each, name, folder) for name, each in own.items() if each is not None
+    }
     return replace(solvers, **changes)
 
 
@@ -182,10 +170,6 @@ def run_into(out: Path | None, solvers: Solvers, names: tuple[str, ...] = (), pr
         shutil.rmtree(ended, ignore_errors=True)
 
 
-def _silent(text: str) -> None:
-    """Print nothing."""
-
-
 @dataclass(frozen=True, slots=True)
 class AnswerMemory(Crew):
     """A crew with a memory of the answers of ``solvers``.
@@ -197,7 +181,7 @@ class AnswerMemory(Crew):
     """
 
     solvers: Solvers = field(default_factory=Solvers)
-    say: Callable[[str], None] = _silent
+    say: Callable[[str], None] = lambda text: None
     known: dict[Job, Answer] = field(default_factory=dict)
 
     def answers(self, jobs: list[Job]) -> list[Answer]:

@@ -1,14 +1,19 @@
-"""The third opinion: values of the beam theories beside the mechanism as a solid.
+"""Further opinions beside a row, on which no word of the verdict rests: a solid, and another formulation of contact.
 
 ======  ==========================================================================================
 symbol  meaning
 ======  ==========================================================================================
-x       value of the solid, extrapolated from its meshes (:mod:`comparisons.solid_limits`)
+x       value of the solid, extrapolated from meshes that double
 u       stated uncertainty of x, the largest over the probe's stations in the stage
 ======  ==========================================================================================
 
 The distance of a beam theory from x is the error of the theory, as far as u and the uncertainties of the solvers allow.
-No word of the verdict rests on these distances: a beam theory has an error of its own.
+
+Away from corners quadrilaterals of second order converge with the fourth power of the element's size.  At the corner of
+a face that is held the stress has no bound, and displacements converge with an order of about 1.5 (M. L. Williams,
+Stress singularities resulting from various boundary conditions in angular corners of plates in extension, J. Appl.
+Mech. 19 (1952) 526).  Three meshes show the order.  Two meshes do not, and their uncertainty reaches the limit of
+order 1.
 """
 
 from __future__ import annotations
@@ -17,14 +22,19 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from comparisons.case import Comparison
 from comparisons.formats import percent
 from comparisons.quantities import norm
-from comparisons.solid_limits import solid_limit
-from comparisons.stations import station_of
+from comparisons.stations import find_station, station_of
+from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import Row
-from comparisons.verdict.uncertainty import largest
-from cprbm_scene.answer import Array
+from comparisons.verdict.runs import Runs
+from comparisons.verdict.uncertainty import GRIDS, Limit, largest, limit
+from cprbm_scene import Answer, Scene, StationAnswer
+from cprbm_scene.answer import Array, Flags
+from cprbm_scene.statement import STRESSES
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +55,44 @@ class Third:
     cprbm: float
     fea: float
     other: float
+
+
+def solid_limit(
+    scene: Scene, row: Row, answers: Sequence[Answer], beside: Sequence[StationAnswer] = ()
+) -> tuple[Limit, Flags] | None:
+    """Limit (k,) of the solid at a row, and the components that count; None if the two finest meshes lack such values.
+
+    Args:
+        scene: the question.
+        row: of a comparison.
+        answers: the solid's, on meshes each twice as fine as the mesh before; all complete.
+        beside: other answers to the row. A stress does not count near held ends and near their contacts.
+    """
+    stations = [station_of(answer, row.stage, row.station) for answer in answers[-GRIDS:]]
+    values = [station.values[row.probe.name] for station in stations]
+    alike = [value.shape == row.fea.shape for value in values]
+    if len(values) < 2 or not all(alike[-2:]):
+        return None
+    first = max((place + 1 for place, same in enumerate(alike) if not same), default=0)
+    counts = np.ones(row.fea.shape, dtype=bool)
+    if row.probe.quantity in STRESSES and row.arc_length is not None:
+        counts = away_from_point_forces(scene, row.probe.of, row.arc_length, (*stations[-2:], *beside))
+    sizes = [2.0**place for place in range(len(values))]
+    return limit(sizes[first:], values[first:]), counts
+
+
+def contact_model(runs: Runs, row: Row) -> float | None:
+    """Distance |v_p − v_a| of the values in ``paper`` and ``auto``, in the probe's unit and in one beam theory.
+
+    None where a value is missing, has another shape, or lies on another branch.
+    """
+    if runs.formulations is None or row.counts is None:
+        return None
+    stations = [find_station(answer, *row.where) for answer in runs.formulations]
+    found = [at.values[row.probe.name] for at in stations if at is not None and at.branch == row.branch]
+    if [value.shape for value in found] != [row.fea.shape] * 2:
+        return None
+    return norm(row.probe.quantity, (found[0] - found[1])[row.counts])
 
 
 def thirds_of(compared: Comparison) -> tuple[Third, ...]:

@@ -7,7 +7,6 @@ import platform
 import click
 
 from comparisons.cli.errors import INCOMPLETE
-from comparisons.executor import obstacle
 from comparisons.starting import present
 from comparisons.starting.present import WHAT_DRAWS, line_for
 
@@ -24,10 +23,7 @@ def doctor(quiet: bool) -> int:  # noqa: FBT001 - click passes a keyword
     complete = all(state.there or state.library.extra for state in states)
     if quiet:
         return 0 if complete else INCOMPLETE
-    alone = obstacle()
-    text = f"{'single':<12} process for all work: {alone}" if alone else f"{'several':<12} can share the work"
-    click.echo(f"{'processes':<14} {text}")
-    if not alone and any(state.there and state.library.name == "pyvista" for state in states):
+    if any(state.there and state.library.name == "pyvista" for state in states):
         click.echo(f"{'drawing':<14} {_drawing_text()}")
     missing = ", ".join(state.library.name for state in states if not state.there)
     summary = f"Answers, verdicts and reports work; {missing}: only for the purpose beside the name."

@@ -129,15 +129,15 @@ def _end_of_words(error: Exception) -> End | None:
 def _end_of_question(error: Exception) -> End | None:
     """The end after a wrong scene, and after the loss of a worker."""
     from concurrent.futures import BrokenExecutor
-    from concurrent.futures.process import BrokenProcessPool
 
+    from comparisons.executor import WorkerDiedError
     from cprbm_scene import SceneError
 
     match error:
         case SceneError():
             lines = [_with_next_step(mistake) for mistake in error.mistakes]
             return ("\n  " if len(lines) > 1 else " ").join(("The question is wrong.", *lines)), WRONG_QUESTION
-        case BrokenProcessPool():
+        case WorkerDiedError():
             return f"A worker process was killed, perhaps for lack of memory. {_KEPT}; {_REPEAT}", INCOMPLETE
         case BrokenExecutor():
             return f"{error} {_KEPT}; {_REPEAT}", INCOMPLETE

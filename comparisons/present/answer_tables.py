@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import groupby
 
-from comparisons.case import Comparison
+from comparisons.case import BranchVerdict, Comparison
 from comparisons.display_units import display_units, distance_text, load_column, load_text, with_unit
 from comparisons.formats import component_names, components, number, percent
 from comparisons.present.columns import Column, Table, columns_of, table_of
@@ -18,6 +18,8 @@ from comparisons.verdict.station_events import Place
 from cprbm_scene import Answer, Critical, Event, Scene, Stage
 
 CRITICAL_TITLE = "Critical values: where a branch ends"
+_BETWEEN = -1
+"""Number of a row for stations between events, beside the numbers of branches."""
 
 
 def answer_tables(scene: Scene, answer: Answer, tolerances: Sequence[Tolerance] = ()) -> tuple[Table, ...]:
@@ -100,32 +102,31 @@ def critical_table(compared: Comparison) -> Table:
 
 def branch_table(compared: Comparison) -> Table:
     """Words by branch; without rows where no branch ends."""
-    scene = compared.scene
-
-    def span(stage: str, first: float, last: float) -> str:
-        return " to ".join(load_text(scene, stage, value) for value in dict.fromkeys((first, last)))
-
-    branches = compared.verdict.branches if compared.criticals or len(compared.verdict.branches) > 1 else ()
-    rows = [
-        (
-            f"{each.stage}, branch {each.number}",
-            span(each.stage, each.first, each.last),
-            str(each.stations - each.near),
-            str(each.near),
-            "takes no part" if each.word is None else each.word.value,
-        )
-        for each in branches
-    ]
+    scene, branches = compared.scene, compared.verdict.branches
     stations = dict.fromkeys((row.stage, row.branch is None, row.station) for row in compared.rows)
-    for (stage, between), found in groupby(stations, key=lambda at: at[:2]):
-        loads = [load for *_, load in found]
-        if between:
-            name = f"{stage}, {Place.BETWEEN.value}"
-            rows.append((name, span(stage, loads[0], loads[-1]), str(len(loads)), "–", "takes no part"))
-    return Table(
+    between = [
+        BranchVerdict(stage, _BETWEEN, loads[0], loads[-1], len(loads), 0, None)
+        for (stage, apart), found in groupby(stations, key=lambda at: at[:2])
+        if apart and (loads := [load for *_, load in found])
+    ]
+
+    def span(at: BranchVerdict) -> str:
+        return " to ".join(load_text(scene, at.stage, value) for value in dict.fromkeys((at.first, at.last)))
+
+    columns = [
+        Column[BranchVerdict](
+            "branch",
+            lambda at: f"{at.stage}, {Place.BETWEEN.value if at.number == _BETWEEN else f'branch {at.number}'}",
+        ),
+        Column("stations", span),
+        Column("compared", lambda at: at.stations - at.near),
+        Column("between events", lambda at: None if at.number == _BETWEEN else at.near),
+        Column("word", lambda at: "takes no part" if at.word is None else at.word.value),
+    ]
+    return table_of(
         "Branch by branch",
-        ("branch", "stations", "compared", "between events", "word"),
-        tuple(rows),
+        columns,
+        [*(branches if compared.criticals or len(branches) > 1 else ()), *between],
         "A branch is compared with the same branch. Stations between the runs' loads of an event take no part.",
     )
 

@@ -39,7 +39,7 @@ def brief(compared: Comparison | OffsetComparison, argument: str, page: Path | N
         page: written page of the case; None without a report.
     """
     verdict = compared.verdict
-    first = _wrapped(headline(name_of(compared), verdict, verdict.because))
+    first = _wrapped(headline(compared.question.name, verdict, verdict.because))
     last = _next_step(argument, verdict, page)
     if isinstance(compared, OffsetComparison):
         errors = offset.error_table(compared)
@@ -57,11 +57,6 @@ def headline(name: str, verdict: Verdict, sentence: str) -> str:
     """Name of a case, word, reason and ``sentence``."""
     reason = "" if verdict.reason is None else f" ({verdict.reason.value})"
     return f"{name}: {verdict.word.value}{reason}. {sentence}".rstrip()
-
-
-def name_of(compared: Comparison | OffsetComparison) -> str:
-    """Name of a case."""
-    return compared.question.name if isinstance(compared, OffsetComparison) else compared.scene.name
 
 
 def last_rows_of_stages(compared: Comparison) -> tuple[Judged, ...]:
@@ -85,20 +80,24 @@ def nearest_rows(compared: Comparison, rows: Sequence[Judged], count: int) -> Ta
         body += _lines(judged, *units[row.unit])
     others = Counter(word.value if word else "without a word" for _, word, _ in (rows[at] for at in order[count:]))
     note = ", ".join(f"{times} more {'row' if times == 1 else 'rows'} {word}" for word, times in others.items())
-    headers = ("probe", "unit", "CPRBM", "FEA", "difference", "stated", "word")
-    return Table("", headers, tuple(body), f"{note} (-v)" if note else "")
+    return Table(
+        "",
+        ("probe", "unit", "CPRBM", "FEA", "difference", "stated", "word"),
+        tuple(body),
+        f"{note} (-v)" if note else "",
+    )
 
 
 def summary(finished: Sequence[Comparison | OffsetComparison]) -> Table:
     """Table with a row for every case."""
     columns = [
-        Column[Comparison | OffsetComparison]("case", name_of),
+        Column[Comparison | OffsetComparison]("case", "question.name"),
         Column("word", "verdict.word.value"),
         Column("reason", lambda compared: follow(compared, "verdict.reason.value") or ""),
         Column("rows agreeing", _agreeing),
-        Column("largest difference over stated", lambda compared: max(_pressures(compared), default=None),
+        Column("largest difference over stated", lambda compared: max(compared.pressures, default=None),
                lambda value: number(value, 2)),
-        Column("seconds", _seconds, lambda value: number(value, 2)),
+        Column("seconds", lambda compared: sum(compared.seconds.values()), lambda value: number(value, 2)),
     ]  # fmt: skip
     return table_of("Summary", columns, finished, "Seconds: of all runs, by the solvers' own clocks.")
 
@@ -106,20 +105,6 @@ def summary(finished: Sequence[Comparison | OffsetComparison]) -> Table:
 def _agreeing(compared: Comparison | OffsetComparison) -> str:
     words = [word for word in compared.verdict.words if word is not None]
     return f"{words.count(Word.AGREE)} of {len(words)}"
-
-
-def _pressures(compared: Comparison | OffsetComparison) -> list[float]:
-    """Differences over stated uncertainties."""
-    if isinstance(compared, OffsetComparison):
-        return [row.pressure for row in compared.rows]
-    return [pressure(row) for row in compared.rows if row.bounds is not None]
-
-
-def _seconds(compared: Comparison | OffsetComparison) -> float:
-    if isinstance(compared, OffsetComparison):
-        return sum(compared.seconds.values())
-    answers = [*dict(compared.runs.everything()).values(), compared.runs.other, compared.runs.exact]
-    return sum(answer.seconds for answer in answers if answer is not None)
 
 
 def _nearness(judged: Judged) -> tuple[int, float]:

@@ -104,8 +104,8 @@ def _palette_png(png: bytes) -> bytes:
 def image(drawing: Drawing, kind: str, dots: float | None = None) -> bytes:
     """The drawing as ``svg`` or ``png`` without dates, with ``dots`` to the inch."""
     stream = io.BytesIO()
-    nothing = {"Date": None} if kind == "svg" else {"Software": None}
-    drawing.savefig(stream, format=kind, metadata=nothing, dpi=_STYLE["savefig.dpi"] if dots is None else dots)
+    metadata = {"Date" if kind == "svg" else "Software": None}
+    drawing.savefig(stream, format=kind, metadata=metadata, dpi=dots or _STYLE["savefig.dpi"])
     return stream.getvalue()
 
 

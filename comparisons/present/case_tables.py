@@ -12,7 +12,7 @@ from comparisons.display_units import at_station, display_unit
 from comparisons.formats import number, percent
 from comparisons.present import row_tables
 from comparisons.present.answer_tables import branch_table, critical_table, search_table
-from comparisons.present.columns import Column, Figure, Section, Table, columns_of, follow, table_of
+from comparisons.present.columns import Column, Figure, Section, Table, follow, table_of
 from comparisons.present.json_document import solver
 from comparisons.reactions import MESH_ALLOWANCE, PERTURBATION, WorkEnergyReaction, is_long
 from comparisons.stations import kept
@@ -102,31 +102,31 @@ def claims_table(compared: Comparison) -> Table:
 
 def reaction_tables(compared: Comparison) -> tuple[Table, ...]:
     """A table for every moved drive: the multiplier, the work–energy reaction and the finite elements' reaction."""
-    scene, run, tables = compared.scene, compared.runs.perturbed, []
+    return tuple(_reaction_table(compared, drive, found) for drive, found in by_drive(compared.reactions).items())
+
+
+def _reaction_table(compared: Comparison, drive: str, found: Sequence[WorkEnergyReaction]) -> Table:
+    """Reactions of a drive at the stations that tables show."""
+    scene, run = compared.scene, compared.runs.perturbed
     ended = "" if run is None or run.completed else f" The perturbed run ended early: {run.ending.value}."
-    shown = {(stage.name, value) for stage in scene.stages
-             for value in (kept(stage) if is_long(stage) else stage.stations)}  # fmt: skip
-    for drive, found in by_drive(compared.reactions).items():
-        factor, unit = display_unit(scene, found[0].unit, max(abs(each.multiplier) for each in found))
+    stations = {stage.name: kept(stage) if is_long(stage) else stage.stations for stage in scene.stages}
+    factor, unit = display_unit(scene, found[0].unit, max(abs(each.multiplier) for each in found))
 
-        def force(_: WorkEnergyReaction, value: float, factor: float = factor) -> str:
-            return number(value / factor, 5)
+    def force(value: float) -> str:
+        return number(value / factor, 5)
 
-        def fraction(_: WorkEnergyReaction, value: float) -> str:
-            return percent(value)
-
-        columns = [
-            Column[WorkEnergyReaction]("station", lambda at: at_station(scene, at.stage, at.station)),
-            *columns_of(force, {"multiplier": "multiplier", "work–energy": "work_energy"}),
-            *columns_of(fraction, {"from it": "difference"}),
-            *columns_of(force, {"FEA": "fea"}),
-            *columns_of(fraction, {"multiplier from it": "from_fea"}),
-            Column("no value because", lambda at: ": ".join(filter(None, (at.absence.value, ", ".join(at.changes))))
-                   if at.absence else ""),
-        ]  # fmt: skip
-        rows = [each for each in found if (each.stage, each.station) in shown]
-        tables.append(table_of(f"Reaction at the drive {drive}, {unit}", columns, rows, summary(scene, found) + ended))
-    return tuple(tables)
+    columns = [
+        Column[WorkEnergyReaction]("station", lambda at: at_station(scene, at.stage, at.station)),
+        Column("multiplier", "multiplier", force),
+        Column("work–energy", "work_energy", force),
+        Column("from it", "difference", percent),
+        Column("FEA", "fea", force),
+        Column("multiplier from it", "from_fea", percent),
+        Column("no value because", lambda at: ": ".join((at.absence.value, *filter(None, [", ".join(at.changes)])))
+               if at.absence else ""),
+    ]  # fmt: skip
+    rows = [each for each in found if each.station in stations[each.stage]]
+    return table_of(f"Reaction at the drive {drive}, {unit}", columns, rows, summary(scene, found) + ended)
 
 
 def by_drive(found: Sequence[WorkEnergyReaction]) -> dict[str, tuple[WorkEnergyReaction, ...]]:

@@ -103,8 +103,8 @@ def comparison_records(compared: Comparison) -> list[Plain]:
 
 def csv_of(scene: Scene, *answers: Answer) -> str:
     """Answers to a scene as comma-separated values in the units of the scene's file, with a line of headers."""
-    rows = (in_file_units(scene, number) for answer in answers for number in numbers(scene, answer))
-    return csv_text([*Number.__annotations__, "arc_length_unit"], rows)
+    records = (number for answer in answers for number in numbers(scene, answer))
+    return csv_text([*Number.__annotations__, "arc_length_unit"], (in_file_units(scene, each) for each in records))
 
 
 def csv_of_comparisons(comparisons: Sequence[Comparison]) -> str:

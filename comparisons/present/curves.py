@@ -109,9 +109,9 @@ def _ordinates(scene: Scene, stages: Sequence[Stage]) -> Iterator[tuple[str, str
             title = f"displacement of {stepped.point} along the force"
             yield title, "m", {"": lambda at: np.atleast_1d(at.values[moved] @ way)}
     elif isinstance(stepped, DisplacementDrive | RotationDrive) and reaction_probe(stepped).name in names:
-        title = "reaction force" if isinstance(stepped, DisplacementDrive) else "reaction moment"
-        si = UNITS[reaction_probe(stepped).quantity]
-        yield title, si, {"": lambda at: np.atleast_1d(multiplier(scene, first, at))}
+        quantity = reaction_probe(stepped).quantity
+        title = {"reaction": "reaction force"}.get(quantity, "reaction moment")
+        yield title, UNITS[quantity], {"": lambda at: np.atleast_1d(multiplier(scene, first, at))}
     groups: dict[Quantity, str] = {"rotation": "rotation", "force": "contact force"}
     for quantity, title in groups.items():
         lines = {probe.of: value(probe) for probe in asked if probe.quantity == quantity}
@@ -164,9 +164,9 @@ def _curve(
         for name, each in ends
     ]
     titles = ", ".join(title for title, *_ in ordinates)
-    caption = f"{titles[:1].upper()}{titles[1:]} against {steps}; triangles point along the stage."
-    caption += " Dashed: jumps between the stations beside a critical point." if any(at.branch for at in mine) else ""
-    caption += " Dotted: critical values of either solver, the CPRBM's with names." if ends else ""
+    jumps = " Dashed: jumps between the stations beside a critical point." if any(at.branch for at in mine) else ""
+    dotted = " Dotted: critical values of either solver, the CPRBM's with names." if ends else ""
+    caption = f"{titles[:1].upper()}{titles[1:]} against {steps}; triangles point along the stage.{jumps}{dotted}"
     return panels_figure(f"path-{steps}", caption, f"{steps}, {step_unit}", panels, marks)
 
 
@@ -184,9 +184,13 @@ def _paths(
                 jump = {**look, "linestyle": "--", "marker": "", "linewidth": 1.0, "label": None}
                 yield *_points([before, mine[0]], of, scales), jump
             marker = {"marker": look["marker"] or (">" if up else "<")} if "marker" in look else {}
-            few = {"markevery": -(-len(mine) // _MARKERS)}  # more markers would hide the line
-            filled = {"markerfacecolor": look["color"] if up else "white", "markersize": 4.0, "markeredgewidth": 0.7}
-            yield *_points(mine, of, scales), {**look, **filled, **few, **marker}
+            marks = {
+                "markerfacecolor": look["color"] if up else "white",
+                "markersize": 4.0,
+                "markeredgewidth": 0.7,
+                "markevery": -(-len(mine) // _MARKERS),  # more markers would hide the line
+            }
+            yield *_points(mine, of, scales), {**look, **marks, **marker}
             look, before = {**look, "label": None}, mine[-1]
 
 
@@ -204,13 +208,17 @@ def reaction_figures(compared: Comparison) -> Iterator[Figure]:
         si = load_unit(scene, next(stage for stage in scene.stages if stage.name == found[0].stage))
         step, step_unit = axis_unit(scene, si, max(abs(each.station) for each in found))
         crosses = {**FEA, "linestyle": "none", "marker": "x"}
-        rings = {**CPRBM, "marker": "o", "markerfacecolor": "none", "label": "CPRBM, work–energy"}
-        solid = {**CPRBM, "linestyle": "-", "marker": "", "label": "CPRBM, multiplier"}
-        forces = {"fea": crosses, "multiplier": solid, "work_energy": rings}
+        forces = {
+            "fea": crosses,
+            "multiplier": {**CPRBM, "linestyle": "-", "marker": "", "label": "CPRBM, multiplier"},
+            "work_energy": {**CPRBM, "marker": "o", "markerfacecolor": "none", "label": "CPRBM, work–energy"},
+        }
         band = 100.0 * MESH_ALLOWANCE
-        title = "moment" if si == "rad" else "force"
         panels = [
-            Panel(f"reaction {title}, {unit_name}", _reaction_lines(found, step, factor, forces)),
+            Panel(
+                f"reaction {'moment' if si == 'rad' else 'force'}, {unit_name}",
+                _reaction_lines(found, step, factor, forces),
+            ),
             Panel(
                 "relative difference, %",
                 _reaction_lines(found, step, -0.01, {"from_fea": crosses})

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from comparisons.formats import number, percent
-from comparisons.offset_exact import offset_curve
+from comparisons.geometry import offset_curve
 from comparisons.offset_verdict import OffsetComparison, OffsetRow, claim_of_offset
 from comparisons.plain import Plain, plain
 from comparisons.present.canvas import BLUE, RED, canvas, common_legend, finished

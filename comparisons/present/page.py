@@ -97,17 +97,21 @@ def report_page(
     chapters: Sequence[Chapter], further: Sequence[Section] = (), machine: Mapping[str, str | int] | None = None
 ) -> Page:
     """The page of verdicts."""
-    lead = (
+    return Page(
+        "CPRBM beside finite elements",
         "The chained pseudo-rigid-body model and corotational finite elements answer the same questions. Each solver "
-        "states its uncertainty; the verdict says whether the answers agree within these uncertainties."
+        "states its uncertainty; the verdict says whether the answers agree within these uncertainties.",
+        chapters,
+        further,
+        machine or {},
     )
-    return Page("CPRBM beside finite elements", lead, chapters, further, machine or {})
 
 
 def convergence_page(chapters: Sequence[Chapter]) -> Page:
     """The page of errors against N."""
-    lead = "Both solvers at a family of sizes: limits, orders and errors of all numbers."
-    return Page("Error against N", lead, chapters)
+    return Page(
+        "Error against N", "Both solvers at a family of sizes: limits, orders and errors of all numbers.", chapters
+    )
 
 
 def figures_of(compared: Comparison | OffsetComparison) -> tuple[Figure, ...]:
@@ -124,16 +128,11 @@ def document_of(compared: Comparison | OffsetComparison) -> Plain:
     return json_document.comparison(compared)
 
 
-def question_of(compared: Comparison | OffsetComparison) -> Question:
-    """The question of a case."""
-    return compared.question if isinstance(compared, OffsetComparison) else compared.scene
-
-
 def case_chapter(
     compared: Comparison | OffsetComparison, figures: Sequence[Figure], further: Sequence[Section] = ()
 ) -> Chapter:
     """The chapter of a case with figures and further sections."""
-    verdict, chapter = compared.verdict, section_chapter(question_of(compared), further)
+    verdict, chapter = compared.verdict, section_chapter(compared.question, further)
     if isinstance(compared, OffsetComparison):
         sections, names = offset.offset_sections(compared, figures), ["comparison.json"]
         claims, steps = offset.claim_rows(compared), None
@@ -243,12 +242,16 @@ def put_case(folder: Path, compared: Comparison | OffsetComparison, figures: Ite
     Raises:
         OSError: the folder cannot be written to.
     """
-    own, name = own_folder(folder, question_of(compared).name), "comparison"
+    own, name = own_folder(folder, compared.question.name), "comparison"
     put_section(own, Section("", figures=tuple(figures), name=name, data={"cases": [document_of(compared)]}))
     if isinstance(compared, Comparison):
         runs = compared.runs
-        others = {"cprbm paper": runs.paper, "cprbm perturbed": runs.perturbed, "exact": runs.exact}
-        others[f"cprbm {runs.other_theory}"] = runs.other
+        others = {
+            "cprbm paper": runs.paper,
+            "cprbm perturbed": runs.perturbed,
+            "exact": runs.exact,
+            f"cprbm {runs.other_theory}": runs.other,
+        }
         found = {name: each for name, each in others.items() if each is not None}
         write(own / "answers.json.gz", packed({**dict(runs.everything()), **found}))
         write(own / _CONTACT_FORCES, contact_csv(compared.scene, (runs.cprbm[0], runs.reference)))

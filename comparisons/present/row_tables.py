@@ -7,13 +7,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from comparisons.case import Comparison
-from comparisons.contact_model import contact_model
 from comparisons.display_units import at_station, display_units, with_unit
 from comparisons.formats import number, percent, vector
 from comparisons.geometry import bentness
 from comparisons.present.columns import Column, Table, columns_of, table_of
 from comparisons.quantities import norm
-from comparisons.third import thirds_of
+from comparisons.third import contact_model, thirds_of
 from comparisons.verdict.calibration import EXACT_FACTOR, error_ratios, tally, true_errors
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs import SOLVERS
@@ -23,19 +22,32 @@ from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES, Quantity
 
-GROUPS: tuple[tuple[str, frozenset[Quantity]], ...] = (
-    ("Errors in displacement", frozenset({"displacement", "rotation", "angle", "centre", "ends"})),
-    ("Errors in stress", STRESSES),
-    ("Errors in force and reaction", frozenset({"force", "moment", "reaction", "reaction_moment", "closing_load"})),
-    ("Error in energy", frozenset({"potential_energy"})),
+STRESS = "Errors in stress"
+GROUPS: Mapping[str, frozenset[Quantity]] = {
+    "Errors in displacement": frozenset({"displacement", "rotation", "angle", "centre", "ends"}),
+    STRESS: STRESSES,
+    "Errors in force and reaction": frozenset({"force", "moment", "reaction", "reaction_moment", "closing_load"}),
+    "Error in energy": frozenset({"potential_energy"}),
+}
+"""Quantities of the tables of errors by title, in the manner of the paper."""
+
+_OF_STRESSES = (
+    "Largest magnitudes along the beam. The error is the largest difference anywhere a thickness or more from held "
+    "ends and from ends of contacts. A beam of initial radius R has a true stress at its inner edge that is larger by "
+    "about t/(3R)."
 )
-"""Tables of errors by quantity, in the manner of the paper."""
 
 MANY_TIMES = 10.0
 """Fraction above which a distance prints with its unit."""
 
 _SOLVERS = ("CPRBM", "FEA")
-_VALUES = {"CPRBM": "row.cprbm", "FEA": "row.fea", "exact": "row.exact"}
+BOTH = {"CPRBM": "row.cprbm", "FEA": "row.fea"}
+"""Paths of the values of both solvers, by header."""
+
+ERROR = {"error": "row.difference"}
+"""Path of the difference."""
+
+_VALUES = {**BOTH, "exact": "row.exact"}
 
 
 class Judged(NamedTuple):
@@ -84,13 +96,13 @@ _PROBE = Column[Any]("probe", "row.probe.name")
 _WORD = Column("word", judgement)
 
 
-def _shares(paths: Mapping[str, str]) -> list[Column[Any]]:
-    """Columns of sizes of rows as shares, by header; the items of the table have a ``row``."""
+def share_columns(paths: Mapping[str, str]) -> list[Column[Any]]:
+    """Columns of sizes as shares, by header and path; the items of the table have a ``row``."""
     return columns_of(lambda item, size: share(item.row, size), paths)
 
 
-def _values(scene: Scene, items: Sequence[Any], paths: Mapping[str, str]) -> list[Column[Any]]:
-    """Probe, unit, and columns of values by header; the ``items`` of the table have a ``row``."""
+def value_columns(scene: Scene, items: Sequence[Any], paths: Mapping[str, str]) -> list[Column[Any]]:
+    """Probe, unit, and columns of values by header and path; the ``items`` of the table have a ``row``."""
     units = row_units(scene, (item.row for item in items))
 
     def text(item: Any, values: Array) -> str:  # noqa: ANN401
@@ -101,40 +113,33 @@ def _values(scene: Scene, items: Sequence[Any], paths: Mapping[str, str]) -> lis
 
 def value_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
     """Values of one station."""
-    columns = [*_values(compared.scene, rows, _VALUES), *_shares({"error": "row.difference"}), _WORD]
+    columns = [*value_columns(compared.scene, rows, _VALUES), *share_columns(ERROR), _WORD]
     return table_of(f"Values at {at_station(compared.scene, *rows[0].row.where)}", columns, rows)
 
 
 def error_tables(compared: Comparison, last: Sequence[Judged]) -> tuple[Table, ...]:
     """Tables of the last station by quantity, with the largest error over all stations."""
-    scene, runs, tables = compared.scene, compared.runs, list[Table]()
-    counted = (judged.row for judged in judged_rows(compared) if judged.word is not None)
-    worst = _largest_by_probe((row, row.difference) for row in counted)
+    scene, runs = compared.scene, compared.runs
+    worst = _largest_by_probe((at.row, at.row.difference) for at in judged_rows(compared) if at.word is not None)
     absence = f" No exact values: {runs.exact_absence}" if runs.exact_absence else ""
-    note = (
-        f"CPRBM beside the finite elements, both in the theory {runs.theory}. Errors are fractions of the FEA's value, "
-        f"or of the probe's largest value where the value may vanish. Exact values are those in bending.{absence}"
-    )
-    of_stresses = (
-        "Largest magnitudes along the beam. The error is the largest difference anywhere a thickness or more from held "
-        "ends and from ends of contacts. A beam of initial radius R has a true stress at its inner edge that is larger "
-        "by about t/(3R)."
-    )
     columns = [
-        *_values(scene, last, _VALUES),
-        *_shares({"error": "row.difference", "error of max": "row.largest_difference"}),
+        *value_columns(scene, last, _VALUES),
+        *share_columns({**ERROR, "error of max": "row.largest_difference"}),
         Column("t/(3R)", lambda at: percent(bentness(scene.beams[at.row.probe.of]) / 3.0)
                if at.row.probe.quantity in STRESSES else None),
         Column("largest error", lambda at: worst.get(at.row.probe.name), lambda found: share(*found) or ""),
         Column("at", lambda at: worst.get(at.row.probe.name), lambda found: at_station(scene, *found[0].where)),
         _WORD,
     ]  # fmt: skip
-    for title, quantities in GROUPS:
-        rows = [judged for judged in last if judged.row.probe.quantity in quantities]
-        if rows:
-            explained = of_stresses if quantities is STRESSES else "" if tables else note
-            tables.append(table_of(f"{title} at {at_station(scene, *last[0].row.where)}", columns, rows, explained))
-    return tuple(tables)
+    groups = {title: [at for at in last if at.row.probe.quantity in quantities] for title, quantities in GROUPS.items()}
+    titles = [title for title, rows in groups.items() if rows]
+    first = (
+        f"CPRBM beside the finite elements, both in the theory {runs.theory}. Errors are fractions of the FEA's value, "
+        f"or of the probe's largest value where the value may vanish. Exact values are those in bending.{absence}"
+    )
+    notes = dict.fromkeys(titles[:1], first) | {STRESS: _OF_STRESSES}
+    where = at_station(scene, *last[0].row.where) if last else ""
+    return tuple(table_of(f"{title} at {where}", columns, groups[title], notes.get(title, "")) for title in titles)
 
 
 def _largest_by_probe(sizes: Iterable[tuple[Row, float]]) -> dict[str, tuple[Row, float]]:
@@ -158,15 +163,18 @@ def verdict_table(rows: Sequence[Judged]) -> Table:
         "The difference must stay within the stated uncertainty, which follows from further discretisations of each "
         "solver. Theory: the step of the CPRBM to the other theory. Fractions as in the tables of errors."
     )
-    return table_of("Differences and stated uncertainties", [_PROBE, *_shares(paths), _WORD], rows, note)
+    return table_of("Differences and stated uncertainties", [_PROBE, *share_columns(paths), _WORD], rows, note)
 
 
 def theory_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
     """Values of one station in both theories; without rows where the CPRBM has no value in the other theory."""
     runs = compared.runs
-    paths = {f"CPRBM in {runs.other_theory}": "row.other", f"CPRBM in {runs.theory}": "row.cprbm"}
-    paths[f"FEA in {runs.theory}"] = "row.fea"
-    columns = [*_values(compared.scene, rows, paths), *_shares({"theory": "row.theory"})]
+    paths = {
+        f"CPRBM in {runs.other_theory}": "row.other",
+        f"CPRBM in {runs.theory}": "row.cprbm",
+        f"FEA in {runs.theory}": "row.fea",
+    }
+    columns = [*value_columns(compared.scene, rows, paths), *share_columns({"theory": "row.theory"})]
     note = "Theory: distance of the CPRBM's values in both theories, in the formulation auto."
     return table_of("Both theories", columns, [at for at in rows if at.row.other is not None], note)
 
@@ -229,12 +237,16 @@ def solid_table(compared: Comparison) -> Table:
     """Rows of the last station beside the solid."""
     thirds = thirds_of(compared)
     last = [one for one in thirds if one.row.where == thirds[-1].row.where]
-    off = {"u solid": "uncertainty", "CPRBM off": "cprbm", "FEA off": "fea"}
-    off[f"CPRBM in {compared.runs.other_theory} off"] = "other"
-    values = {"CPRBM": "row.cprbm", "FEA": "row.fea", "solid": "solid"}
+    off = {
+        "u solid": "uncertainty",
+        "CPRBM off": "cprbm",
+        "FEA off": "fea",
+        f"CPRBM in {compared.runs.other_theory} off": "other",
+    }
+    values = {**BOTH, "solid": "solid"}
     return table_of(
         "The beam theories beside a solid, at the last station",
-        [*_values(compared.scene, last, values), *_shares(off)],
+        [*value_columns(compared.scene, last, values), *share_columns(off)],
         last,
         "The solid's values are extrapolated from its meshes; distances are measured from these values.",
     )

@@ -14,7 +14,7 @@ X, Y    place in the picture, whose longer side is ``WIDE``; Y grows downwards
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -22,16 +22,15 @@ import numpy as np
 import shapely
 
 from comparisons.case import Comparison
-from comparisons.formats import number, vector
+from comparisons.formats import number
 from comparisons.geometry import length, points
-from comparisons.present.columns import NOTHING
+from comparisons.present.columns import NOTHING, Column
 from comparisons.present.figures import colour_unit, view_title
 from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, names_by_place, view_of
-from comparisons.present.row_tables import Judged, judged_rows, row_units, share
+from comparisons.present.row_tables import BOTH, ERROR, judged_rows, share_columns, value_columns
 from comparisons.present.strips import Strip
 from comparisons.present.table import with_minus
 from comparisons.verdict.completeness import complete_stations
-from comparisons.verdict.rows import ROUND_OFF
 from cprbm_scene import StationAnswer
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES
@@ -87,8 +86,7 @@ class Stepper:
 def stepper(compared: Comparison) -> Stepper | None:
     """The common stations of both answers; None without a common station."""
     scene, beams = compared.scene, compared.scene.beams
-    both = (compared.runs.cprbm[0], compared.runs.reference)
-    cprbm, fea = (complete_stations(scene, answer) for answer in both)
+    cprbm, fea = (complete_stations(scene, answer) for answer in (compared.runs.cprbm[0], compared.runs.reference))
     common = [where for where in fea if where in cprbm]
     if not common:
         return None
@@ -104,14 +102,16 @@ def stepper(compared: Comparison) -> Stepper | None:
 
     names = [probe.name for probe in scene.probes if probe.quantity not in STRESSES]
     rows = {(at.row.probe.name, *at.row.where): at for at in judged_rows(compared)}
-    units = row_units(scene, compared.rows)
-    of_probe = {row.probe.name: units[row.unit][1] for row in compared.rows}
+    _, unit_of, *values = value_columns(scene, [*rows.values()], BOTH)
+    columns = [*values, *share_columns(ERROR), Column("word", "word.value")]
+    units = {name: unit_of.cell(at) for (name, *_), at in rows.items()}
     labels = names_by_place(views[-1].points, 1.0 / scale)
     leaders = [text.partition(", ")[0] for text in labels]
     stations, moving = [], dict[str, str]()
     for where, view in zip(common, views, strict=True):
         moving = dict(_moving(view, cprbm[where], bounds, place))
-        cells = tuple(_cells(rows.get((name, *where)), units) for name in names)
+        known = (rows.get((name, *where)) for name in names)
+        cells = tuple(tuple(with_minus(column.cell(at)) if at else NOTHING for column in columns) for at in known)
         spots = tuple("{:g} {:g}".format(*np.round(place(view.points[point]))) for point in leaders)
         stations.append((view_title(scene, view), tuple(moving.values()), spots, cells))
     rest = (points(beam.curve, np.linspace(0.0, length(beam.curve), 121)) for beam in beams.values())
@@ -122,7 +122,7 @@ def stepper(compared: Comparison) -> Stepper | None:
         "".join(line(place(each)) for each in rest),
         tuple(moving),
         tuple(labels),
-        tuple((name, of_probe.get(name, "")) for name in names),
+        tuple((name, units.get(name, "")) for name in names),
         tuple(stations),
         tuple(name for name, beam in beams.items() if beam.thinnest * scale < _THINNEST),
         f"{number(bounds.most / factor)} {unit}" if bounds.most else "",
@@ -156,15 +156,6 @@ def _shades(strip: Strip, bounds: Bounds, place: Placing) -> Iterator[tuple[int,
         pieces = list(found)
         run = slice(pieces[0], pieces[-1] + 2)
         yield int(colour), line(np.concatenate([edges[0][run], edges[1][run][::-1]]), closed=True)
-
-
-def _cells(judged: Judged | None, units: Mapping[str, tuple[float, str]]) -> tuple[str, ...]:
-    """Texts of a row: both values, difference and word."""
-    if judged is None:
-        return (NOTHING,) * 4
-    row, word, _ = judged
-    values = (vector(each, units[row.unit][0], ROUND_OFF * row.scale) for each in (row.cprbm, row.fea))
-    return (*map(with_minus, values), share(row, row.difference) or NOTHING, word.value if word else NOTHING)
 
 
 def line(places: Array, *, closed: bool = False) -> str:

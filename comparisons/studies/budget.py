@@ -41,10 +41,10 @@ from comparisons.geometry import bentness_on, length
 from comparisons.pairing import in_paper
 from comparisons.quantities import direction, norm
 from comparisons.sentences import problem_sentences
-from comparisons.solid_limits import solid_limit
 from comparisons.stations import station_of
 from comparisons.store import AnswerMemory
 from comparisons.studies.curved_beam import inner_edge_factor
+from comparisons.third import solid_limit
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import Row, bare_row
 from comparisons.verdict.scales import probe_scales

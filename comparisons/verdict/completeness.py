@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from comparisons.quantities import COMPONENTS
-from comparisons.stations import begins_at, span_of, station_of
+from comparisons.stations import begins_at, find_station, span_of
 from cprbm_scene import Answer, Ending, Probe, Scene, StationAnswer
 from cprbm_scene.statement import STRESSES
 
@@ -44,15 +44,8 @@ def stations_of(scene: Scene) -> tuple[Where, ...]:
 
 def complete_stations(scene: Scene, answer: Answer) -> Mapping[Where, StationAnswer]:
     """Stations of an answer without a problem."""
-    found = {}
-    for stage, value in stations_of(scene):
-        try:
-            station = station_of(answer, stage, value)
-        except KeyError:
-            continue
-        if next(_station_problems(scene, station), None) is None:
-            found[stage, value] = station
-    return found
+    known = ((where, find_station(answer, *where)) for where in stations_of(scene))
+    return {where: at for where, at in known if at is not None and not any(_station_problems(scene, at))}
 
 
 def complete_part(scene: Scene, answer: Answer) -> Answer:
@@ -84,14 +77,13 @@ def problems(scene: Scene, answer: Answer, name: Callable[[str, float], str] = _
         found.append(f"it ended early: {answer.sentence or answer.ending.value}")
     asked = stations_of(scene)
     for stage, value in asked:
-        try:
-            station = station_of(answer, stage, value)
-        except KeyError:
-            if not answer.completed:
-                break
+        station = find_station(answer, stage, value)
+        if station is not None:
+            found.extend(f"at {name(stage, value)} {problem}" for problem in _station_problems(scene, station))
+        elif answer.completed:
             found.append(f"it has no station {name(stage, value)}")
-            continue
-        found.extend(f"at {name(stage, value)} {problem}" for problem in _station_problems(scene, station))
+        else:
+            break
     if len(answer.stations) > len(asked):
         found.append(f"it has {len(answer.stations)} stations where {len(asked)} were asked")
     return (*found, *_branch_problems(scene, answer, name))

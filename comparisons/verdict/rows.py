@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, norm, unit_of
-from comparisons.stations import station_of
+from comparisons.stations import find_station
 from comparisons.verdict.bounds import Bounds, bounds_of
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
 from comparisons.verdict.runs import Runs
@@ -238,13 +238,8 @@ def _true_errors(row: Row, exact: StationAnswer | None, size: Callable[[Array], 
 
 def _station(answer: Answer | None, where: tuple[str, float], branch: int | None) -> StationAnswer | None:
     """The station of an answer on a branch."""
-    if answer is None or branch is None:
-        return None
-    try:
-        found = station_of(answer, *where)
-    except KeyError:
-        return None
-    return found if found.branch == branch else None
+    found = None if answer is None or branch is None else find_station(answer, *where)
+    return None if found is None or found.branch != branch else found
 
 
 def _with_largest_uncertainties(rows: Sequence[Row]) -> tuple[Row, ...]:

@@ -10,7 +10,7 @@ import pytest
 
 from comparisons import cases
 from comparisons.cli.main import run
-from comparisons.offset_exact import offset_curve, ordinates
+from comparisons.geometry import offset_curve, ordinates
 from comparisons.offset_verdict import compared_offset
 from comparisons.pairing import Solvers, cprbm_offset_points
 from comparisons.present import offset

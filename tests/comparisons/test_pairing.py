@@ -1,5 +1,7 @@
 """Which runs a comparison asks for, and what becomes of refusals."""
 
+import os
+import signal
 import subprocess
 import sys
 import time
@@ -13,6 +15,7 @@ from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.crew import ALONE, crew_of
+from comparisons.executor import WorkerDiedError
 from comparisons.pairing import (
     EXACT_LIMIT,
     Solvers,
@@ -196,7 +199,15 @@ def test_counts_by_beam_are_doubled_beam_by_beam():
     assert finer.elements == {"beam1": 14, "beam2": 16}
 
 
-def test_two_processes_give_the_answers_of_one(hinge, right):
+@pytest.mark.parametrize("semaphores", [True, False])
+def test_two_processes_give_the_answers_of_one(hinge, right, monkeypatch, semaphores):
+    """Also on a machine with a read-only ``/dev/shm``, where Python refuses semaphores."""
+
+    def refused(*_):
+        raise PermissionError(13, "Permission denied")
+
+    if not semaphores:
+        monkeypatch.setattr("multiprocessing.synchronize.SemLock.__init__", refused)
     with crew_of(2) as crew:
         one, two = paired(hinge, Choices(), right), paired(hinge, Choices(), right, crew)
     assert [name for name, _ in one.everything()] == [name for name, _ in two.everything()]
@@ -233,6 +244,19 @@ def test_without_processes_nothing_is_done_before_it_is_waited_for(hinge, right)
     assert asked == []
     pending()
     assert len(asked) > 2
+
+
+def killed(scene, choices):
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_a_killed_process_is_an_error_and_its_successor_works(hinge, right, times):
+    with crew_of(2) as crew:
+        for _ in range(times):
+            with pytest.raises(WorkerDiedError, match="ended with -9"):
+                crew.answers([(killed, hinge, Choices())] * 3)
+        assert crew.answers([(right.fea, hinge, Choices())] * 3)[2].solver == "fea"
 
 
 class Refusing:

@@ -15,7 +15,6 @@ import pytest
 import cprbm
 from comparisons import cases
 from comparisons.cli.main import run
-from comparisons.crew import ALONE, crew_of
 from comparisons.starting import present
 from comparisons.starting.begun import SCHEMA, text
 from cprbm_scene import read
@@ -122,30 +121,6 @@ def test_a_library_that_wants_one_of_the_system_is_told_with_what_installs_it(tm
     assert (
         "its system libraries, as root: apt-get install --yes --no-install-recommends libgl1 libglu1-mesa"
         in capsys.readouterr().out
-    )
-
-
-@pytest.fixture
-def no_semaphores(monkeypatch):
-    """A machine whose ``/dev/shm`` nobody may write to: what Python says there."""
-
-    def refused(*given, **named):
-        raise PermissionError(13, "Permission denied")
-
-    monkeypatch.setattr("multiprocessing.synchronize.SemLock.__init__", refused)
-
-
-def test_where_no_process_can_work_beside_this_one_it_does_all_of_the_work(no_semaphores, caplog):
-    with caplog.at_level("INFO", "comparisons"), crew_of(2) as crew:
-        assert crew == ALONE
-    assert "one process does all of the work: no processes beside this one ([Errno 13]" in caplog.text
-
-
-def test_the_doctor_says_whether_processes_can_share_the_work(no_semaphores, monkeypatch, capsys):
-    monkeypatch.setattr(present, "LIBRARIES", present.LIBRARIES[:1])
-    assert run(["doctor"]) == 0
-    assert "processes      single       process for all work: no processes beside this one ([Errno 13]" in (
-        capsys.readouterr().out
     )
 
 

@@ -15,7 +15,7 @@ from comparisons.cli.main import commands, run
 from comparisons.cli.options import tolerance
 from comparisons.crew import ALONE
 from comparisons.pairing import Solvers, solid_answer, solvers_of
-from comparisons.solid_limits import solid_limit
+from comparisons.third import solid_limit
 from comparisons.tolerances.limits import limits_of
 from comparisons.tolerances.search import LARGEST, runs_within, solve_within
 from comparisons.verdict.rows import rows_of
