@@ -16,6 +16,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from difflib import get_close_matches
 from pathlib import Path
+from traceback import walk_tb
 from types import FrameType
 from typing import TYPE_CHECKING
 
@@ -35,7 +36,7 @@ _SIGNALS = {"SIGINT": "Interrupted", "SIGTERM": "Asked to end", "SIGHUP": "The t
 
 _PACKAGES = ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons")
 _CASES = " 'cprbm list' names the cases; 'cprbm new NAME' writes a file to start from."
-_KEPT, _REPEAT = "Finished results stand", "repeat the command to go on."
+_KEPT = "Finished results stand"
 
 
 class SignalInterrupt(KeyboardInterrupt):
@@ -85,9 +86,10 @@ def exit_code(command: Callable[[], int | None]) -> int:
     except KeyboardInterrupt as stop:
         number = signal.Signals(stop.number if isinstance(stop, SignalInterrupt) else signal.SIGINT)
         found = f"{_SIGNALS[number.name]}; finished results stand.", 128 + number
-    if found[0]:
-        say(found[0])
-    return found[1]
+    text, code = found
+    if text:
+        say(text)
+    return code
 
 
 def _end(error: Exception) -> End | None:
@@ -116,9 +118,8 @@ def _end_of_words(error: Exception) -> End | None:
             return "", WRONG_QUESTION
         case click.UsageError(ctx=context):
             text = error.format_message()
-            missing = error.param if isinstance(error, click.MissingParameter) else None
-            metavar = missing.make_metavar(context) if missing and context else ""
-            cases = _CASES if "CASE" in metavar else ""
+            argument = error.param if isinstance(error, click.MissingParameter) else None
+            cases = _CASES if argument and context and "CASE" in argument.make_metavar(context) else ""
             help_ = f" Try '{context.command_path} --help'." if context else ""
             return f"{text if text.endswith(('.', '?', '!')) else f'{text}.'}{cases}{help_}", WRONG_QUESTION
         case click.ClickException():
@@ -137,10 +138,10 @@ def _end_of_question(error: Exception) -> End | None:
         case SceneError():
             lines = [_with_next_step(mistake) for mistake in error.mistakes]
             return ("\n  " if len(lines) > 1 else " ").join(("The question is wrong.", *lines)), WRONG_QUESTION
-        case BrokenProcessPool():
-            return f"A worker process was killed, perhaps for lack of memory. {_KEPT}; {_REPEAT}", INCOMPLETE
         case BrokenExecutor():
-            return f"{error} {_KEPT}; {_REPEAT}", INCOMPLETE
+            killed = isinstance(error, BrokenProcessPool)
+            cause = "A worker process was killed, perhaps for lack of memory." if killed else error
+            return f"{cause} {_KEPT}; repeat the command to go on.", INCOMPLETE
     return None
 
 
@@ -156,10 +157,9 @@ def _with_next_step(mistake: Mistake) -> str:
 
 def _end_without_library(error: ImportError) -> End | None:
     """The end without a library; None for a module of this project."""
-    place, module = error.__traceback__, ""
-    while place is not None:  # NumPy and other libraries raise errors without a name
-        module, place = str(place.tb_frame.f_globals.get("__name__", "")), place.tb_next
-    library = (error.name or module).partition(".")[0]
+    # NumPy and other libraries raise errors without a name
+    modules = [str(frame.f_globals.get("__name__", "")) for frame, _ in walk_tb(error.__traceback__)]
+    library = (error.name or modules[-1]).partition(".")[0]
     if not library or library in _PACKAGES:
         return None
     reason = next(iter(str(error).strip().splitlines()), "without a reason")

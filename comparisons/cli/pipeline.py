@@ -14,10 +14,8 @@ from typing import Generic, TypeVar
 import click
 
 from comparisons.cli.bars import Bar, bar
-from comparisons.cli.output import print_sections, write_json
-from comparisons.cli.questions import solvers_for
+from comparisons.cli.output import print_section, write_json
 from comparisons.cli.request import Request
-from comparisons.pairing import workers_for
 from comparisons.plain import Plain
 from comparisons.present.columns import Section
 from comparisons.present.page import Chapter, Page, put_page, put_section
@@ -62,20 +60,19 @@ def answer_all(
         ends: output of the results.
         progress: context with the bar.
     """
-    finished: list[Result] = []
-    chapters: list[Chapter] = []
+    out, finished, chapters = request.out, list[Result](), list[Chapter]()
     names = tuple(question.name for question in questions)
-    with run_into(request.out, solvers_for(request), names, workers_for(request.planted)) as run, progress as shown:
+    with run_into(out, request.solvers, names, request.processes) as run, progress as shown:
         for question, result in zip(questions, results(run, shown), strict=True):
             finished.append(result)
-            if request.out is not None:
-                chapters.append(ends.chapter(request.out, question, result))
+            if out is not None:
+                chapters.append(ends.chapter(out, question, result))
             run.mark_shown(question.name)
-            if run.covers(names[: len(finished)]):
-                if request.out is not None:
-                    put_page(request.out, ends.page(chapters))
-                if request.prints:
-                    write_json(request.json_file, ends.document(finished))
+            whole = run.covers(names[: len(finished)])
+            if whole and out is not None:
+                put_page(out, ends.page(chapters))
+            if whole and request.prints:
+                write_json(request.json_file, ends.document(finished))
             shown.clear()
             if request.prints:
                 ends.show(question, result)
@@ -98,37 +95,29 @@ def take_steps(
     section_of: Callable[[Study], Section],
 ) -> Study:
     """The finished study; every step writes the partial section, and an interrupted study shows its section."""
-    last: Section | None = None
-    writes = request.out is not None or (request.json_file is not None and request.prints)
+    written: Section | None = None
     with bar(len(steps), shown=not request.quiet) as progress:
         try:
             for step in progress.through(steps):
-                study, last = take(study, step), None
-                if writes:
-                    last = section_of(study)
-                    _write_section(request, last)
+                study, written = take(study, step), None
+                if request.out is not None or (request.json_file is not None and request.prints):
+                    written = _written(request, section_of(study))
         finally:
-            if last is None:
-                last = section_of(study)
-                _write_section(request, last)
+            section = written or _written(request, section_of(study))
             progress.clear()
-            _show_section(request, last)
+            if not request.prints:
+                write_json(request.json_file, dict(section.data))
+            elif not request.quiet:
+                print_section(section)
+                print_folder(request, f"{section.name}.html")
     return study
 
 
-def _write_section(request: Request, section: Section) -> None:
-    """Write the files of a section."""
+def _written(request: Request, section: Section) -> Section:
+    """The section, whose files are written now."""
     if request.prints:
         write_json(request.json_file, dict(section.data))
     if request.out is not None:
         put_section(request.out, section)
         put_page(request.out, Page(section.heading, "", further=(section,)), section.name)
-
-
-def _show_section(request: Request, section: Section) -> None:
-    """Print a section, or its JSON."""
-    if not request.prints:
-        write_json(request.json_file, dict(section.data))
-    elif not request.quiet:
-        print_sections([section])
-        print_folder(request, f"{section.name}.html")
+    return section

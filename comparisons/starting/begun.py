@@ -1,12 +1,10 @@
-"""A scene file to start from."""
+"""Texts of a scene to start from, and of the schema of scenes."""
 
 from __future__ import annotations
 
 import json
 from importlib.resources import files
-from pathlib import Path
 
-from comparisons.writing import write
 from cprbm_scene.reading import schema
 
 SCHEMA = "scene.schema.json"
@@ -19,16 +17,6 @@ def text(name: str) -> str:
     return template.replace("{schema}", SCHEMA).replace("{name}", name).replace("{file}", f"{name}.toml")
 
 
-def begin(name: str, folder: Path) -> Path:
-    """Write the first scene and its schema into a ``folder``; the scene's file.
-
-    Raises:
-        FileExistsError: there is a file of that name already, which is left as it is.
-        OSError: the folder cannot be written to.
-    """
-    path = folder / f"{name}.toml"
-    if path.exists():
-        raise FileExistsError(path)
-    write(path, text(name))
-    write(folder / SCHEMA, json.dumps(schema(), indent=1, ensure_ascii=False) + "\n")
-    return path
+def schema_text() -> str:
+    """The JSON schema of scene files, with a line end."""
+    return json.dumps(schema(), indent=1, ensure_ascii=False) + "\n"

@@ -58,6 +58,19 @@ class State:
         """Whether the library can be used."""
         return bool(self.version) and not self.trouble
 
+    @property
+    def text(self) -> str:
+        """Version and purpose of the library, and the command that installs the library if needed."""
+        library = self.library
+        if not self.trouble:
+            install = "" if self.version else f"; install: {library.line}"
+            return f"{self.version or 'missing':<12} for {library.needed_for}{install}"
+        system = line_for(library.name, self.trouble)
+        remedy = f"install the library again: {library.line} --force-reinstall"
+        if system:
+            remedy = f"on Debian and Ubuntu install its system libraries, as root: {system}"
+        return f"{self.version:<12} cannot be imported ({self.trouble}); for {library.needed_for}; {remedy}"
+
 
 LIBRARIES = (
     Library("numpy", "numpy", "every number", ">=2.0"),

@@ -16,7 +16,7 @@ from typing import Literal
 from comparisons import cases
 from comparisons.bench.contenders import Contender, Run, outcome_of
 from comparisons.bench.measures import at_last_loads
-from comparisons.bench.running import CLOCKS, Plan, Session, Timing
+from comparisons.bench.running import Plan, Session, Timing
 from comparisons.choices import Choices, Count
 from comparisons.formats import number
 from comparisons.pairing import Solvers
@@ -99,7 +99,6 @@ def session(
         plan,
         tuple(_contender(cell, solvers) for cell in cells),
         machine,
-        CLOCKS[plan.clock],
         largest={cell.name: math.inf for cell in cells if cell.name not in first.values()},
     )
 
@@ -114,14 +113,13 @@ def _contender(cell: Cell, solvers: Solvers) -> Contender:
 
 def result_of(measured: Session, cells: tuple[Cell, ...] = CELLS) -> Section:
     """Result of the measurements so far."""
-    timings = {each.contender.name: each for each in measured.timings.values()}
-    times = {cell: timings[cell.name] for cell in cells if cell.name in timings}
+    times = dict(zip(cells, measured.timings, strict=True))
     taken = {cell: timing for cell, timing in times.items() if timing.seconds}
     machine = measured.machine
     table = Table(
         "Seconds to the last load, in one load",
         ("case", "method", "elements or links", "ours", "spread", "repeats", "theirs", "theirs / ours", "ended"),
-        tuple(_row(cell, times.get(cell)) for cell in cells),
+        tuple(_row(cell, timing) for cell, timing in times.items()),
         "Ours: median of whole answers, set-up included, and the distance of the quartiles; finite elements in shear. "
         f"Ours on {machine['cpu']}, BLAS on one thread, Python {machine['python']}, NumPy {machine['numpy']}, SciPy "
         f"{machine['scipy']}, scikit-fem {machine['scikit-fem']}; theirs on {THEIR_MACHINE}.",
@@ -141,39 +139,37 @@ def result_of(measured: Session, cells: tuple[Cell, ...] = CELLS) -> Section:
         "study": "table1",
         "machine": dict(machine),
         "paper_machine": THEIR_MACHINE,
-        "rows": [_record(cell, times.get(cell)) for cell in cells],
+        "rows": [_record(cell, timing) for cell, timing in times.items()],
     }
     complete = all(timing.outcome.completed for timing in taken.values())
     figures = (_run_times(cells, taken),) if taken else ()
     return Section("Run times, beside Table 1 of the paper", sentences, figures, (table,), "table1", data, complete)
 
 
-def _record(cell: Cell, timing: Timing | None) -> dict[str, object]:
+def _record(cell: Cell, timing: Timing) -> dict[str, object]:
     """Documented JSON of a cell."""
-    quartiles = timing.quartiles("both") if timing and timing.seconds else None
     return {
         "case": cell.case,
         "method": cell.method,
         "formulation": None if cell.method == "fea" else cell.formulation,
         "contact": cell.contact,
         "size": plain(cell.size),
-        "seconds": quartiles and quartiles[1],
-        "spread": quartiles and quartiles[2] - quartiles[0],
-        "repeats": len(timing.seconds) if timing else 0,
-        "ended": timing.outcome.ended if timing and quartiles else None,
-        "why": timing.why or None if timing else None,
+        "seconds": timing.median("both") if timing.seconds else None,
+        "spread": timing.spread("both") if timing.seconds else None,
+        "repeats": len(timing.seconds),
+        "ended": timing.outcome.ended if timing.seconds else None,
+        "why": timing.why or None,
         "paper_seconds": cell.theirs,
     }
 
 
-def _row(cell: Cell, timing: Timing | None) -> tuple[str, ...]:
+def _row(cell: Cell, timing: Timing) -> tuple[str, ...]:
     """Cells of a row of the table."""
-    low, ours, high = timing.quartiles("both") if timing and timing.seconds else (math.nan,) * 3
-    ended = timing.outcome.ended or "refused" if timing else "not begun"
+    ours, spread = (timing.median("both"), timing.spread("both")) if timing.seconds else (math.nan, math.nan)
+    ended = timing.outcome.ended or ("refused" if timing.refusal else "not begun")
     ratio = number(cell.theirs / ours) if cell.theirs and ours else "–"
-    repeats = str(len(timing.seconds)) if timing else "0"
-    return (cell.case, cell.label, cell.sized, number(ours), number(high - low, 2), repeats, number(cell.theirs), ratio,
-            ended)  # fmt: skip
+    return (cell.case, cell.label, cell.sized, number(ours), number(spread, 2), str(len(timing.seconds)),
+            number(cell.theirs), ratio, ended)  # fmt: skip
 
 
 def _run_times(cells: tuple[Cell, ...], taken: Mapping[Cell, Timing]) -> Figure:

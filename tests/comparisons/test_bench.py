@@ -69,13 +69,10 @@ class Clock:
 
     def session(self, sizes=(40, 80, 160), **plan):
         every = frozendict({one.name: tuple(sizes) for one in self.taking_part})
-        return Session(self.scene, Plan(every, **plan), self.taking_part, MACHINE, self, KNOWN)
+        return Session(self.scene, Plan(every, **plan), self.taking_part, MACHINE, KNOWN, clock=self)
 
     def benchmark(self, sizes=(40, 80, 160), **plan):
-        session = self.session(sizes, **plan)
-        for job in session.jobs():
-            session.do(job)
-        return session
+        return self.session(sizes, **plan).after_all()
 
 
 KNOWN = measures.Reference(
@@ -140,7 +137,7 @@ def test_median_and_quartiles(bent):
     times = iter([99.0, 3.0, 10.0, 1.0, 4.0, 2.0])  # the first does not count
     found = Clock(bent, auto=lambda n: (0.5, next(times), 5, "COMPLETED", 0.0)).benchmark(sizes=(40,), repeat=5)
     (row,) = found.rows()
-    assert (row.median("set-up"), row.median("solve"), row.median("both"), row.spread) == (0.5, 3.0, 3.5, 2.0)
+    assert (row.median("set-up"), row.median("solve"), row.median("both"), row.spread("solve")) == (0.5, 3.0, 3.5, 2.0)
 
 
 def test_iterations_are_counted_in_all_per_station_and_against_the_smallest(bent):
