@@ -39,23 +39,15 @@ _CASES = " 'cprbm list' names the cases; 'cprbm new NAME' writes a file to start
 _KEPT = "Finished results stand"
 
 
-class SignalInterrupt(KeyboardInterrupt):
-    """A signal ended the run."""
-
-    def __init__(self, number: int = signal.SIGINT) -> None:
-        super().__init__()
-        self.number = number
-
-
 def handle_signals(*, ignore: bool = False) -> None:
-    """Let every signal raise :class:`SignalInterrupt`, except signals that this process ignores; or ignore all."""
+    """Let every signal interrupt with its number, except signals that this process ignores; or ignore all."""
     for number in (getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)):
         if ignore or signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, signal.SIG_IGN if ignore else _interrupt)
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
-    raise SignalInterrupt(number)
+    raise KeyboardInterrupt(number)
 
 
 def printable(text: object) -> str:
@@ -84,7 +76,7 @@ def exit_code(command: Callable[[], int | None]) -> int:
         if found is None:
             raise
     except KeyboardInterrupt as stop:
-        number = signal.Signals(stop.number if isinstance(stop, SignalInterrupt) else signal.SIGINT)
+        number = signal.Signals(*(stop.args or (signal.SIGINT,)))
         found = f"{_SIGNALS[number.name]}; finished results stand.", 128 + number
     text, code = found
     if text:

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import TypeVar
 
 import click
 
@@ -27,29 +26,15 @@ Study = TypeVar("Study")
 Step = TypeVar("Step")
 
 
-@dataclass(frozen=True, slots=True)
-class Ends(Generic[Result]):
-    """Output of the results of several questions.
-
-    Attributes:
-        chapter: writes the files of a result into the folder; the chapter of the page.
-        page: of all chapters.
-        document: of all results, for JSON.
-        show: prints a result.
-    """
-
-    chapter: Callable[[Path, Question, Result], Chapter]
-    page: Callable[[Sequence[Chapter]], Page]
-    document: Callable[[Sequence[Result]], Plain]
-    show: Callable[[Question, Result], None]
-
-
 def answer_all(
     request: Request,
     questions: Sequence[Question],
     results: Callable[[Run, Bar], Iterator[Result]],
-    ends: Ends[Result],
     progress: AbstractContextManager[Bar],
+    chapter_of: Callable[[Path, Question, Result], Chapter],
+    page_of: Callable[[Sequence[Chapter]], Page],
+    document_of: Callable[[Sequence[Result]], Plain],
+    show: Callable[[Question, Result], None],
 ) -> list[Result]:
     """Results of all questions; page and JSON stand after every result, and JSON on standard output at the end.
 
@@ -57,8 +42,11 @@ def answer_all(
         request: files, folder and solvers.
         questions: in order.
         results: results in the same order, for a run into the folder and a bar.
-        ends: output of the results.
         progress: context with the bar.
+        chapter_of: writes the files of a result into the folder; the chapter of the page.
+        page_of: page of all chapters.
+        document_of: JSON of all results.
+        show: prints a result.
     """
     out, finished, chapters = request.out, list[Result](), list[Chapter]()
     names = tuple(question.name for question in questions)
@@ -66,18 +54,18 @@ def answer_all(
         for question, result in zip(questions, results(run, shown), strict=True):
             finished.append(result)
             if out is not None:
-                chapters.append(ends.chapter(out, question, result))
+                chapters.append(chapter_of(out, question, result))
             run.mark_shown(question.name)
             whole = run.covers(names[: len(finished)])
             if whole and out is not None:
-                put_page(out, ends.page(chapters))
+                put_page(out, page_of(chapters))
             if whole and request.prints:
-                write_json(request.json_file, ends.document(finished))
+                write_json(request.json_file, document_of(finished))
             shown.clear()
             if request.prints:
-                ends.show(question, result)
+                show(question, result)
     if not request.prints:
-        write_json(request.json_file, ends.document(finished))
+        write_json(request.json_file, document_of(finished))
     return finished
 
 

@@ -16,7 +16,7 @@ from comparisons.case import Comparison
 from comparisons.cli.bars import Bar, bar, status
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
 from comparisons.cli.output import print_section, print_tables, write_json
-from comparisons.cli.pipeline import Ends, answer_all, print_folder
+from comparisons.cli.pipeline import answer_all, print_folder
 from comparisons.cli.request import Request
 from comparisons.plain import Plain
 from comparisons.present import brief, case_tables, csv_table, figures, offset, page
@@ -41,10 +41,10 @@ def compare_all(request: Request) -> int:
     """
     questions = request.questions()
     request = request.with_room("report" if "all" in request.arguments else "")
-    ends = Ends(_put_case, page.report_page, _documents, partial(_show, request))
     # with a tolerance a status line with N replaces the bar
     progress = bar(len(questions), shown=not request.quiet and request.tol is None, noun="case")
-    finished = answer_all(request, questions, partial(_comparisons, request, questions), ends, progress)
+    ends = _put_case, page.report_page, _document, partial(_show, request)
+    finished = answer_all(request, questions, partial(_comparisons, request, questions), progress, *ends)
     _export(request, [found for found in finished if isinstance(found, Comparison)])
     if request.prints and not request.quiet and len(finished) > 1:
         print_tables([brief.summary(finished)], brief.WIDTH)
@@ -87,7 +87,7 @@ def _put_case(out: Path, question: Question, compared: Compared) -> page.Chapter
     return page.case_chapter(compared, figures)
 
 
-def _documents(finished: Sequence[Compared]) -> Plain:
+def _document(finished: Sequence[Compared]) -> Plain:
     return {"cases": [page.document_of(compared) for compared in finished]}
 
 
@@ -98,16 +98,15 @@ def _show(request: Request, question: Question, compared: Compared) -> None:
         click.echo(brief.brief(compared, shlex.join([cases.argument(question), *values]), request.out) + "\n")
         return
     if not request.quiet:
-        for section in _sections(compared):
+        for section in (
+            case_tables.case_sections(compared)
+            if isinstance(compared, Comparison)
+            else offset.offset_sections(compared)
+        ):
             print_section(section)
     click.echo(brief.headline(question.name, compared.verdict, compared.verdict.sentence))
     for sentence in _missed(compared):
         click.echo(f"{question.name}: {sentence}")
-
-
-def _sections(compared: Compared) -> Sequence[Section]:
-    """All tables of a case."""
-    return case_tables.case_sections(compared) if isinstance(compared, Comparison) else offset.offset_sections(compared)
 
 
 def _missed(compared: Compared) -> list[str]:
@@ -148,8 +147,8 @@ def converge_all(request: Request, sizes: tuple[int, ...]) -> int:
         for sentence in section.sentences:
             click.echo(f"{question.name}: {sentence}")
 
-    ends = Ends(chapter, page.convergence_page, document, show)
-    finished = answer_all(request, questions, results, ends, bar(len(questions), shown=not request.quiet, share=0.8))
+    progress = bar(len(questions), shown=not request.quiet, share=0.8)
+    finished = answer_all(request, questions, results, progress, chapter, page.convergence_page, document, show)
     print_folder(request)
     return 0 if all(section.complete for section in finished) else INCOMPLETE
 
@@ -160,9 +159,9 @@ def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -
     questions = request.questions()
     request = request.with_room("full-report")
     assert request.out is not None
-    parts = Parts(request.choices, () if "convergence" in without else sizes, times="times" not in without)
-    key = f"{parts!r}, exact={request.exact}"  # chapters with other parts are written anew
-    found = Report(request.out, questions, parts, key, request.solvers, provenance.page_origin())
+    counts = () if "convergence" in without else sizes
+    parts = Parts(request.choices, counts, "times" not in without, request.exact)
+    found = Report(request.out, questions, parts, request.solvers, provenance.page_origin())
     missing, names = found.missing(), tuple(question.name for question in questions)
     with (
         run_into(request.out, request.solvers, names, request.processes) as run,

@@ -68,11 +68,13 @@ class Parts:
         choices: of the comparison.
         sizes: N of the error against N; empty without this part.
         times: whether run times are measured.
+        exact: whether the exact reference is asked; with None a rule decides.
     """
 
     choices: Choices
     sizes: tuple[int, ...]
     times: bool
+    exact: bool | None
 
 
 @dataclass(slots=True)
@@ -82,7 +84,7 @@ class Report:
     Attributes:
         folder: of page and chapters.
         questions: in the order of the chapters.
-        parts: of every chapter; wanted: the parts as a text, on which a kept chapter depends.
+        parts: of every chapter; a chapter with other parts is written anew.
         timed: solvers for run times, without kept answers.
         origin: the machine and the versions.
         table: the paper's Table 1 beside our run times; None before the measurement.
@@ -91,7 +93,6 @@ class Report:
     folder: Path
     questions: Sequence[Question]
     parts: Parts
-    wanted: str
     timed: Solvers
     origin: Mapping[str, str | int]
     chapters: dict[str, Chapter] = field(default_factory=dict)
@@ -109,7 +110,7 @@ class Report:
 
     def _key(self, question: Question) -> str:
         """Digest of the dependence of a chapter."""
-        return digest(question.model_dump_json(exclude={"file"}), self.wanted)
+        return digest(question.model_dump_json(exclude={"file"}), repr(self.parts))
 
     @property
     def _table_key(self) -> str:

@@ -22,7 +22,7 @@ from comparisons.formats import number
 from comparisons.pairing import Solvers
 from comparisons.plain import plain
 from comparisons.present.canvas import BLUE, RED, canvas, finished
-from comparisons.present.columns import Figure, Section, Table
+from comparisons.present.columns import Column, Figure, Section, records_of, table_of
 from cprbm_scene import Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -111,15 +111,52 @@ def _contender(cell: Cell, solvers: Solvers) -> Contender:
     return Contender(cell.name, cell.method, cell.formulation, cell.label, lambda scene, count, at_most: run)
 
 
+Line = tuple[Cell, Timing]
+"""A cell, and its runs so far."""
+
+_COLUMNS: tuple[Column[Line], ...] = (
+    Column("case", lambda line: line[0].case),
+    Column("method", lambda line: line[0].label),
+    Column("elements or links", lambda line: line[0].sized),
+    Column("ours", lambda line: _seconds(line[1]), number),
+    Column("spread", lambda line: line[1].spread("both") if line[1].seconds else None, lambda value: number(value, 2)),
+    Column("repeats", lambda line: len(line[1].seconds)),
+    Column("theirs", lambda line: line[0].theirs, number),
+    Column(
+        "theirs / ours", lambda line: (own := _seconds(line[1])) and line[0].theirs and line[0].theirs / own, number
+    ),
+    Column("ended", lambda line: line[1].outcome.ended or ("refused" if line[1].refusal else "not begun")),
+)
+
+_KEYS: tuple[Column[Line], ...] = (
+    Column("case", lambda line: line[0].case),
+    Column("method", lambda line: line[0].method),
+    Column("formulation", lambda line: None if line[0].method == "fea" else line[0].formulation),
+    Column("contact", lambda line: line[0].contact),
+    Column("size", lambda line: plain(line[0].size)),
+    Column("seconds", lambda line: _seconds(line[1])),
+    Column("spread", lambda line: line[1].spread("both") if line[1].seconds else None),
+    Column("repeats", lambda line: len(line[1].seconds)),
+    Column("ended", lambda line: line[1].outcome.ended if line[1].seconds else None),
+    Column("why", lambda line: line[1].why or None),
+    Column("paper_seconds", lambda line: line[0].theirs),
+)
+
+
+def _seconds(timing: Timing) -> float | None:
+    """Median, s; None without a run."""
+    return timing.median("both") if timing.seconds else None
+
+
 def result_of(measured: Session, cells: tuple[Cell, ...] = CELLS) -> Section:
     """Result of the measurements so far."""
     times = dict(zip(cells, measured.timings, strict=True))
     taken = {cell: timing for cell, timing in times.items() if timing.seconds}
     machine = measured.machine
-    table = Table(
+    table = table_of(
         "Seconds to the last load, in one load",
-        ("case", "method", "elements or links", "ours", "spread", "repeats", "theirs", "theirs / ours", "ended"),
-        tuple(_row(cell, timing) for cell, timing in times.items()),
+        _COLUMNS,
+        times.items(),
         "Ours: median of whole answers, set-up included, and the distance of the quartiles; finite elements in shear. "
         f"Ours on {machine['cpu']}, BLAS on one thread, Python {machine['python']}, NumPy {machine['numpy']}, SciPy "
         f"{machine['scipy']}, scikit-fem {machine['scikit-fem']}; theirs on {THEIR_MACHINE}.",
@@ -139,37 +176,11 @@ def result_of(measured: Session, cells: tuple[Cell, ...] = CELLS) -> Section:
         "study": "table1",
         "machine": dict(machine),
         "paper_machine": THEIR_MACHINE,
-        "rows": [_record(cell, timing) for cell, timing in times.items()],
+        "rows": records_of(_KEYS, times.items()),
     }
     complete = all(timing.outcome.completed for timing in taken.values())
     figures = (_run_times(cells, taken),) if taken else ()
     return Section("Run times, beside Table 1 of the paper", sentences, figures, (table,), "table1", data, complete)
-
-
-def _record(cell: Cell, timing: Timing) -> dict[str, object]:
-    """Documented JSON of a cell."""
-    return {
-        "case": cell.case,
-        "method": cell.method,
-        "formulation": None if cell.method == "fea" else cell.formulation,
-        "contact": cell.contact,
-        "size": plain(cell.size),
-        "seconds": timing.median("both") if timing.seconds else None,
-        "spread": timing.spread("both") if timing.seconds else None,
-        "repeats": len(timing.seconds),
-        "ended": timing.outcome.ended if timing.seconds else None,
-        "why": timing.why or None,
-        "paper_seconds": cell.theirs,
-    }
-
-
-def _row(cell: Cell, timing: Timing) -> tuple[str, ...]:
-    """Cells of a row of the table."""
-    ours, spread = (timing.median("both"), timing.spread("both")) if timing.seconds else (math.nan, math.nan)
-    ended = timing.outcome.ended or ("refused" if timing.refusal else "not begun")
-    ratio = number(cell.theirs / ours) if cell.theirs and ours else "–"
-    return (cell.case, cell.label, cell.sized, number(ours), number(spread, 2), str(len(timing.seconds)),
-            number(cell.theirs), ratio, ended)  # fmt: skip
 
 
 def _run_times(cells: tuple[Cell, ...], taken: Mapping[Cell, Timing]) -> Figure:
@@ -185,9 +196,8 @@ def _run_times(cells: tuple[Cell, ...], taken: Mapping[Cell, Timing]) -> Figure:
         axes.plot([], [], "o", color=BLUE, label="ours")
         axes.set_yticks(range(len(cells)), [cell.name for cell in cells])
         axes.invert_yaxis()
-        axes.set_xscale("log")
         axes.grid(visible=True, which="major", axis="x", color="#e4e4e4", linewidth=0.6)
-        axes.set_xlabel("seconds")
+        axes.set(xscale="log", xlabel="seconds")
         drawing.legend(loc="outside upper right", ncols=2)
         caption = "Seconds to the last load: ours as medians with the quartiles, and the paper's, on another machine."
         return finished(drawing, "table1", caption)
