@@ -134,7 +134,7 @@ class Timing:
 
 
 @dataclass(frozen=True, slots=True)
-class LeftOut:
+class Omission:
     """A method or a single size without a run, and the reason."""
 
     name: str
@@ -235,13 +235,13 @@ class Session:
             row.worse = any(row.errors.get(key, 0.0) > NO_WORSE * off for key, off in limits.items())
         return tuple(row for row in found if name in ("", row.contender.name))
 
-    def left_out(self) -> tuple[LeftOut, ...]:
+    def omissions(self) -> tuple[Omission, ...]:
         """Methods and sizes without a run."""
         late = f"more than {self.plan.at_most:g} s"
         return (
-            *(LeftOut(name, None, why) for name, why in self.absent.items()),
+            *(Omission(name, None, why) for name, why in self.absent.items()),
             *(
-                LeftOut(each.contender.name, each.count, each.why or (late if self._is_late(each) else "interrupted"))
+                Omission(each.contender.name, each.count, each.why or (late if self._is_late(each) else "interrupted"))
                 for each in self.timings
                 if not each.seconds
             ),

@@ -20,7 +20,7 @@ from comparisons.logs import SOLVERS
 from comparisons.pairing import Solvers, exact_answer, solid_answer, solvers_of
 from comparisons.present.strips import Coloured, with_stresses
 from comparisons.quantities import load_unit
-from comparisons.starting.present import WHAT_DRAWS
+from comparisons.starting.libraries import WHAT_DRAWS
 from comparisons.tolerances.result import Tolerance
 from comparisons.writing import write
 from cprbm_scene import Answer, Scene
@@ -37,7 +37,7 @@ def solve(request: Request, solver: SolverName) -> int:
     """Write and print the answer of a solver; the exit code."""
     scene = request.scene()
     request = request.with_room()
-    found = _solved(request, scene, solver)
+    found = _answer_of(request, scene, solver)
     if not request.quiet or request.json_file or request.csv_file or request.plot_file:
         _write(request, scene, *found)
     return _report_problems(scene, *found)
@@ -58,7 +58,7 @@ def _write(request: Request, scene: Scene, answer: Answer, audited: Audit, searc
         print_tables(answer_tables.answer_tables(scene, answer, searches))
 
 
-def _solved(request: Request, scene: Scene, solver: SolverName) -> Found:
+def _answer_of(request: Request, scene: Scene, solver: SolverName) -> Found:
     """The answer of a solver.
 
     Raises:
@@ -106,7 +106,7 @@ def view(request: Request, solver: SolverName, quantity: Coloured, station: str 
         raise click.BadParameter(f"found {path.name!r}; allowed: {allowed}", param_hint="--out")
     last = None if station is None else _station(scene, station)
     path.parent.mkdir(parents=True, exist_ok=True)
-    answer, audited, searches = _solved(request, scene, solver)
+    answer, audited, searches = _answer_of(request, scene, solver)
     code = _report_problems(scene, answer, audited, searches)
     places = [place for place, each in enumerate(answer.stations, 1) if last in (None, (each.stage, each.value))]
     if not places:

@@ -8,7 +8,7 @@ import click
 
 from comparisons import cases
 from comparisons.cli.errors import INCOMPLETE
-from comparisons.starting import present
+from comparisons.starting import libraries
 
 
 def list_cases() -> None:
@@ -22,7 +22,7 @@ def doctor(quiet: bool) -> int:  # noqa: FBT001 - click passes a keyword
     if not quiet:
         click.echo(f"Python {platform.python_version()}")
     there, missing, required = list[str](), list[str](), False
-    for state in present.looked_for():
+    for state in libraries.states():
         lacking = not (state.there or state.library.extra)
         required |= lacking
         (there if state.there else missing).append(state.library.name)
@@ -48,6 +48,6 @@ def _print_abilities(*, drawing: bool) -> None:
         from comparisons.present.space import tried  # NumPy may be missing
 
         trouble = tried()
-        remedy = f"{'impossible':<12} ({trouble}); on Debian and Ubuntu install, as root: {present.WHAT_DRAWS}"
+        remedy = f"{'impossible':<12} ({trouble}); on Debian and Ubuntu install, as root: {libraries.WHAT_DRAWS}"
         ability = remedy if trouble else f"{'works':<12} for pictures in space by 'view'"
         click.echo(f"{'drawing':<14} {ability}")

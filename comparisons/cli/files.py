@@ -10,8 +10,8 @@ import click
 from comparisons.cli.errors import printable
 from comparisons.importing.formats import read_drawing
 from comparisons.importing.scene_text import Choices, Unit, scene_text
-from comparisons.starting import begun
-from comparisons.starting.present import line_for
+from comparisons.starting import template
+from comparisons.starting.libraries import line_for
 from comparisons.writing import write
 
 
@@ -22,8 +22,8 @@ def new(name: str, out: Path, quiet: bool) -> None:  # noqa: FBT001 - click pass
         click.UsageError: the name is wrong, or the file exists.
     """
     path = _free_path(out, name, "NAME", "another name")
-    write(path, begun.text(name))
-    write(out / begun.SCHEMA, begun.schema_text())
+    write(path, template.text(name))
+    write(out / template.SCHEMA, template.schema_text())
     if not quiet:
         click.echo(f"{path}: change the scene, then run 'cprbm compare {path}'.")
 
@@ -54,7 +54,7 @@ def import_drawing(
 
 def schema() -> None:
     """Print the JSON schema of scene files."""
-    click.echo(begun.schema_text(), nl=False)
+    click.echo(template.schema_text(), nl=False)
 
 
 def _free_path(out: Path, name: str, hint: str, remedy: str) -> Path:

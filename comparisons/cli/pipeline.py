@@ -89,9 +89,9 @@ def take_steps(
             for step in progress.through(steps):
                 study, written = take(study, step), None
                 if request.out is not None or (request.json_file is not None and request.prints):
-                    written = _written(request, section_of(study))
+                    written = _write_files(request, section_of(study))
         finally:
-            section = written or _written(request, section_of(study))
+            section = written or _write_files(request, section_of(study))
             progress.clear()
             if not request.prints:
                 write_json(request.json_file, dict(section.data))
@@ -101,7 +101,7 @@ def take_steps(
     return study
 
 
-def _written(request: Request, section: Section) -> Section:
+def _write_files(request: Request, section: Section) -> Section:
     """The section, whose files are written now."""
     if request.prints:
         write_json(request.json_file, dict(section.data))

@@ -12,7 +12,7 @@ from comparisons import provenance, workshop
 from comparisons.bench import contenders, measures, running
 from comparisons.bench.contenders import OURS
 from comparisons.bench.section import bench_section
-from comparisons.bench.tables import sized
+from comparisons.bench.tables import size_text
 from comparisons.choices import Count, check
 from comparisons.cli.bars import status
 from comparisons.cli.declarations import OPTIMISERS
@@ -64,7 +64,7 @@ def bench(
         raise click.UsageError(f"No method is left: {reasons}.")
     own = {each.name: running.sizes_of(each, counts) for each in taking}
     plan = running.Plan(own, request.choices.kinematics_of(opened), repeat, request.at_most, whole, clock)
-    question = measures.asked(opened)
+    question = measures.benchmark_scene(opened)
     request = request.with_room()
     if request.out is not None:
         request = replace(request, out=own_folder(request.out, opened.name))
@@ -75,7 +75,7 @@ def bench(
     take_steps(request, session, session.jobs(), Session.do, bench_section)
     failed = [row for row in session.rows() if row.contender.name in OURS and not row.outcome.completed]
     for row in failed:
-        who = f"{row.contender.label} at N = {sized(row.count)}"
+        who = f"{row.contender.label} at N = {size_text(row.count)}"
         click.echo(f"cprbm: {opened.name}: {who}: {row.outcome.why}", err=True)
     return INCOMPLETE if failed else 0
 

@@ -53,12 +53,12 @@ def compare_all(request: Request) -> int:
     if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):
         return INCOMPLETE
     undecided = any(verdict.word is Word.UNDECIDED for verdict in verdicts)
-    return UNDECIDED if undecided or any(map(_missed, finished)) else 0
+    return UNDECIDED if undecided or any(map(_failed_searches, finished)) else 0
 
 
 def _comparisons(request: Request, questions: Sequence[Question], run: Run, progress: Bar) -> Iterator[Compared]:
     """Comparisons of all questions; the next question is solved while the caller draws and prints the last."""
-    begun = partial(_begun, request, [] if request.tol else questions, run)
+    begun = partial(_begin, request, [] if request.tol else questions, run)
     following = begun(0)
     for place, question in enumerate(progress.through(questions)):
         pending, following = following, begun(place + 1)
@@ -73,7 +73,7 @@ def _comparisons(request: Request, questions: Sequence[Question], run: Run, prog
             yield replace(case.compare(question, runs), tolerances=searches)
 
 
-def _begun(request: Request, questions: Sequence[Question], run: Run, place: int) -> Callable[[], Runs] | None:
+def _begin(request: Request, questions: Sequence[Question], run: Run, place: int) -> Callable[[], Runs] | None:
     """The runs of a question, begun now; None beyond the last question, and for an offset question."""
     question = questions[place] if place < len(questions) else None
     if question is None or isinstance(question, OffsetQuestion):
@@ -105,11 +105,11 @@ def _show(request: Request, question: Question, compared: Compared) -> None:
         ):
             print_section(section)
     click.echo(brief.headline(question.name, compared.verdict, compared.verdict.sentence))
-    for sentence in _missed(compared):
+    for sentence in _failed_searches(compared):
         click.echo(f"{question.name}: {sentence}")
 
 
-def _missed(compared: Compared) -> list[str]:
+def _failed_searches(compared: Compared) -> list[str]:
     """Sentences on searches for N without success."""
     if isinstance(compared, offset_verdict.OffsetComparison):
         return []
@@ -167,11 +167,11 @@ def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -
         run_into(request.out, request.solvers, names, request.processes) as run,
         bar(len(missing), shown=not request.quiet) as progress,
     ):
-        pending = _begun(request, missing, run, 0)
+        pending = _begin(request, missing, run, 0)
         for place, question in enumerate(progress.through(missing)):
-            content = found.gathered(question, pending, run)
+            content = found.content_of(question, pending, run)
             # solve the next case during the drawings, but not during the measurement of run times
-            pending = _begun(request, missing, run, place + 1)
+            pending = _begin(request, missing, run, place + 1)
             found.add(question, *content)
         found.add_table()
     if request.json_file is not None:

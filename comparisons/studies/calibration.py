@@ -78,11 +78,11 @@ def with_case(
     exact = complete_part(scene, whole)
     known, asked = len(exact.stations), sum(len(stage.stations) for stage in scene.stages)
     why = None if known == asked else whole.sentence or whole.ending.value
-    trials = [tried(scene, links, elements, exact, solvers, crew) for links, elements in sizes if known]
+    trials = [trial_of(scene, links, elements, exact, solvers, crew) for links, elements in sizes if known]
     return Calibration((*found.trials, *trials), frozendict({**found.covered, scene.name: (known, asked, why)}))
 
 
-def tried(scene: Scene, links: int, elements: int, exact: Answer, solvers: Solvers, crew: Crew = ALONE) -> Trial:
+def trial_of(scene: Scene, links: int, elements: int, exact: Answer, solvers: Solvers, crew: Crew = ALONE) -> Trial:
     """The trial of a case with a known exact answer.
 
     Raises:

@@ -19,7 +19,7 @@ from pydantic_core import to_json
 
 from comparisons import cases, provenance
 from comparisons.bench.contenders import OURS, contenders
-from comparisons.bench.measures import asked, reference
+from comparisons.bench.measures import benchmark_scene, reference
 from comparisons.bench.running import Plan, Session, refusal_text
 from comparisons.bench.section import bench_section
 from comparisons.case import Comparison, compare
@@ -100,8 +100,8 @@ class Report:
 
     def missing(self) -> list[Question]:
         """Questions without a kept chapter; the kept chapters, and the kept table, are read."""
-        self.table = _kept(self.folder / _TABLE, Section, self._table_key) if self._has_table else None
-        kept = {each.name: _kept(self._own(each) / _CHAPTER, Chapter, self._key(each)) for each in self.questions}
+        self.table = _record_of(self.folder / _TABLE, Section, self._table_key) if self._has_table else None
+        kept = {each.name: _record_of(self._own(each) / _CHAPTER, Chapter, self._key(each)) for each in self.questions}
         self.chapters = {name: chapter for name, chapter in kept.items() if chapter is not None}
         return [question for question in self.questions if question.name not in self.chapters]
 
@@ -123,7 +123,7 @@ class Report:
         names = {cell.case for cell in table1.CELLS}
         return self.parts.times and all(cases.asked(name) in self.questions for name in names)
 
-    def gathered(self, question: Question, pending: Callable[[], Runs] | None, run: Run) -> Content:
+    def content_of(self, question: Question, pending: Callable[[], Runs] | None, run: Run) -> Content:
         """All numbers of a question; run times come last, when no other solve runs.
 
         Args:
@@ -225,13 +225,13 @@ def _run_times(scene: Scene, timed: Solvers, knowing: Solvers) -> Section:
     Raises:
         SceneError: every method refuses the question.
     """
-    scene = asked(scene)
+    scene = benchmark_scene(scene)
     plan = Plan(dict.fromkeys(OURS, SIZES), repeat=REPEAT, at_most=AT_MOST, clock="cpu")
     methods, known = contenders(timed, Choices(kinematics=plan.kinematics)), reference(scene, knowing)
     return bench_section(Session(scene, plan, methods, provenance.machine(), known).after_all())
 
 
-def _kept(file: Path, kind: type[T], key: str) -> T | None:
+def _record_of(file: Path, kind: type[T], key: str) -> T | None:
     """The record of a file; None without a record of this key."""
     with suppress(FileNotFoundError, ValidationError):
         found, record = TypeAdapter(tuple[str, kind]).validate_json(file.read_bytes())  # type: ignore[valid-type]

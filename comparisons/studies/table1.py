@@ -48,14 +48,14 @@ class Cell:
         return f"CPRBM {self.formulation}"
 
     @property
-    def sized(self) -> str:
+    def size_text(self) -> str:
         """The discretisation, as the paper writes it."""
         return f"({', '.join(map(str, self.size.values()))})" if isinstance(self.size, Mapping) else str(self.size)
 
     @property
     def name(self) -> str:
         """Case, method and discretisation."""
-        return f"{self.case}, {self.label}, {self.sized}"
+        return f"{self.case}, {self.label}, {self.size_text}"
 
 
 def _cprbm(case: str, first: int, second: int, theirs: float | None) -> tuple[Cell, ...]:
@@ -117,7 +117,7 @@ Line = tuple[Cell, Timing]
 _COLUMNS: tuple[Column[Line], ...] = (
     Column("case", lambda line: line[0].case),
     Column("method", lambda line: line[0].label),
-    Column("elements or links", lambda line: line[0].sized),
+    Column("elements or links", lambda line: line[0].size_text),
     Column("ours", lambda line: _seconds(line[1]), number),
     Column("spread", lambda line: line[1].spread("both") if line[1].seconds else None, lambda value: number(value, 2)),
     Column("repeats", lambda line: len(line[1].seconds)),

@@ -107,7 +107,7 @@ LIBRARIES = (
 )
 
 
-def looked_for() -> Iterator[State]:
+def states() -> Iterator[State]:
     """State of every library."""
     for library in LIBRARIES:
         found = trouble = ""
