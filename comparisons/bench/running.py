@@ -8,7 +8,7 @@ T       median of the seconds of set-up and solve together
 e       of T = a·N^e, fitted by least squares in log T and log N over N ≥ 40
 ======  ====================================================================================
 
-All runs are made in one process, with BLAS on one thread.  The first run of every method does not count, so that no
+All runs share a process, with BLAS on a single thread.  The first run of every method does not count, so that no
 time holds an import.  Every repetition goes through all sizes, and at each size through all methods: other work on the
 machine then falls on all methods alike.  A run of less than a second is made twice in a row and the second run counts,
 since the first fills the processor's caches.  The spread is the distance of the quartiles.
