@@ -85,17 +85,16 @@ def ratio_key(name: str, clocked: Clocked) -> str:
 
 def trends(measured: Session) -> list[Plain]:
     """``trends``: growth of time and iterations of every method."""
-    found = []
-    for contender in measured.methods():
-        sizes, exponent, iterations = trend(measured.rows(contender.name))
-        found.append(
-            {
-                "method": contender.method,
-                "formulation": contender.formulation,
-                "n": [plain(n) for n in sizes],
-                "exponent": exponent,
-                "iterations_ratio": iterations,
-                "left_out": [plain(one.count) for one in measured.omissions() if one.name == contender.name],
-            }
-        )
-    return found
+    omitted = [(one.name, plain(one.count)) for one in measured.omissions()]
+    found = {contender: trend(measured.rows(contender.name)) for contender in measured.methods()}
+    return [
+        {
+            "method": contender.method,
+            "formulation": contender.formulation,
+            "n": [plain(n) for n in sizes],
+            "exponent": exponent,
+            "iterations_ratio": iterations,
+            "left_out": [count for name, count in omitted if name == contender.name],
+        }
+        for contender, (sizes, exponent, iterations) in found.items()
+    ]

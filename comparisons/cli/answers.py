@@ -11,9 +11,8 @@ from typing import Literal
 import click
 
 from comparisons.audit import Audit, audit
-from comparisons.cli.bars import bar, status
+from comparisons.cli import bars, output
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
-from comparisons.cli.output import print_tables, write_json
 from comparisons.cli.request import Request
 from comparisons.display_units import at_station, file_unit
 from comparisons.logs import SOLVERS
@@ -49,13 +48,13 @@ def _write(request: Request, scene: Scene, answer: Answer, audited: Audit, searc
 
     if request.json_file is not None:
         document = json_document.solution(scene, answer, searches, audited)
-        write_json(request.json_file, {"cases": [document]})
+        output.write_json(request.json_file, {"cases": [document]})
     if request.csv_file is not None:
         write(request.csv_file, csv_table.csv_of(scene, answer))
     if request.plot_file is not None and answer.stations:
         figures.answer_figure(scene, answer).save(request.plot_file)
     if request.prints and not request.quiet:
-        print_tables(answer_tables.answer_tables(scene, answer, searches))
+        output.print_tables(answer_tables.answer_tables(scene, answer, searches))
 
 
 def _answer_of(request: Request, scene: Scene, solver: SolverName) -> Found:
@@ -68,11 +67,11 @@ def _answer_of(request: Request, scene: Scene, solver: SolverName) -> Found:
     if request.tol is not None and solver != "exact":
         from comparisons.tolerances.search import solve_within
 
-        with status(shown=not request.quiet) as say:
+        with bars.status(shown=not request.quiet) as say:
             answer, search = solve_within(scene, solver, request.choices, request.tol, solvers, say)
         return answer, audit(scene, answer), (search,)
     function = getattr(solvers, solver) or {"exact": exact_answer, "solid": solid_answer}[solver]
-    with bar(1, shown=not request.quiet, loggers=SOLVERS):
+    with bars.bar(1, shown=not request.quiet, loggers=SOLVERS):
         answer = function(scene, request.choices)
     return answer, audit(scene, answer), ()
 

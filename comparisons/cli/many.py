@@ -9,9 +9,8 @@ from typing import Literal
 
 import click
 
-from comparisons.cli.bars import bar
+from comparisons.cli import bars, output
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
-from comparisons.cli.output import print_tables
 from comparisons.cli.request import Request
 from comparisons.optimum import problem as problems
 from comparisons.optimum import result as optima
@@ -106,7 +105,7 @@ def _workers(
 ) -> Iterator[tuple[Path, Workers, Callable[[int], None]]]:
     """Context with the folder, workers, and a bar to be moved to a number of finished solves."""
     out = request.out or Path(f"{command}-{scene.name}")
-    with workers_on(request.place) as workers, bar(solves, shown=not request.quiet, loggers=()) as progress:
+    with workers_on(request.place) as workers, bars.bar(solves, shown=not request.quiet, loggers=()) as progress:
         request.with_room(str(out))
         yield out, workers, progress.move
 
@@ -118,7 +117,7 @@ def _put(request: Request, scene: Scene, out: Path, result: Section, numbers: st
     for sentence in result.sentences:
         click.echo(sentence)
     if not request.quiet:
-        print_tables(result.tables)
+        output.print_tables(result.tables)
         click.echo(f"numbers: {numbers}; page: {out / 'index.html'}")
 
 

@@ -14,10 +14,9 @@ from comparisons.bench.contenders import OURS
 from comparisons.bench.section import bench_section
 from comparisons.bench.tables import size_text
 from comparisons.choices import Count, check
-from comparisons.cli.bars import status
+from comparisons.cli import bars, pipeline
 from comparisons.cli.declarations import OPTIMISERS
 from comparisons.cli.errors import INCOMPLETE
-from comparisons.cli.pipeline import take_steps
 from comparisons.cli.request import Request
 from comparisons.present.page import own_folder
 from comparisons.store import run_into
@@ -68,11 +67,11 @@ def bench(
     request = request.with_room()
     if request.out is not None:
         request = replace(request, out=own_folder(request.out, opened.name))
-    with status(shown=not request.quiet) as say:
+    with bars.status(shown=not request.quiet) as say:
         say("reference of the errors")
         known = measures.reference(question, request.solvers)
     session = Session(opened if whole else question, plan, taking, provenance.machine(), known, absent)
-    take_steps(request, session, session.jobs(), Session.do, bench_section)
+    pipeline.take_steps(request, session, session.jobs(), Session.do, bench_section)
     failed = [row for row in session.rows() if row.contender.name in OURS and not row.outcome.completed]
     for row in failed:
         who = f"{row.contender.label} at N = {size_text(row.count)}"
@@ -91,7 +90,9 @@ def calibration(request: Request) -> int:
     request = request.with_room()
     with run_into(request.out, request.solvers, processes=request.processes) as run:
         take = partial(calibrations.with_case, solvers=run.solvers, crew=run.crew)
-        found = take_steps(request, calibrations.Calibration(), calibrations.pieces(), take, calibrations.result_of)
+        found = pipeline.take_steps(
+            request, calibrations.Calibration(), calibrations.pieces(), take, calibrations.result_of
+        )
     verdicts = [trial.verdict for trial in found.trials]
     return INCOMPLETE if any(each.word is Word.DIFFER or not each.completed for each in verdicts) else 0
 
@@ -100,5 +101,5 @@ def table1(request: Request, repeat: int) -> int:
     """Time both solvers on the cells of the paper's Table 1; exit code 1 for an incomplete solve."""
     request = request.with_room()
     session = timings.session(request.solvers, provenance.machine(), repeat, request.at_most)
-    take_steps(request, session, session.jobs(), Session.do, timings.result_of)
+    pipeline.take_steps(request, session, session.jobs(), Session.do, timings.result_of)
     return 0 if timings.result_of(session).complete else INCOMPLETE

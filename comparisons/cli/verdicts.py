@@ -13,10 +13,8 @@ import click
 
 from comparisons import case, cases, logs, offset_verdict, pairing, provenance
 from comparisons.case import Comparison
-from comparisons.cli.bars import Bar, bar, status
+from comparisons.cli import bars, output, pipeline
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
-from comparisons.cli.output import print_section, print_tables, write_json
-from comparisons.cli.pipeline import answer_all, print_folder
 from comparisons.cli.request import Request
 from comparisons.plain import Plain
 from comparisons.present import brief, case_tables, csv_table, figures, offset, page
@@ -42,13 +40,13 @@ def compare_all(request: Request) -> int:
     questions = request.questions()
     request = request.with_room("report" if "all" in request.arguments else "")
     # with a tolerance a status line with N replaces the bar
-    progress = bar(len(questions), shown=not request.quiet and request.tol is None, noun="case")
+    progress = bars.bar(len(questions), shown=not request.quiet and request.tol is None, noun="case")
     ends = _put_case, page.report_page, _document, partial(_show, request)
-    finished = answer_all(request, questions, partial(_comparisons, request, questions), progress, *ends)
+    finished = pipeline.answer_all(request, questions, partial(_comparisons, request, questions), progress, *ends)
     _export(request, [found for found in finished if isinstance(found, Comparison)])
     if request.prints and not request.quiet and len(finished) > 1:
-        print_tables([brief.summary(finished)], brief.WIDTH)
-    print_folder(request)
+        output.print_tables([brief.summary(finished)], brief.WIDTH)
+    pipeline.print_folder(request)
     verdicts = [found.verdict for found in finished]
     if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):
         return INCOMPLETE
@@ -56,7 +54,7 @@ def compare_all(request: Request) -> int:
     return UNDECIDED if undecided or any(map(_failed_searches, finished)) else 0
 
 
-def _comparisons(request: Request, questions: Sequence[Question], run: Run, progress: Bar) -> Iterator[Compared]:
+def _comparisons(request: Request, questions: Sequence[Question], run: Run, progress: bars.Bar) -> Iterator[Compared]:
     """Comparisons of all questions; the next question is solved while the caller draws and prints the last."""
     begun = partial(_begin, request, [] if request.tol else questions, run)
     following = begun(0)
@@ -68,7 +66,7 @@ def _comparisons(request: Request, questions: Sequence[Question], run: Run, prog
             yield case.compare(question, pending())
         else:
             assert request.tol is not None
-            with status(shown=not request.quiet) as say:
+            with bars.status(shown=not request.quiet) as say:
                 runs, searches = runs_within(question, request.choices, request.tol, run.solvers, run.crew, say)
             yield replace(case.compare(question, runs), tolerances=searches)
 
@@ -103,7 +101,7 @@ def _show(request: Request, question: Question, compared: Compared) -> None:
             if isinstance(compared, Comparison)
             else offset.offset_sections(compared)
         ):
-            print_section(section)
+            output.print_section(section)
     click.echo(brief.headline(question.name, compared.verdict, compared.verdict.sentence))
     for sentence in _failed_searches(compared):
         click.echo(f"{question.name}: {sentence}")
@@ -131,7 +129,7 @@ def converge_all(request: Request, sizes: tuple[int, ...]) -> int:
     questions = request.questions()
     request = request.with_room("convergence" if "all" in request.arguments else "")
 
-    def results(run: Run, progress: Bar) -> Iterator[Section]:
+    def results(run: Run, progress: bars.Bar) -> Iterator[Section]:
         for question in progress.through(questions):
             yield convergence.convergence_section(question, sizes, request.choices, run.solvers, run.crew)
 
@@ -143,13 +141,15 @@ def converge_all(request: Request, sizes: tuple[int, ...]) -> int:
         return dict(finished[0].data) if len(questions) == 1 else {"cases": [each.data for each in finished]}
 
     def show(question: Question, section: Section) -> None:
-        print_tables(() if request.quiet else section.tables)
+        output.print_tables(() if request.quiet else section.tables)
         for sentence in section.sentences:
             click.echo(f"{question.name}: {sentence}")
 
-    progress = bar(len(questions), shown=not request.quiet, share=0.8)
-    finished = answer_all(request, questions, results, progress, chapter, page.convergence_page, document, show)
-    print_folder(request)
+    progress = bars.bar(len(questions), shown=not request.quiet, share=0.8)
+    finished = pipeline.answer_all(
+        request, questions, results, progress, chapter, page.convergence_page, document, show
+    )
+    pipeline.print_folder(request)
     return 0 if all(section.complete for section in finished) else INCOMPLETE
 
 
@@ -165,7 +165,7 @@ def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -
     missing, names = found.missing(), tuple(question.name for question in questions)
     with (
         run_into(request.out, request.solvers, names, request.processes) as run,
-        bar(len(missing), shown=not request.quiet) as progress,
+        bars.bar(len(missing), shown=not request.quiet) as progress,
     ):
         pending = _begin(request, missing, run, 0)
         for place, question in enumerate(progress.through(missing)):
@@ -175,7 +175,7 @@ def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -
             found.add(question, *content)
         found.add_table()
     if request.json_file is not None:
-        write_json(request.json_file, found.document())
+        output.write_json(request.json_file, found.document())
     for chapter in found.chapters.values() if request.prints else ():
         click.echo(f"{chapter.name}: {chapter.word}. {chapter.sentence}")
-    print_folder(request)
+    pipeline.print_folder(request)

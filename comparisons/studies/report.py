@@ -101,12 +101,12 @@ class Report:
     def missing(self) -> list[Question]:
         """Questions without a kept chapter; the kept chapters, and the kept table, are read."""
         self.table = _record_of(self.folder / _TABLE, Section, self._table_key) if self._has_table else None
-        kept = {each.name: _record_of(self._own(each) / _CHAPTER, Chapter, self._key(each)) for each in self.questions}
+        kept = {
+            each.name: _record_of(self.folder / each.name / _CHAPTER, Chapter, self._key(each))
+            for each in self.questions
+        }
         self.chapters = {name: chapter for name, chapter in kept.items() if chapter is not None}
         return [question for question in self.questions if question.name not in self.chapters]
-
-    def _own(self, question: Question) -> Path:
-        return self.folder / question.name
 
     def _key(self, question: Question) -> str:
         """Digest of the dependence of a chapter."""
@@ -154,7 +154,7 @@ class Report:
         Raises:
             OSError: the folder cannot be written to.
         """
-        own, figures = self._own(question), figures_of(compared)
+        own, figures = self.folder / question.name, figures_of(compared)
         put_case(self.folder, compared, figures)
         for section in further:
             put_section(own, section)
