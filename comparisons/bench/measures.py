@@ -30,6 +30,7 @@ extrapolation of the CPRBM in ``auto`` from N = 160, 320 and 640, with the uncer
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Literal
 
@@ -39,7 +40,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers
 from comparisons.verdict.scales import NATURAL_SHARE, natural_value
 from comparisons.verdict.uncertainty import limit
-from cprbm_scene import Scene, SceneError
+from cprbm_scene import Answer, Scene, SceneError
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import DisplacementDrive, Probe
@@ -57,7 +58,7 @@ def at_last_loads(scene: Scene) -> Scene:
     return scene.model_copy(update={"stages": stages})
 
 
-def asked(scene: Scene) -> Scene:
+def benchmark_scene(scene: Scene) -> Scene:
     """The scene with its last loads and the probes of both measures, and without claims."""
     probes = tuple(probe for probe in scene.probes if measure_of(scene, probe) is not None)
     return at_last_loads(scene).model_copy(update={"probes": probes, "claims": ()})
@@ -85,22 +86,19 @@ NOTHING = Reference("nothing: no reference is known")
 
 
 def reference(scene: Scene, solvers: Solvers) -> Reference:
-    """The reference of a scene of :func:`asked`."""
+    """The reference of a scene of :func:`benchmark_scene`."""
     exact = None if solvers.exact is None else solvers.exact(scene, Choices(kinematics="bending"))
     if exact is not None and exact.completed and exact.stations:
         values = exact.stations[-1].values
         return Reference("the exact answer", values, frozendict({name: 0.0 * v for name, v in values.items()}))
-    try:
+    answers = list[Answer]()
+    with suppress(SceneError):
         answers = [solvers.cprbm(scene, Choices(links=n)) for n in FINE]
-    except SceneError:
+    if not answers or not all(answer.completed for answer in answers):
         return NOTHING
-    if not all(answer.completed for answer in answers):
-        return NOTHING
-    limits = {}
-    for probe in scene.probes:
-        found = [answer.stations[-1].values[probe.name] for answer in answers]
-        if found[0].size and len({value.shape for value in found}) == 1:
-            limits[probe.name] = limit(FINE, found)
+    found = {probe.name: [answer.stations[-1].values[probe.name] for answer in answers] for probe in scene.probes}
+    alike = {name: each for name, each in found.items() if each[0].size and len({value.shape for value in each}) == 1}
+    limits = {name: limit(FINE, values) for name, values in alike.items()}
     return Reference(
         f"the CPRBM's limit (auto, N = {', '.join(map(str, FINE))})",
         frozendict({name: each.value for name, each in limits.items()}),

@@ -8,7 +8,7 @@ T       median of the seconds of set-up and solve together
 e       of T = a·N^e, fitted by least squares in log T and log N over N ≥ 40
 ======  ====================================================================================
 
-All runs are made in one process, with BLAS on one thread.  The first run of every method does not count, so that no
+All runs share a process, with BLAS on a single thread.  The first run of every method does not count, so that no
 time holds an import.  Every repetition goes through all sizes, and at each size through all methods: other work on the
 machine then falls on all methods alike.  A run of less than a second is made twice in a row and the second run counts,
 since the first fills the processor's caches.  The spread is the distance of the quartiles.
@@ -23,7 +23,7 @@ from __future__ import annotations
 import gc
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -48,10 +48,8 @@ Clock = Literal["wall", "cpu"]
 CLOCKS: Mapping[Clock, Callable[[], float]] = frozendict({"wall": time.perf_counter, "cpu": time.process_time})
 """Elapsed seconds, and seconds of the processor, which other work hardly changes."""
 
-Job = tuple[Contender, Count]
-"""A run of a method at a size."""
-
-_EXTENTS = {"set-up": slice(0, 1), "solve": slice(1, 2), "both": slice(0, 2)}
+Extent = Clocked | Literal["set-up"]
+_EXTENTS: Mapping[Extent, slice] = frozendict({"set-up": slice(0, 1), "solve": slice(1, 2), "both": slice(0, 2)})
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +79,7 @@ class Timing:
 
     Attributes:
         seconds: of set-up and solve of every run, (k, 2), in order.
-        outcome: of the last run, or of the first incomplete run; None without a run.
+        outcome: of the last run, or of the first incomplete run.
         refusal: the method's refusal of the question.
         errors: by measure; empty for an incomplete run or without a reference.
         worse: True if the error of a peer is larger than the error of the CPRBM on the same problem.
@@ -95,25 +93,24 @@ class Timing:
     errors: Mapping[Measure, float] = frozendict()
     worse: bool = False
 
-    def quartiles(self, clocked: Clocked | Literal["set-up"]) -> tuple[float, float, float]:
+    def quartiles(self, extent: Extent) -> tuple[float, float, float]:
         """Lower quartile, median and upper quartile of the set-up, of the solve, or of both together (T), s."""
-        low, median, high = np.percentile(np.sum(np.array(self.seconds)[:, _EXTENTS[clocked]], axis=1), (25, 50, 75))
+        low, median, high = np.percentile(np.sum(np.array(self.seconds)[:, _EXTENTS[extent]], axis=1), (25, 50, 75))
         return float(low), float(median), float(high)
 
-    def median(self, clocked: Clocked | Literal["set-up"]) -> float:
+    def median(self, extent: Extent) -> float:
         """Median, s."""
-        return self.quartiles(clocked)[1]
+        return self.quartiles(extent)[1]
+
+    def spread(self, extent: Extent) -> float:
+        """Distance of the quartiles, s."""
+        low, _, high = self.quartiles(extent)
+        return high - low
 
     @property
     def n(self) -> float:
         """N."""
         return mean(self.count)
-
-    @property
-    def spread(self) -> float:
-        """Distance of the quartiles of the solve, s."""
-        low, _, high = self.quartiles("solve")
-        return high - low
 
     @property
     def counts(self) -> bool:
@@ -133,13 +130,11 @@ class Timing:
     @property
     def why(self) -> str:
         """Why the method refuses the question, or why the run is incomplete; else empty."""
-        if self.refusal is None:
-            return self.outcome.why
-        return "; ".join(f"{one.key}: found {one.found}; allowed: {one.allowed}" for one in self.refusal.mistakes)
+        return self.outcome.why if self.refusal is None else refusal_text(self.refusal)
 
 
 @dataclass(frozen=True, slots=True)
-class LeftOut:
+class Omission:
     """A method or a single size without a run, and the reason."""
 
     name: str
@@ -153,65 +148,75 @@ class Session:
 
     Attributes:
         scene, plan: the question; contenders: the methods; machine: the machine and the versions.
-        clock: seconds.
         reference: of the errors.
         absent: methods that take no part, with reasons.
-        timings: by name of the method and count, in the order of the runs.
+        clock: seconds; None for the clock of the plan.
         largest: by name of a method that has run, N above which no size begins.
+        timings: of every method by ascending N, also without a run.
     """
 
     scene: Scene
     plan: Plan
     contenders: tuple[Contender, ...]
     machine: Mapping[str, str | int]
-    clock: Callable[[], float]
     reference: Reference = NOTHING
     absent: Mapping[str, str] = frozendict()
-    timings: dict[tuple[str, Count], Timing] = field(default_factory=dict)
+    clock: Callable[[], float] | None = None
     largest: dict[str, float] = field(default_factory=dict)
+    timings: list[Timing] = field(init=False)
 
-    def jobs(self) -> tuple[Job, ...]:
+    def __post_init__(self) -> None:
+        """Begin with all sizes of the plan."""
+        self.timings = [Timing(each, count) for each in self.contenders for count in self.plan.sizes[each.name]]
+
+    def jobs(self) -> list[Timing]:
         """All runs: by repetition, by size, and at each size every method with this size."""
-        counts = sorted({count for sizes in self.plan.sizes.values() for count in sizes}, key=mean)
-        once = [(each, count) for count in counts for each in self.contenders if count in self.plan.sizes[each.name]]
-        return tuple(once * self.plan.repeat)
+        return sorted(self.timings, key=lambda timing: timing.n) * self.plan.repeat
 
-    def do(self, job: Job) -> Session:
+    def after_all(self) -> Session:
+        """This session after all runs."""
+        for job in self.jobs():
+            self.do(job)
+        return self
+
+    def do(self, job: Timing) -> Session:
         """This session after a run; no run where the question is refused or takes too long."""
-        (contender, count), most = job, self.plan.at_most
-        timing = self.timings.setdefault((contender.name, count), Timing(contender, count))
-        if timing.refusal or self._is_late(timing) or sum(map(sum, timing.seconds)) > most:
+        name, most = job.contender.name, self.plan.at_most
+        if job.refusal or self._is_late(job) or sum(map(sum, job.seconds)) > most:
             return self
         try:
-            if contender.name not in self.largest:
-                self._run(timing)
-                self.largest[contender.name] = math.inf
+            if name not in self.largest:
+                self._run(job)
+                self.largest[name] = math.inf
             with one_thread():  # of the libraries that the first run has loaded
                 gc.collect()  # the rubbish of earlier runs is not on the clock
-                seconds, outcome = self._run(timing)
+                seconds, outcome = self._run(job)
                 if sum(seconds) < REHEARSED:
-                    seconds, outcome = self._run(timing)
+                    seconds, outcome = self._run(job)
         except SceneError as error:
-            timing.refusal = error
+            job.refusal = error
             return self
-        if not timing.seconds or timing.outcome.completed:
-            timing.outcome, timing.errors = outcome, errors(self.scene, self.reference, outcome.values)
-        timing.seconds.append(seconds)
+        if not job.seconds or job.outcome.completed:
+            job.outcome, job.errors = outcome, errors(self.scene, self.reference, outcome.values)
+        job.seconds.append(seconds)
         if sum(seconds) > most:
-            self.largest[contender.name] = min(self.largest[contender.name], timing.n)
+            self.largest[name] = min(self.largest[name], job.n)
         return self
 
     def _is_late(self, timing: Timing) -> bool:
         """Whether a smaller size of the method has taken too long."""
         return timing.n > self.largest.get(timing.contender.name, math.inf)
 
-    def _run(self, timing: Timing) -> tuple[tuple[float, float], Outcome]:
-        run = timing.contender.begin(self.scene, timing.count, self.plan.at_most)
-        begin = self.clock()
+    def _run(self, job: Timing) -> tuple[tuple[float, float], Outcome]:
+        run, clock = (
+            job.contender.begin(self.scene, job.count, self.plan.at_most),
+            self.clock or CLOCKS[self.plan.clock],
+        )
+        begin = clock()
         solve = run.set_up()
-        ready = self.clock()
+        ready = clock()
         result = solve()
-        end = self.clock()
+        end = clock()
         return (ready - begin, end - ready), run.outcome(result)
 
     def rows(self, name: str = "") -> tuple[Timing, ...]:
@@ -220,36 +225,36 @@ class Session:
         Raises:
             SceneError: every method has refused the question.
         """
-        found = [timing for timing in self._in_order() if timing.seconds]
-        refusals = [timing.refusal for timing in self.timings.values() if timing.refusal]
-        if refusals and not found:
-            raise refusals[0]
+        found = [timing for timing in self.timings if timing.seconds]
+        for timing in self.timings if not found else ():
+            if timing.refusal:
+                raise timing.refusal
         ours = {row.count: row.errors for row in found if row.contender.name == "paper" and row.counts}
         for row in (row for row in found if row.contender.is_peer):
             limits = ours.get(row.count, {})
             row.worse = any(row.errors.get(key, 0.0) > NO_WORSE * off for key, off in limits.items())
         return tuple(row for row in found if name in ("", row.contender.name))
 
-    def left_out(self) -> tuple[LeftOut, ...]:
+    def omissions(self) -> tuple[Omission, ...]:
         """Methods and sizes without a run."""
-        absent = [LeftOut(name, None, why) for name, why in self.absent.items()]
         late = f"more than {self.plan.at_most:g} s"
-        missing = [
-            LeftOut(each.contender.name, each.count, each.why or (late if self._is_late(each) else "interrupted"))
-            for each in self._in_order()
-            if not each.seconds
-        ]
-        return (*absent, *missing)
+        return (
+            *(Omission(name, None, why) for name, why in self.absent.items()),
+            *(
+                Omission(each.contender.name, each.count, each.why or (late if self._is_late(each) else "interrupted"))
+                for each in self.timings
+                if not each.seconds
+            ),
+        )
 
     def methods(self) -> tuple[Contender, ...]:
         """All methods with a timing."""
-        return tuple({row.contender.name: row.contender for row in self.rows()}.values())
+        return tuple(dict.fromkeys(row.contender for row in self.rows()))
 
-    def _in_order(self) -> Iterator[Timing]:
-        """Timings of all sizes of the plan, also without a run."""
-        for contender in self.contenders:
-            for count in self.plan.sizes[contender.name]:
-                yield self.timings.get((contender.name, count), Timing(contender, count))
+
+def refusal_text(error: SceneError) -> str:
+    """All mistakes of a refusal, without their file."""
+    return "; ".join(f"{each.key}: found {each.found}; allowed: {each.allowed}" for each in error.mistakes)
 
 
 def trend(timings: tuple[Timing, ...]) -> tuple[tuple[float, ...], float | None, float | None]:

@@ -10,7 +10,7 @@ import numpy as np
 from comparisons.bench.contenders import Contender
 from comparisons.bench.measures import MEASURES, Measure
 from comparisons.bench.running import Session, Timing, trend
-from comparisons.bench.tables import document, sized, tables_of
+from comparisons.bench.tables import document, size_text, tables_of
 from comparisons.present.canvas import canvas, common_legend, finished, logarithmic
 from comparisons.present.columns import Figure, Section
 
@@ -44,8 +44,9 @@ def _precision(rows: Rows, measures: Sequence[Measure]) -> Figure:
                 points = [(row.median("both"), row.errors[measure]) for row in shown]
                 _line(axes, method, points, method.label)
                 for place, below in {0: 3.0, len(shown) - 1: -10.0}.items() if shown else ():
-                    axes.annotate(sized(shown[place].count), points[place], (5.0, below), textcoords="offset points",
-                                  color=method.look[0], fontsize=8.0)  # fmt: skip
+                    text = size_text(shown[place].count)
+                    axes.annotate(text, points[place], (5.0, below), textcoords="offset points", color=method.look[0],
+                                  fontsize=8.0)  # fmt: skip
             _decades(axes, _MEASURED[measure])
         panels[-1].set_xlabel("seconds of set-up and solve")
         common_legend(drawing, "upper center", 3)

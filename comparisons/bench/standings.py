@@ -34,7 +34,7 @@ def _standing(measured: Session, measure: Measure, clocked: Clocked, target: flo
     seconds = dict[str, float]()
     for contender in measured.methods():
         counted = [row for row in measured.rows(contender.name) if row.counts and measure in row.errors]
-        found = reached([(row.errors[measure], row.median(clocked)) for row in counted], target)
+        found = seconds_at([(row.errors[measure], row.median(clocked)) for row in counted], target)
         if found is not None:
             seconds[contender.name] = found
     first, second, *_ = (*sorted(seconds.values()), 0.0, 0.0)
@@ -48,7 +48,7 @@ def _standing(measured: Session, measure: Measure, clocked: Clocked, target: flo
     }
 
 
-def reached(points: Sequence[tuple[float, float]], target: float) -> float | None:
+def seconds_at(points: Sequence[tuple[float, float]], target: float) -> float | None:
     """Seconds from which the error is at most the ``target``, of (error, seconds) by ascending size; or None."""
     first = max((place + 1 for place, (error, _) in enumerate(points) if error > target), default=0)
     if first == len(points):
@@ -85,17 +85,16 @@ def ratio_key(name: str, clocked: Clocked) -> str:
 
 def trends(measured: Session) -> list[Plain]:
     """``trends``: growth of time and iterations of every method."""
-    found = []
-    for contender in measured.methods():
-        sizes, exponent, iterations = trend(measured.rows(contender.name))
-        found.append(
-            {
-                "method": contender.method,
-                "formulation": contender.formulation,
-                "n": [plain(n) for n in sizes],
-                "exponent": exponent,
-                "iterations_ratio": iterations,
-                "left_out": [plain(one.count) for one in measured.left_out() if one.name == contender.name],
-            }
-        )
-    return found
+    omitted = [(one.name, plain(one.count)) for one in measured.omissions()]
+    found = {contender: trend(measured.rows(contender.name)) for contender in measured.methods()}
+    return [
+        {
+            "method": contender.method,
+            "formulation": contender.formulation,
+            "n": [plain(n) for n in sizes],
+            "exponent": exponent,
+            "iterations_ratio": iterations,
+            "left_out": [count for name, count in omitted if name == contender.name],
+        }
+        for contender, (sizes, exponent, iterations) in found.items()
+    ]

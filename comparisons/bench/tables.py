@@ -17,16 +17,16 @@ _LIBRARIES = {"python": "Python", "numpy": "NumPy", "scipy": "SciPy", "scikit-fe
 
 _COLUMNS: tuple[Column[Timing], ...] = (
     Column("method", lambda row: row.contender.label),
-    Column("N", lambda row: sized(row.count)),
+    Column("N", lambda row: size_text(row.count)),
     Column("set-up", lambda row: row.median("set-up"), number),
     Column("solve", lambda row: row.median("solve"), number),
-    Column("spread", lambda row: row.spread, lambda value: number(value, 2)),
+    Column("spread", lambda row: row.spread("solve"), lambda value: number(value, 2)),
     Column("repeats", lambda row: len(row.seconds)),
     Column("places", lambda row: row.errors.get("places"), percent),
     Column("forces", lambda row: row.errors.get("forces"), percent),
     Column("iterations", lambda row: row.iterations),
     Column("per station", lambda row: row.iterations_per_station, number),
-    Column("ended", lambda row: ended(row)),
+    Column("ended", lambda row: ending_of(row)),
 )
 
 _KEYS: tuple[Column[Timing], ...] = (
@@ -35,10 +35,10 @@ _KEYS: tuple[Column[Timing], ...] = (
     Column("n", lambda row: plain(row.count)),
     Column("setup_seconds", lambda row: row.median("set-up")),
     Column("seconds", lambda row: row.median("solve")),
-    Column("spread", lambda row: row.spread),
+    Column("spread", lambda row: row.spread("solve")),
     Column("error", lambda row: row.errors.get("places")),
     Column("force_error", lambda row: row.errors.get("forces")),
-    Column("ended", lambda row: ended(row)),
+    Column("ended", lambda row: ending_of(row)),
     Column("why", lambda row: row.outcome.why),
     Column("counts", lambda row: row.counts),
     Column("residual", lambda row: plain(row.outcome.residual)),
@@ -53,16 +53,16 @@ def tables_of(measured: Session) -> tuple[Table, ...]:
     name = measured.scene.title or measured.scene.name
     timings = table_of(f"{name}: time against error", _COLUMNS, measured.rows(), _note(measured))
     fastest = [_fastest(measured, clocked) for clocked in CLOCKED]
-    found = (timings, *fastest, _ratios(measured), _trends(measured), _left_out(measured))
+    found = (timings, *fastest, _ratios(measured), _trends(measured), _omissions(measured))
     return tuple(table for table in found if table.rows)
 
 
-def sized(count: Count) -> str:
+def size_text(count: Count) -> str:
     """N in a table."""
     return str(count) if isinstance(count, int) else ", ".join(map(str, count.values()))
 
 
-def ended(timing: Timing) -> str:
+def ending_of(timing: Timing) -> str:
     """Name of the ending of a row's runs."""
     return "WORSE" if timing.worse else timing.outcome.ended
 
@@ -113,7 +113,7 @@ def _ratios(measured: Session) -> Table:
         for clocked in each.ratios
     }
     rows = [
-        (sized(one["n"]), *(number(one[key]) for key in (*labels, "iterations_per_station")))
+        (size_text(one["n"]), *(number(one[key]) for key in (*labels, "iterations_per_station")))
         for one in ratios(measured)
     ]
     return without_empty(
@@ -146,10 +146,10 @@ def _trends(measured: Session) -> Table:
     )
 
 
-def _left_out(measured: Session) -> Table:
+def _omissions(measured: Session) -> Table:
     sizes = dict[tuple[str, str], list[str]]()
-    for one in measured.left_out():
-        sizes.setdefault((one.name, one.why), []).append("all" if one.count is None else sized(one.count))
+    for one in measured.omissions():
+        sizes.setdefault((one.name, one.why), []).append("all" if one.count is None else size_text(one.count))
     rows = tuple((name, ", ".join(mine), why) for (name, why), mine in sizes.items())
     return Table("Left out", ("method", "N", "why"), rows)
 
@@ -158,7 +158,7 @@ def document(measured: Session) -> Plain:
     """``bench``: rows, fastest methods, ratios, trends; times in seconds, errors as fractions."""
     plan, reference = measured.plan, measured.reference
     # the project's own methods first, then peers by their names
-    left_out = sorted(measured.left_out(), key=lambda one: (OURS.index(one.name) if one.name in OURS else 9, one.name))
+    left_out = sorted(measured.omissions(), key=lambda one: (OURS.index(one.name) if one.name in OURS else 9, one.name))
     return {
         "case": measured.scene.name,
         "machine": plain(measured.machine),

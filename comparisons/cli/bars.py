@@ -14,7 +14,6 @@ from logging import NOTSET
 from typing import TypeVar
 
 from comparisons import logs
-from comparisons.logs import RUNS, steps_from
 
 T = TypeVar("T")
 
@@ -65,7 +64,7 @@ def _visible(*, shown: bool) -> bool:
 
 @contextmanager
 def bar(
-    whole: int, *, shown: bool, loggers: tuple[str, ...] = (RUNS,), share: float = 1.0, noun: str = ""
+    whole: int, *, shown: bool, loggers: tuple[str, ...] = (logs.RUNS,), share: float = 1.0, noun: str = ""
 ) -> Iterator[Bar]:
     """Context with a bar for ``whole`` items and the remaining time, if ``shown``.
 
@@ -84,18 +83,17 @@ def bar(
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
     from rich.segment import ControlType
 
-    terminal, rounds = Console(stderr=True), Rounds(share)
     # standard output keeps its stream: a redirection would print at the place of the bar
     with Progress(
         *(TextColumn("{task.description}"), BarColumn(), TaskProgressColumn()),
-        console=terminal,
+        console=Console(stderr=True),
         transient=True,
         auto_refresh=False,
         redirect_stdout=False,
         redirect_stderr=False,
         speed_estimate_period=3600.0,
     ) as progress:
-        task = progress.add_task("solving", total=whole)
+        task, rounds = progress.add_task("solving", total=whole), Rounds(share)
 
         def move(done: float) -> None:
             progress.update(task, completed=done)
@@ -105,10 +103,10 @@ def bar(
             progress.update(task, description=text, refresh=True)
 
         def clear() -> None:
-            terminal.control(Control(ControlType.CARRIAGE_RETURN, (ControlType.ERASE_IN_LINE, 2)))
+            progress.console.control(Control(ControlType.CARRIAGE_RETURN, (ControlType.ERASE_IN_LINE, 2)))
 
         move(0)
-        with steps_from(loggers, lambda done, steps: move(rounds.at(done, steps))):
+        with logs.steps_from(loggers, lambda done, steps: move(rounds.at(done, steps))):
             yield Bar(move, clear, rounds)
         clear()
 

@@ -16,14 +16,13 @@ from click.core import ParameterSource
 
 from comparisons import workshop
 from comparisons.choices import Choices
-from comparisons.cli.options import SEARCHED
-from comparisons.cli.request import Request
 
-_CHOSEN, _SHARED = ({field.name for field in fields(record)} for record in (Choices, Request))
+SEARCHED = {"links": "-n", "elements": "--elements", "across": "--across"}
+"""Options that ``--tol`` takes the place of, by the names of their values."""
 
 
 class SolvingCommand(click.Command):
-    """A command whose function takes a :class:`Request`; the values of all other options are arguments."""
+    """A command whose function takes a :class:`comparisons.cli.request.Request` and the values of its own options."""
 
     def invoke(self, ctx: click.Context) -> Any:  # noqa: ANN401 - click's form
         """Exit code of the command.
@@ -31,15 +30,18 @@ class SolvingCommand(click.Command):
         Raises:
             click.UsageError: the command line has a number of links or elements beside a tolerance.
         """
-        assert self.callback is not None
-        for name, option in SEARCHED.items():
-            if ctx.params.get("tol") and ctx.get_parameter_source(name) is not ParameterSource.DEFAULT:
+        from comparisons.cli.request import Request  # not for a list or help
+
+        for name, option in SEARCHED.items() if ctx.params.get("tol") else ():
+            if ctx.get_parameter_source(name) is not ParameterSource.DEFAULT:
                 text = f"found --tol and {option}; allowed: only one of the two, since --tol searches N."
                 raise click.UsageError(text, ctx)
-        choices = {name: value for name, value in ctx.params.items() if name in _CHOSEN}
-        shared = {name: value for name, value in ctx.params.items() if name in _SHARED}
-        others = {name: value for name, value in ctx.params.items() if name not in _CHOSEN | _SHARED}
-        return ctx.invoke(self.callback, Request(ctx.obj, choices=Choices(**choices), **shared), **others)
+        chosen, shared = (
+            {each.name: ctx.params.pop(each.name) for each in fields(record) if each.name in ctx.params}
+            for record in (Choices, Request)
+        )
+        assert self.callback is not None
+        return ctx.invoke(self.callback, Request(ctx.obj, choices=Choices(**chosen), **shared), **ctx.params)
 
 
 def later(place: str) -> Callable[..., Any]:
@@ -62,11 +64,9 @@ class ToolCommand(click.Command):
 
     def loaded(self) -> click.Command:
         """The command of the tool; for an old name standard error states the new name."""
-        new_name = workshop.TOOLS[self.tool].new_name
-        if new_name:
-            click.echo(
-                f"cprbm: 'cprbm {self.tool}' is now 'cprbm {new_name}'; the next release drops the old name.", err=True
-            )
+        if new_name := workshop.TOOLS[self.tool].new_name:
+            text = f"cprbm: 'cprbm {self.tool}' is now 'cprbm {new_name}'; the next release drops the old name."
+            click.echo(text, err=True)
         found: click.Command = workshop.load(self.tool).command
         return found
 
@@ -84,14 +84,13 @@ class Commands(click.Group):
         headings: Mapping[str, Iterable[click.Command]],
         text: str,
         params: Iterable[click.Option] = (),
-        callback: Callable[[click.Context], None] | None = None,
+        callback: Callable[[], None] | None = None,
     ) -> None:
         """The group; with a ``callback`` a command line without a command calls the callback."""
-        called = None if callback is None else click.pass_context(callback)
-        super().__init__(name, callback=called, params=[*params], help=text, invoke_without_command=called is not None)
         self.headings = {heading: tuple(commands) for heading, commands in headings.items()}
-        for command in (command for commands in self.headings.values() for command in commands):
-            self.add_command(command)
+        every = [command for commands in self.headings.values() for command in commands]
+        alone = callback is not None
+        super().__init__(name, every, callback=callback, params=[*params], help=text, invoke_without_command=alone)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all commands; the developers' tools belong to a checkout."""
@@ -116,7 +115,7 @@ class Commands(click.Group):
             click.ClickException: the command is a developers' tool and this is no checkout, or the command is removed.
             click.UsageError: no command has this name.
         """
-        name = args[0]
+        name, *rest = args
         if absence := workshop.absence(f"{ctx.command_path} {name}".partition(" ")[2]):
             raise click.ClickException(absence)
         if name not in self.commands:
@@ -125,4 +124,4 @@ class Commands(click.Group):
             meant = f" (is {near[0]!r} meant?)" if near else ""
             ctx.fail(f"found {name!r}, no command of '{ctx.command_path}'{meant}; allowed: {', '.join(known)}")
         command = self.commands[name]
-        return name, command.loaded() if isinstance(command, ToolCommand) else command, args[1:]
+        return name, command.loaded() if isinstance(command, ToolCommand) else command, rest

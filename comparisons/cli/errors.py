@@ -16,6 +16,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from difflib import get_close_matches
 from pathlib import Path
+from traceback import walk_tb
 from types import FrameType
 from typing import TYPE_CHECKING
 
@@ -35,26 +36,18 @@ _SIGNALS = {"SIGINT": "Interrupted", "SIGTERM": "Asked to end", "SIGHUP": "The t
 
 _PACKAGES = ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons")
 _CASES = " 'cprbm list' names the cases; 'cprbm new NAME' writes a file to start from."
-_KEPT, _REPEAT = "Finished results stand", "repeat the command to go on."
-
-
-class SignalInterrupt(KeyboardInterrupt):
-    """A signal ended the run."""
-
-    def __init__(self, number: int = signal.SIGINT) -> None:
-        super().__init__()
-        self.number = number
+_KEPT = "Finished results stand"
 
 
 def handle_signals(*, ignore: bool = False) -> None:
-    """Let every signal raise :class:`SignalInterrupt`, except signals that this process ignores; or ignore all."""
+    """Let every signal interrupt with its number, except signals that this process ignores; or ignore all."""
     for number in (getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)):
         if ignore or signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, signal.SIG_IGN if ignore else _interrupt)
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
-    raise SignalInterrupt(number)
+    raise KeyboardInterrupt(number)
 
 
 def printable(text: object) -> str:
@@ -83,11 +76,12 @@ def exit_code(command: Callable[[], int | None]) -> int:
         if found is None:
             raise
     except KeyboardInterrupt as stop:
-        number = signal.Signals(stop.number if isinstance(stop, SignalInterrupt) else signal.SIGINT)
+        number = signal.Signals(*(stop.args or (signal.SIGINT,)))
         found = f"{_SIGNALS[number.name]}; finished results stand.", 128 + number
-    if found[0]:
-        say(found[0])
-    return found[1]
+    text, code = found
+    if text:
+        say(text)
+    return code
 
 
 def _end(error: Exception) -> End | None:
@@ -116,9 +110,8 @@ def _end_of_words(error: Exception) -> End | None:
             return "", WRONG_QUESTION
         case click.UsageError(ctx=context):
             text = error.format_message()
-            missing = error.param if isinstance(error, click.MissingParameter) else None
-            metavar = missing.make_metavar(context) if missing and context else ""
-            cases = _CASES if "CASE" in metavar else ""
+            argument = error.param if isinstance(error, click.MissingParameter) else None
+            cases = _CASES if argument and context and "CASE" in argument.make_metavar(context) else ""
             help_ = f" Try '{context.command_path} --help'." if context else ""
             return f"{text if text.endswith(('.', '?', '!')) else f'{text}.'}{cases}{help_}", WRONG_QUESTION
         case click.ClickException():
@@ -138,9 +131,10 @@ def _end_of_question(error: Exception) -> End | None:
             lines = [_with_next_step(mistake) for mistake in error.mistakes]
             return ("\n  " if len(lines) > 1 else " ").join(("The question is wrong.", *lines)), WRONG_QUESTION
         case WorkerDiedError():
-            return f"A worker process was killed, perhaps for lack of memory. {_KEPT}; {_REPEAT}", INCOMPLETE
+            killed = "A worker process was killed, perhaps for lack of memory."
+            return f"{killed} {_KEPT}; repeat the command to go on.", INCOMPLETE
         case BrokenExecutor():
-            return f"{error} {_KEPT}; {_REPEAT}", INCOMPLETE
+            return f"{error} {_KEPT}; repeat the command to go on.", INCOMPLETE
     return None
 
 
@@ -156,10 +150,9 @@ def _with_next_step(mistake: Mistake) -> str:
 
 def _end_without_library(error: ImportError) -> End | None:
     """The end without a library; None for a module of this project."""
-    place, module = error.__traceback__, ""
-    while place is not None:  # NumPy and other libraries raise errors without a name
-        module, place = str(place.tb_frame.f_globals.get("__name__", "")), place.tb_next
-    library = (error.name or module).partition(".")[0]
+    # NumPy and other libraries raise errors without a name
+    modules = [str(frame.f_globals.get("__name__", "")) for frame, _ in walk_tb(error.__traceback__)]
+    library = (error.name or modules[-1]).partition(".")[0]
     if not library or library in _PACKAGES:
         return None
     reason = next(iter(str(error).strip().splitlines()), "without a reason")

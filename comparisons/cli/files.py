@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 
@@ -11,12 +10,9 @@ import click
 from comparisons.cli.errors import printable
 from comparisons.importing.formats import read_drawing
 from comparisons.importing.scene_text import Choices, Unit, scene_text
-from comparisons.starting import begun
-from comparisons.starting.present import line_for
+from comparisons.starting import template
+from comparisons.starting.libraries import line_for
 from comparisons.writing import write
-from cprbm_scene import reading
-
-_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]{0,63}")
 
 
 def new(name: str, out: Path, quiet: bool) -> None:  # noqa: FBT001 - click passes a keyword
@@ -25,11 +21,9 @@ def new(name: str, out: Path, quiet: bool) -> None:  # noqa: FBT001 - click pass
     Raises:
         click.UsageError: the name is wrong, or the file exists.
     """
-    _check_name(name, "NAME")
-    try:
-        path = begun.begin(name, out)
-    except FileExistsError as error:
-        raise click.UsageError(f"found {error.args[0]}, an existing file; allowed: another name.") from None
+    path = _free_path(out, name, "NAME", "another name")
+    write(path, template.text(name))
+    write(out / template.SCHEMA, template.schema_text())
     if not quiet:
         click.echo(f"{path}: change the scene, then run 'cprbm compare {path}'.")
 
@@ -43,10 +37,7 @@ def import_drawing(
         click.ClickException: the name is wrong, the file exists, or gmsh lacks libraries of the system.
     """
     named = re.sub(r"[^A-Za-z0-9_-]", "_", drawing.stem) if name is None else name
-    _check_name(named, "--name")
-    path = out / f"{named}.toml"
-    if path.exists():
-        raise click.UsageError(f"found {path}, an existing file; allowed: another --name.")
+    path = _free_path(out, named, "--name", "another --name")
     try:
         drawn = read_drawing(drawing, unit)
     except ImportError as error:
@@ -63,10 +54,19 @@ def import_drawing(
 
 def schema() -> None:
     """Print the JSON schema of scene files."""
-    click.echo(json.dumps(reading.schema(), indent=1, ensure_ascii=False))
+    click.echo(template.schema_text(), nl=False)
 
 
-def _check_name(name: str, hint: str) -> None:
-    if not _NAME.fullmatch(name):
+def _free_path(out: Path, name: str, hint: str, remedy: str) -> Path:
+    """The path of a new scene.
+
+    Raises:
+        click.UsageError: the name is wrong, or the file exists.
+    """
+    if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_-]{0,63}", name):
         allowed = "letters, digits, '_' and '-', a letter or '_' first, 64 at most"
         raise click.BadParameter(f"found {name!r}; allowed: {allowed}", param_hint=hint)
+    path = out / f"{name}.toml"
+    if path.exists():
+        raise click.UsageError(f"found {path}, an existing file; allowed: {remedy}.")
+    return path

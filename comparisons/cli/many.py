@@ -9,16 +9,12 @@ from typing import Literal
 
 import click
 
-from comparisons.cases import opened
-from comparisons.cli.bars import bar
+from comparisons.cli import bars, output
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
-from comparisons.cli.output import print_tables
-from comparisons.cli.questions import scene_of, with_room
 from comparisons.cli.request import Request
 from comparisons.optimum import problem as problems
 from comparisons.optimum import result as optima
 from comparisons.optimum.search import PointSolver, search
-from comparisons.pairing import solvers_of
 from comparisons.present.columns import Section
 from comparisons.present.page import Page, put_page, put_section
 from comparisons.scatter import study as scatters
@@ -48,14 +44,13 @@ def sweep(
 
     0 if all points completed and all checks agree; 1 for a failure or DIFFER; 3 for nothing worse than UNDECIDED.
     """
-    scene = scene_of(request)
+    scene = request.scene()
     axes, points = _points(request, scene, vary, sample)
     checked = grids.chosen_for_check(points, axes, check)
     tasks = running.tasks_of(scene, points, solver, checked, request.choices, shard)
     with _workers(request, scene, "sweep", len(tasks)) as (out, workers, moved):
         found = running.Sweep(scene, axes, tasks, running.known_outcomes([out, *merge]))
-        solvers = solvers_of(request.planted)
-        found = running.run(found, workers, request.choices, solvers, request.at_most, out, moved)
+        found = running.run(found, workers, request.choices, request.solvers, request.at_most, out, moved)
     write_tables(out, found)
     write_page(out, found)
     if netcdf:
@@ -77,13 +72,12 @@ def tolerance(
     request: Request, samples: int, sobol: bool, limits: Path | None, solver: Literal["cprbm", "fea"]  # noqa: FBT001
 ) -> int:  # fmt: skip
     """Solve a sample of a scene's parameters, and print quantiles and yield; exit code 1 if a point is missing."""
-    scene = scene_of(request)
+    scene = request.scene()
     bounds = bounds_of(scene, read_demands(limits) if limits else Demands(), str(limits))
     distributions = distributions_of(scene)
     asked = scatters.study(scene, distributions, samples, solver, request.choices, indexed=sobol, bounds=bounds)
     with _workers(request, scene, "tolerance", len(asked.sweep.tasks)) as (out, workers, moved):
-        solvers = solvers_of(request.planted)
-        found = scatters.solved(asked, workers, request.choices, solvers, request.at_most, out, moved)
+        found = scatters.solved(asked, workers, request.choices, request.solvers, request.at_most, out, moved)
     result = result_of(found)
     write_tables(out, found.sweep)
     _put(request, scene, out, result, f"{out / 'tolerance.json'}, {out / 'numbers.csv'}")
@@ -92,13 +86,12 @@ def tolerance(
 
 def optimise(request: Request, goal: Path, vary: tuple[str, ...], starts: int, solves: int) -> int:
     """Search the parameters of a scene for a goal; exit code 3 if the best point is undecided, 1 without an optimum."""
-    scene = scene_of(request)
-    si = _si(request)
-    problem = problems.problem_of(scene, [grids.axis_of(text, si) for text in vary], goal)
+    scene = request.scene()
+    problem = problems.problem_of(scene, [grids.axis_of(text, request.si) for text in vary], goal)
     with _workers(request, scene, "optimise", starts * solves) as (out, workers, moved):
         known, journal = running.known_outcomes([out]), out / running.JOURNAL
-        solvers = solvers_of(request.planted)
-        solver = PointSolver(problem, workers, request.choices, solvers, request.at_most, journal, known, moved)
+        settings = request.choices, request.solvers, request.at_most
+        solver = PointSolver(problem, workers, *settings, journal, known, moved)
         found = optima.optimum(problem, search(problem, solver, starts, solves), solver)
     _put(request, scene, out, optima.result_of(found), str(out / "optimum.json"))
     if not found.doubt:
@@ -112,8 +105,8 @@ def _workers(
 ) -> Iterator[tuple[Path, Workers, Callable[[int], None]]]:
     """Context with the folder, workers, and a bar to be moved to a number of finished solves."""
     out = request.out or Path(f"{command}-{scene.name}")
-    with workers_on(request.place) as workers, bar(solves, shown=not request.quiet, loggers=()) as progress:
-        with_room(request, str(out))
+    with workers_on(request.place) as workers, bars.bar(solves, shown=not request.quiet, loggers=()) as progress:
+        request.with_room(str(out))
         yield out, workers, progress.move
 
 
@@ -124,7 +117,7 @@ def _put(request: Request, scene: Scene, out: Path, result: Section, numbers: st
     for sentence in result.sentences:
         click.echo(sentence)
     if not request.quiet:
-        print_tables(result.tables)
+        output.print_tables(result.tables)
         click.echo(f"numbers: {numbers}; page: {out / 'index.html'}")
 
 
@@ -136,24 +129,15 @@ def _points(
     Raises:
         click.UsageError: the command line has neither a range nor a sample.
     """
-    si = _si(request)
-    axes = tuple(grids.axis_of(text, si) for text in vary)
+    axes = tuple(grids.axis_of(text, request.si) for text in vary)
     if sampled is None:
         if not axes:
             raise click.UsageError("found neither --vary nor --sample; allowed: --vary t=1.8mm..2.2mm:11, or a sample.")
         points = grids.grid(axes)
     elif sampled.endswith(".csv"):
-        points = grids.read_points(Path(sampled), si)
+        points = grids.read_points(Path(sampled), request.si)
         axes = grids.axes_of(points)
     else:
         axes = axes or grids.ranges_of(scene)
         points = grids.sample(sampled, axes)
     return grids.in_file_units(scene, axes), points
-
-
-def _si(request: Request) -> Callable[[str, str], float]:
-    """Function that returns the SI value of a text for a parameter.
-
-    The function raises SceneError for an unknown parameter, a wrong unit and a wrong value.
-    """
-    return lambda name, text: opened(request.case, {**request.values, name: text}).parameters[name].value

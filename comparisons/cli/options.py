@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, TypeVar
@@ -13,6 +15,7 @@ from typing import Any, TypeVar
 import click
 from click.shell_completion import CompletionItem
 
+from comparisons import logs
 from comparisons.choices import KINEMATICS, Choices
 
 Value = TypeVar("Value")
@@ -21,9 +24,6 @@ Reader = Callable[[click.Context, click.Parameter, Any], Any]
 
 COUNT = "N|BEAM=N,..."
 """Metavar of a number of links or elements."""
-
-SEARCHED = {"links": "-n", "elements": "--elements", "across": "--across"}
-"""Options that ``--tol`` takes the place of, by the names of their values."""
 
 
 def _reader(read: Callable[[Any], Value], allowed: str, holds: Callable[[Value], bool] = lambda value: True) -> Reader:
@@ -44,6 +44,10 @@ def _whole(text: str) -> int:
     return int(text)
 
 
+def _several(text: str) -> tuple[int, ...]:
+    return tuple(_whole(part.strip()) for part in text.split(","))
+
+
 def _by_beam(text: str) -> int | dict[str, int]:
     if "=" not in text:
         return _whole(text)
@@ -55,8 +59,8 @@ def _by_beam(text: str) -> int | dict[str, int]:
 
 
 def _share(text: str) -> float:
-    text = text.strip()
-    return float(text[:-1]) / 100.0 if text.endswith("%") else float(text)
+    number = text.strip()
+    return float(number.removesuffix("%")) / (100.0 if number.endswith("%") else 1.0)
 
 
 def _values(texts: tuple[str, ...]) -> dict[str, str]:
@@ -64,10 +68,6 @@ def _values(texts: tuple[str, ...]) -> dict[str, str]:
     if not all((*pairs, *pairs.values())):
         raise click.BadParameter(f"found {', '.join(texts)}; allowed: NAME=VALUE, such as t=1.9mm")
     return pairs
-
-
-def _several(text: str) -> tuple[int, ...]:
-    return tuple(_whole(part.strip()) for part in text.split(","))
 
 
 count = _reader(_by_beam, "one number, or beam=number once for each beam")
@@ -80,11 +80,15 @@ fraction = _reader(float, "a number greater than 0 and less than 1", lambda valu
 tolerance = _reader(_share, "as 0.1% or as 0.001, greater than 0 and less than 1", lambda value: 0.0 < value < 1.0)
 shard = _reader(lambda text: tuple(map(int, text.split("/"))), "I/N with I from 1 to N, as 3/64",
                 lambda found: len(found) == 2 and 1 <= found[0] <= found[1])  # fmt: skip
-values = _reader(_values, "NAME=VALUE, such as t=1.9mm")
 opinions = _reader(lambda text: tuple(sorted(part.strip() for part in text.split(","))),
                    "cprbm,fea or cprbm,fea,solid",
                    lambda found: found in (("cprbm", "fea"), ("cprbm", "fea", "solid")))  # fmt: skip
 drawing = _reader(Path, "a name that ends in .svg or .png", lambda path: path.suffix.lower() in (".svg", ".png"))
+
+
+def numbers(ctx: click.Context, param: click.Parameter, texts: tuple[str, ...]) -> tuple[Any, ...]:
+    """A number of links for every text of an option that may be repeated."""
+    return tuple(count(ctx, param, text) for text in texts)
 
 
 def place(ctx: click.Context, param: click.Parameter, value: str | None) -> str:
@@ -108,12 +112,8 @@ def power_of_2(ctx: click.Context, param: click.Parameter, value: int) -> int:
 def listen(ctx: click.Context, param: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's form
     """Print the log of the solvers on standard error until the command ends."""
     if value:
-        import logging
-
-        from comparisons import logs
-
         logs.print_from(logging.INFO)
-        ctx.call_on_close(lambda: logs.print_from(logging.NOTSET))
+        ctx.call_on_close(partial(logs.print_from, logging.NOTSET))
 
 
 def candidates(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
@@ -127,45 +127,34 @@ def candidates(ctx: click.Context, param: click.Parameter, incomplete: str) -> l
     return [*files, *(CompletionItem(name) for name in names if name.startswith(incomplete))]
 
 
-def folder(text: str) -> click.Option:
-    """Option ``--out DIR`` with the help ``text``."""
-    return click.Option(["--out"], type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help=text)
-
-
-def time_limit(text: str, seconds: str) -> click.Option:
-    """Option ``--at-most`` with the help ``text`` and the default ``seconds``."""
-    return click.Option(["--at-most"], callback=positive, metavar="SECONDS", default=seconds, show_default=True,
-                        help=text)  # fmt: skip
-
-
-def repeated(text: str) -> click.Option:
-    """Option ``--repeat`` with the help ``text``."""
-    return click.Option(["--repeat"], callback=whole, metavar="TIMES", default="5", show_default=True, help=text)
-
-
-def solvers(third: str) -> click.Option:
-    """Option ``--solver`` of a comparison, perhaps with the solid for a purpose ``third``."""
-    return click.Option(["--solver", "opinions"], callback=opinions, default="cprbm,fea", show_default=True,
-                        metavar="SOLVERS", help=f"Solvers: 'cprbm,fea', or 'cprbm,fea,solid' for {third}.")  # fmt: skip
-
-
-def solver(names: Sequence[str], text: str) -> click.Option:
-    """Option ``--solver`` with a name among ``names``; the first is the default."""
-    return click.Option(["--solver"], type=click.Choice(names), default=names[0], show_default=True, help=text)
-
-
-def flag(text: str, *names: str) -> click.Option:
-    """Option without a value."""
-    return click.Option(names, is_flag=True, help=text)
-
-
 _STANDARD, _THEORIES = Choices(), click.Choice(KINEMATICS)
 FILE = click.Path(dir_okay=False, path_type=Path)
+DIRECTORY = click.Path(file_okay=False, path_type=Path)
+
+flag = partial(click.Option, is_flag=True)
+"""Option without a value."""
+
+folder = partial(click.Option, ["--out"], type=DIRECTORY, metavar="DIR")
+"""Option ``--out DIR``."""
+
+solver = partial(click.Option, ["--solver"], default="cprbm", show_default=True)
+"""Option ``--solver`` with a name."""
+
+opinions_for = partial(click.Option, ["--solver", "opinions"], callback=opinions, default="cprbm,fea",
+                       show_default=True, metavar="SOLVERS")  # fmt: skip
+"""Option ``--solver`` of a comparison."""
+
+time_limit = partial(click.Option, ["--at-most"], callback=positive, metavar="SECONDS", show_default=True)
+"""Option ``--at-most``."""
+
+repeated = partial(click.Option, ["--repeat"], callback=whole, metavar="TIMES", default="5", show_default=True)
+"""Option ``--repeat``."""
 
 CASE = click.Argument(["case"], metavar="CASE|FILE.toml", shell_complete=candidates)
 CASES = click.Argument(["arguments"], nargs=-1, required=True, metavar="CASE|FILE.toml...|all",
                        shell_complete=candidates)  # fmt: skip
-SET = click.Option(["--set", "values"], callback=values, multiple=True, metavar="NAME=VALUE",
+SET = click.Option(["--set", "values"], callback=_reader(_values, "NAME=VALUE, such as t=1.9mm"), multiple=True,
+                   metavar="NAME=VALUE",
                    help="Value of a parameter of the scene, such as t=1.9mm; may be repeated.")  # fmt: skip
 SIZED = (
     click.Option(["-n", "--links", "links"], metavar=COUNT, default=str(_STANDARD.links), show_default=True,
@@ -197,9 +186,10 @@ EXACT = click.Option(
     help="Ask the exact reference in bending, or leave the reference out; otherwise a rule on the number of pieces "
     "and stations decides.",
 )  # fmt: skip
-QUIET = flag("Print neither tables nor progress.", "-q", "--quiet")
-VERBOSE = click.Option(["-v", "--verbose"], is_flag=True, expose_value=False, callback=listen,
-                       help="Print runs, stations and iterations on standard error.")  # fmt: skip
+QUIET = flag(["-q", "--quiet"], help="Print neither tables nor progress.")
+BRIEF = flag(["-q", "--quiet"], help="Print nothing about the written file.")
+VERBOSE = flag(["-v", "--verbose"], expose_value=False, callback=listen,
+               help="Print runs, stations and iterations on standard error.")  # fmt: skip
 OUTPUT = (
     click.Option(["--json", "json_file"], type=FILE, metavar="FILE",
                  help="Write the numbers as JSON in SI; '-' is standard output without further text."),
@@ -219,9 +209,9 @@ MANY = (
     click.Option(["--on", "place"], callback=place, metavar="local:N|dask://HOST:PORT",
                  help="Worker processes, or the scheduler of a Dask cluster.  [default: a process per core, at most "
                  "two]"),
-    time_limit("Time limit of a solve; a solve that crashes or takes longer is tried twice.", "600"),
+    time_limit(help="Time limit of a solve; a solve that crashes or takes longer is tried twice.", default="600"),
     QUIET,
     VERBOSE,
-    folder("Folder of tables and page; a stopped command goes on from there.  [default: COMMAND-NAME]"),
+    folder(help="Folder of tables and page; a stopped command goes on from there.  [default: COMMAND-NAME]"),
 )  # fmt: skip
 """Options of a command that solves a scene at many points."""

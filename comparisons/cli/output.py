@@ -26,12 +26,11 @@ def print_tables(tables: Iterable[Table], most: int = 10_000) -> None:
         click.echo(screen_text(table, width=min(width, most)))
 
 
-def print_sections(sections: Iterable[Section]) -> None:
-    """Print the tables and sentences of sections."""
-    for section in sections:
-        print_tables(section.tables)
-        for sentence in section.sentences:
-            click.echo(sentence + "\n")
+def print_section(section: Section) -> None:
+    """Print the tables and sentences of a section."""
+    print_tables(section.tables)
+    for sentence in section.sentences:
+        click.echo(sentence + "\n")
 
 
 def write_json(file: Path | None, data: Plain) -> None:
@@ -44,16 +43,3 @@ def write_json(file: Path | None, data: Plain) -> None:
         click.echo(text_of(data), nl=False)
     elif file is not None:
         write(file, text_of(data))
-
-
-def make_room(*files: Path | None, out: Path | None = None) -> None:
-    """Create the folders of files and report before any solve.
-
-    Raises:
-        OSError: a folder cannot be created.
-    """
-    for file in files:
-        if file is not None and str(file) != "-":
-            file.parent.mkdir(parents=True, exist_ok=True)
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)

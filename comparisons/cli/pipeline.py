@@ -7,17 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import TypeVar
 
 import click
 
 from comparisons.cli.bars import Bar, bar
-from comparisons.cli.output import print_sections, write_json
-from comparisons.cli.questions import solvers_for
+from comparisons.cli.output import print_section, write_json
 from comparisons.cli.request import Request
-from comparisons.pairing import workers_for
 from comparisons.plain import Plain
 from comparisons.present.columns import Section
 from comparisons.present.page import Chapter, Page, put_page, put_section
@@ -29,29 +26,15 @@ Study = TypeVar("Study")
 Step = TypeVar("Step")
 
 
-@dataclass(frozen=True, slots=True)
-class Ends(Generic[Result]):
-    """Output of the results of several questions.
-
-    Attributes:
-        chapter: writes the files of a result into the folder; the chapter of the page.
-        page: of all chapters.
-        document: of all results, for JSON.
-        show: prints a result.
-    """
-
-    chapter: Callable[[Path, Question, Result], Chapter]
-    page: Callable[[Sequence[Chapter]], Page]
-    document: Callable[[Sequence[Result]], Plain]
-    show: Callable[[Question, Result], None]
-
-
 def answer_all(
     request: Request,
     questions: Sequence[Question],
     results: Callable[[Run, Bar], Iterator[Result]],
-    ends: Ends[Result],
     progress: AbstractContextManager[Bar],
+    chapter_of: Callable[[Path, Question, Result], Chapter],
+    page_of: Callable[[Sequence[Chapter]], Page],
+    document_of: Callable[[Sequence[Result]], Plain],
+    show: Callable[[Question, Result], None],
 ) -> list[Result]:
     """Results of all questions; page and JSON stand after every result, and JSON on standard output at the end.
 
@@ -59,28 +42,30 @@ def answer_all(
         request: files, folder and solvers.
         questions: in order.
         results: results in the same order, for a run into the folder and a bar.
-        ends: output of the results.
         progress: context with the bar.
+        chapter_of: writes the files of a result into the folder; the chapter of the page.
+        page_of: page of all chapters.
+        document_of: JSON of all results.
+        show: prints a result.
     """
-    finished: list[Result] = []
-    chapters: list[Chapter] = []
+    out, finished, chapters = request.out, list[Result](), list[Chapter]()
     names = tuple(question.name for question in questions)
-    with run_into(request.out, solvers_for(request), names, workers_for(request.planted)) as run, progress as shown:
+    with run_into(out, request.solvers, names, request.processes) as run, progress as shown:
         for question, result in zip(questions, results(run, shown), strict=True):
             finished.append(result)
-            if request.out is not None:
-                chapters.append(ends.chapter(request.out, question, result))
+            if out is not None:
+                chapters.append(chapter_of(out, question, result))
             run.mark_shown(question.name)
-            if run.covers(names[: len(finished)]):
-                if request.out is not None:
-                    put_page(request.out, ends.page(chapters))
-                if request.prints:
-                    write_json(request.json_file, ends.document(finished))
+            whole = run.covers(names[: len(finished)])
+            if whole and out is not None:
+                put_page(out, page_of(chapters))
+            if whole and request.prints:
+                write_json(request.json_file, document_of(finished))
             shown.clear()
             if request.prints:
-                ends.show(question, result)
+                show(question, result)
     if not request.prints:
-        write_json(request.json_file, ends.document(finished))
+        write_json(request.json_file, document_of(finished))
     return finished
 
 
@@ -98,37 +83,29 @@ def take_steps(
     section_of: Callable[[Study], Section],
 ) -> Study:
     """The finished study; every step writes the partial section, and an interrupted study shows its section."""
-    last: Section | None = None
-    writes = request.out is not None or (request.json_file is not None and request.prints)
+    written: Section | None = None
     with bar(len(steps), shown=not request.quiet) as progress:
         try:
             for step in progress.through(steps):
-                study, last = take(study, step), None
-                if writes:
-                    last = section_of(study)
-                    _write_section(request, last)
+                study, written = take(study, step), None
+                if request.out is not None or (request.json_file is not None and request.prints):
+                    written = _write_files(request, section_of(study))
         finally:
-            if last is None:
-                last = section_of(study)
-                _write_section(request, last)
+            section = written or _write_files(request, section_of(study))
             progress.clear()
-            _show_section(request, last)
+            if not request.prints:
+                write_json(request.json_file, dict(section.data))
+            elif not request.quiet:
+                print_section(section)
+                print_folder(request, f"{section.name}.html")
     return study
 
 
-def _write_section(request: Request, section: Section) -> None:
-    """Write the files of a section."""
+def _write_files(request: Request, section: Section) -> Section:
+    """The section, whose files are written now."""
     if request.prints:
         write_json(request.json_file, dict(section.data))
     if request.out is not None:
         put_section(request.out, section)
         put_page(request.out, Page(section.heading, "", further=(section,)), section.name)
-
-
-def _show_section(request: Request, section: Section) -> None:
-    """Print a section, or its JSON."""
-    if not request.prints:
-        write_json(request.json_file, dict(section.data))
-    elif not request.quiet:
-        print_sections([section])
-        print_folder(request, f"{section.name}.html")
+    return section

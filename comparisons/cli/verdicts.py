@@ -13,19 +13,15 @@ import click
 
 from comparisons import case, cases, logs, offset_verdict, pairing, provenance
 from comparisons.case import Comparison
-from comparisons.cli.bars import Bar, bar, status
+from comparisons.cli import bars, output, pipeline
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
-from comparisons.cli.output import print_sections, print_tables, write_json
-from comparisons.cli.pipeline import Ends, answer_all, print_folder
-from comparisons.cli.questions import questions_of, solvers_for, with_room
 from comparisons.cli.request import Request
 from comparisons.plain import Plain
 from comparisons.present import brief, case_tables, csv_table, figures, offset, page
 from comparisons.present.columns import Section
 from comparisons.store import Run, run_into
 from comparisons.studies import convergence
-from comparisons.studies import report as reports
-from comparisons.tolerances.result import Tolerance
+from comparisons.studies.report import Parts, Report
 from comparisons.tolerances.search import runs_within
 from comparisons.verdict.runs import Runs
 from comparisons.verdict.words import Word
@@ -41,26 +37,26 @@ def compare_all(request: Request) -> int:
     0 if all agree; 1 if any case differs or a solve did not complete; 3 if no case is worse than undecided.  An
     uncertainty above the requested tolerance counts as undecided.
     """
-    questions = questions_of(request)
-    request = with_room(request, "report" if "all" in request.arguments else "")
-    ends = Ends(_put_case, page.report_page, _documents, partial(_show, request))
+    questions = request.questions()
+    request = request.with_room("report" if "all" in request.arguments else "")
     # with a tolerance a status line with N replaces the bar
-    progress = bar(len(questions), shown=not request.quiet and request.tol is None, noun="case")
-    finished = answer_all(request, questions, partial(_comparisons, request, questions), ends, progress)
+    progress = bars.bar(len(questions), shown=not request.quiet and request.tol is None, noun="case")
+    ends = _put_case, page.report_page, _document, partial(_show, request)
+    finished = pipeline.answer_all(request, questions, partial(_comparisons, request, questions), progress, *ends)
     _export(request, [found for found in finished if isinstance(found, Comparison)])
     if request.prints and not request.quiet and len(finished) > 1:
-        print_tables([brief.summary(finished)], brief.WIDTH)
-    print_folder(request)
+        output.print_tables([brief.summary(finished)], brief.WIDTH)
+    pipeline.print_folder(request)
     verdicts = [found.verdict for found in finished]
     if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):
         return INCOMPLETE
     undecided = any(verdict.word is Word.UNDECIDED for verdict in verdicts)
-    return UNDECIDED if undecided or any(map(_missed, finished)) else 0
+    return UNDECIDED if undecided or any(map(_failed_searches, finished)) else 0
 
 
-def _comparisons(request: Request, questions: Sequence[Question], run: Run, progress: Bar) -> Iterator[Compared]:
+def _comparisons(request: Request, questions: Sequence[Question], run: Run, progress: bars.Bar) -> Iterator[Compared]:
     """Comparisons of all questions; the next question is solved while the caller draws and prints the last."""
-    begun = partial(_begun, request, [] if request.tol else questions, run)
+    begun = partial(_begin, request, [] if request.tol else questions, run)
     following = begun(0)
     for place, question in enumerate(progress.through(questions)):
         pending, following = following, begun(place + 1)
@@ -70,12 +66,12 @@ def _comparisons(request: Request, questions: Sequence[Question], run: Run, prog
             yield case.compare(question, pending())
         else:
             assert request.tol is not None
-            with status(shown=not request.quiet) as say:
+            with bars.status(shown=not request.quiet) as say:
                 runs, searches = runs_within(question, request.choices, request.tol, run.solvers, run.crew, say)
             yield replace(case.compare(question, runs), tolerances=searches)
 
 
-def _begun(request: Request, questions: Sequence[Question], run: Run, place: int) -> Callable[[], Runs] | None:
+def _begin(request: Request, questions: Sequence[Question], run: Run, place: int) -> Callable[[], Runs] | None:
     """The runs of a question, begun now; None beyond the last question, and for an offset question."""
     question = questions[place] if place < len(questions) else None
     if question is None or isinstance(question, OffsetQuestion):
@@ -89,7 +85,7 @@ def _put_case(out: Path, question: Question, compared: Compared) -> page.Chapter
     return page.case_chapter(compared, figures)
 
 
-def _documents(finished: Sequence[Compared]) -> Plain:
+def _document(finished: Sequence[Compared]) -> Plain:
     return {"cases": [page.document_of(compared) for compared in finished]}
 
 
@@ -100,20 +96,22 @@ def _show(request: Request, question: Question, compared: Compared) -> None:
         click.echo(brief.brief(compared, shlex.join([cases.argument(question), *values]), request.out) + "\n")
         return
     if not request.quiet:
-        print_sections(
+        for section in (
             case_tables.case_sections(compared)
             if isinstance(compared, Comparison)
             else offset.offset_sections(compared)
-        )
+        ):
+            output.print_section(section)
     click.echo(brief.headline(question.name, compared.verdict, compared.verdict.sentence))
-    if isinstance(compared, Comparison):
-        for search in _missed(compared):
-            click.echo(f"{question.name}: {search.sentence(compared.scene)}")
+    for sentence in _failed_searches(compared):
+        click.echo(f"{question.name}: {sentence}")
 
 
-def _missed(compared: Compared) -> tuple[Tolerance, ...]:
-    """Searches for N without success."""
-    return tuple(search for search in compared.tolerances if not search.met) if isinstance(compared, Comparison) else ()
+def _failed_searches(compared: Compared) -> list[str]:
+    """Sentences on searches for N without success."""
+    if isinstance(compared, offset_verdict.OffsetComparison):
+        return []
+    return [search.sentence(compared.scene) for search in compared.tolerances if not search.met]
 
 
 def _export(request: Request, compared: Sequence[Comparison]) -> None:
@@ -128,10 +126,10 @@ def _export(request: Request, compared: Sequence[Comparison]) -> None:
 
 def converge_all(request: Request, sizes: tuple[int, ...]) -> int:
     """State limits and orders of all numbers of questions; exit code 1 for an incomplete series."""
-    questions = questions_of(request)
-    request = with_room(request, "convergence" if "all" in request.arguments else "")
+    questions = request.questions()
+    request = request.with_room("convergence" if "all" in request.arguments else "")
 
-    def results(run: Run, progress: Bar) -> Iterator[Section]:
+    def results(run: Run, progress: bars.Bar) -> Iterator[Section]:
         for question in progress.through(questions):
             yield convergence.convergence_section(question, sizes, request.choices, run.solvers, run.crew)
 
@@ -143,55 +141,41 @@ def converge_all(request: Request, sizes: tuple[int, ...]) -> int:
         return dict(finished[0].data) if len(questions) == 1 else {"cases": [each.data for each in finished]}
 
     def show(question: Question, section: Section) -> None:
-        if not request.quiet:
-            print_tables(section.tables)
+        output.print_tables(() if request.quiet else section.tables)
         for sentence in section.sentences:
             click.echo(f"{question.name}: {sentence}")
 
-    ends = Ends(chapter, page.convergence_page, document, show)
-    finished = answer_all(request, questions, results, ends, bar(len(questions), shown=not request.quiet, share=0.8))
-    print_folder(request)
+    progress = bars.bar(len(questions), shown=not request.quiet, share=0.8)
+    finished = pipeline.answer_all(
+        request, questions, results, progress, chapter, page.convergence_page, document, show
+    )
+    pipeline.print_folder(request)
     return 0 if all(section.complete for section in finished) else INCOMPLETE
 
 
 def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -> None:
     """Write the page of questions with verdicts, errors and run times; finished parts are taken from the folder."""
     request = replace(request, arguments=request.arguments or ("all",))
-    questions = questions_of(request)
-    request = with_room(request, "full-report")
-    out = request.out
-    assert out is not None
-    parts = reports.Parts(request.choices, () if "convergence" in without else sizes, times="times" not in without)
-    origin = provenance.page_origin()
-    key = f"{parts!r}, exact={request.exact}"  # chapters with other parts are written anew
-    chapters = {question.name: reports.kept(out, question, key) for question in questions}
-    with_table = parts.times and reports.has_table(questions)
-    table = reports.kept_table(out, origin) if with_table else None
-    missing = [question for question in questions if chapters[question.name] is None]
-    solvers = solvers_for(request)
-
-    def finished() -> list[page.Chapter]:
-        return [chapter for chapter in chapters.values() if chapter is not None]
-
-    def put() -> None:
-        page.put_page(out, page.report_page(finished(), () if table is None else (table,), origin))
-
+    questions = request.questions()
+    request = request.with_room("full-report")
+    assert request.out is not None
+    counts = () if "convergence" in without else sizes
+    parts = Parts(request.choices, counts, "times" not in without, request.exact)
+    found = Report(request.out, questions, parts, request.solvers, provenance.page_origin())
+    missing, names = found.missing(), tuple(question.name for question in questions)
     with (
-        run_into(out, solvers, tuple(chapters), pairing.workers_for(request.planted)) as run,
-        bar(len(missing), shown=not request.quiet) as progress,
+        run_into(request.out, request.solvers, names, request.processes) as run,
+        bars.bar(len(missing), shown=not request.quiet) as progress,
     ):
-        pending = _begun(request, missing, run, 0)
+        pending = _begin(request, missing, run, 0)
         for place, question in enumerate(progress.through(missing)):
-            content = reports.gathered(question, pending, parts, run.solvers, solvers, run.crew)
+            content = found.content_of(question, pending, run)
             # solve the next case during the drawings, but not during the measurement of run times
-            pending = _begun(request, missing, run, place + 1)
-            chapters[question.name] = reports.added(out, question, key, content)
-            put()
-        if with_table and table is None:
-            table = reports.added_table(out, reports.table_section(solvers, origin), origin)
-    put()
+            pending = _begin(request, missing, run, place + 1)
+            found.add(question, *content)
+        found.add_table()
     if request.json_file is not None:
-        write_json(request.json_file, reports.document(out, finished(), origin))
-    for chapter in finished() if request.prints else ():
+        output.write_json(request.json_file, found.document())
+    for chapter in found.chapters.values() if request.prints else ():
         click.echo(f"{chapter.name}: {chapter.word}. {chapter.sentence}")
-    print_folder(request)
+    pipeline.print_folder(request)

@@ -34,14 +34,14 @@ _FINE = 8001
 
 
 @dataclass(frozen=True, slots=True)
-class Fitted:
+class Fit:
     """A ``curve``, and the largest distance of the points from the curve, δ: ``deviation``, m."""
 
     curve: Line | Arc | Spline
     deviation: float
 
 
-def fitted(p: Array, directions: Array | None, allowed: float) -> Fitted | None:
+def fit(p: Array, directions: Array | None, allowed: float) -> Fit | None:
     """The record of points ``p`` (n, 2), m, in order; None if no spline of MOST points is near enough.
 
     Args:
@@ -53,7 +53,7 @@ def fitted(p: Array, directions: Array | None, allowed: float) -> Fitted | None:
     off = _distance(p, p[[0, -1]])
     # a line that turns back on itself is longer than the distance of the ends
     if max(off, s[-1] - float(np.hypot(*(p[-1] - p[0])))) <= EXACT * s[-1]:
-        return Fitted(Line(kind="line", start=_point(p[0], s[-1]), end=_point(p[-1], s[-1])), off)
+        return Fit(Line(kind="line", start=_point(p[0], s[-1]), end=_point(p[-1], s[-1])), off)
     return _arc(p, s[-1]) or _spline(p, s, directions, allowed)
 
 
@@ -63,7 +63,7 @@ def _point(place: Array, L: float) -> tuple[float, float]:
     return x, y
 
 
-def _arc(p: Array, L: float) -> Fitted | None:
+def _arc(p: Array, L: float) -> Fit | None:
     """The arc through all points; None without such an arc."""
     # |q|² = 2 c·q + (R² − |c|²), about the mean so that nothing cancels
     q = p - p.mean(axis=0)
@@ -75,10 +75,10 @@ def _arc(p: Array, L: float) -> Fitted | None:
         return None
     start, end, centre = (_point(place, L) for place in (p[0], p[-1], p.mean(axis=0) + c))
     way = "counterclockwise" if turn[0] > 0.0 else "clockwise"
-    return Fitted(Arc(kind="arc", center=centre, start=start, end=end, direction=way), off)  # type: ignore[arg-type]
+    return Fit(Arc(kind="arc", center=centre, start=start, end=end, direction=way), off)  # type: ignore[arg-type]
 
 
-def _spline(p: Array, s: Array, directions: Array | None, allowed: float) -> Fitted | None:
+def _spline(p: Array, s: Array, directions: Array | None, allowed: float) -> Fit | None:
     """The spline through the fewest points; ``s`` are the lengths of the polyline up to the points, m."""
     first, last = [None, None] if directions is None else [(float(x), float(y)) for x, y in directions]
     for count in 2 ** np.arange(2, math.log2(MOST)).astype(int) + 1:
@@ -87,7 +87,7 @@ def _spline(p: Array, s: Array, directions: Array | None, allowed: float) -> Fit
         spline = Spline(kind="spline", points=points, start_direction=first, end_direction=last)
         deviation = _distance(p, shape_of(spline).point(np.linspace(0.0, 1.0, _FINE)))
         if deviation <= allowed:
-            return Fitted(spline, deviation)
+            return Fit(spline, deviation)
         if len(chosen) == len(p):
             break
     return None

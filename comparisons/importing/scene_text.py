@@ -19,7 +19,7 @@ from typing import Literal
 import jinja2
 import numpy as np
 
-from comparisons.importing.curves import fitted
+from comparisons.importing.curves import fit
 from comparisons.importing.drawing import Drawing, DrawnCurve
 from cprbm_scene import Arc, Line, Spline
 from cprbm_scene.answer import Array
@@ -85,7 +85,7 @@ def scene_text(drawing: Drawing, path: Path, choices: Choices) -> tuple[str, lis
             notes += [f"to be changed: {each}" for each in refused]
             return _text(drawing, path, choices, beams, near, notes), notes
         for beam in wrong:
-            left_out.append(_left_out(beam.drawn, of_beams[beam.name].found, of_beams[beam.name].allowed))
+            left_out.append(_refusal(beam.drawn, of_beams[beam.name].found, of_beams[beam.name].allowed))
             beams.remove(beam)
     raise SceneError([Mistake(each.key, each.found, each.allowed, str(path)) for each in left_out])
 
@@ -103,17 +103,15 @@ def _length(points: Array) -> float:
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
-def _left_out(curve: DrawnCurve, found: str, allowed: str) -> Mistake:
+def _refusal(curve: DrawnCurve, found: str, allowed: str) -> Mistake:
     return Mistake(f"{curve.tag} (curve {curve.number}, {curve.kind})", found, allowed)
 
 
 def _names(curves: Sequence[DrawnCurve]) -> list[str]:
     """Names of the beams, with a number in a group of several curves."""
-    many, used, names = Counter(curve.tag for curve in curves), Counter[str](), []
-    for tag in (curve.tag for curve in curves):
-        used[tag] += 1
-        names.append(_name(tag) + (f"-{used[tag]}" if many[tag] > 1 else ""))
-    return names
+    tags = [curve.tag for curve in curves]
+    several = {tag for tag, times in Counter(tags).items() if times > 1}
+    return [_name(tag) + (f"-{tags[: k + 1].count(tag)}" if tag in several else "") for k, tag in enumerate(tags)]
 
 
 def _name(tag: str) -> str:
@@ -127,15 +125,15 @@ def _beam(curve: DrawnCurve, name: str, z: float, choices: Choices, near: float)
     p, length, off = curve.points, _length(curve.points), float(np.abs(curve.points[:, 2] - z).max())
     if off > near:
         found = f"points {off:.4g} {choices.unit} off the plane z = {z:g}"
-        return _left_out(curve, found, "curves in one plane z = constant")
+        return _refusal(curve, found, "curves in one plane z = constant")
     if np.linalg.norm(p[0] - p[-1]) <= near:
         allowed = "a curve with two ends; a closed curve is cut into two"
-        return _left_out(curve, "a curve that comes back to the begin", allowed)
+        return _refusal(curve, "a curve that comes back to the begin", allowed)
     directions = None if curve.directions is None else curve.directions[:, :2]
-    made = fitted(p[:, :2], directions, choices.within * length)
+    made = fit(p[:, :2], directions, choices.within * length)
     if made is None:
         found = f"a curve that no spline follows within {choices.within:g} of the length"
-        return _left_out(curve, found, "a smooth curve, cut at corners, or a larger --within")
+        return _refusal(curve, found, "a smooth curve, cut at corners, or a larger --within")
     if not isinstance(made.curve, Spline):
         return _Beam(name, curve, made.curve, ", to round-off")
     known = "" if curve.directions is not None else ", known by places alone"

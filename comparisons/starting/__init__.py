@@ -1,1 +1,1 @@
-"""A first scene to start from, and what an editor needs to help with it."""
+"""The first scene of a user, the schema of scenes for editors, and the installed libraries."""

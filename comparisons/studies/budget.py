@@ -212,7 +212,7 @@ def _budget(
     along = direction(probe.quantity, v_c - v_f if (v_c - v_f).any() else v_f)
     parts = (float(np.dot(one - two, along)) for one, two in pairwise([v_c, v_a, L_c.value, L_f.value, v_0, v_f]))
     own = float(np.dot(L_f.uncertainty + in_doubt, np.abs(along)))
-    missed, uncertainty = _missed(scene, row, solids, counts, L_f.value, along)
+    missed, uncertainty = _solid_part(scene, row, solids, counts, L_f.value, along)
     return Budget(
         row=replace(row, difference=norm(probe.quantity, v_c - v_f)),
         parts=dict(zip(PARTS, parts, strict=True)),
@@ -245,7 +245,7 @@ def _of_paper(paper: Answer | None, row: Row, branch: int, v_a: Array, counts: F
     return float(np.dot(station.values[row.probe.name][counts] - v_a, along))
 
 
-def _missed(
+def _solid_part(
     scene: Scene, row: Row, solids: Sequence[Answer], counts: Flags, beams: Array, along: Array
 ) -> tuple[float | None, float]:
     """Component of the ``beams``' limit less the solid's value, and its uncertainty; None without such a value."""

@@ -11,7 +11,7 @@ from comparisons.display_units import at_station
 from comparisons.formats import number, percent
 from comparisons.plain import Plain, plain
 from comparisons.present.canvas import canvas, finished
-from comparisons.present.columns import NOTHING, Figure, Table, without_empty
+from comparisons.present.columns import NOTHING, Column, Figure, Table, table_of
 from comparisons.studies.budget import PARTS, Account, Budget
 
 if TYPE_CHECKING:
@@ -96,14 +96,15 @@ def _record(at: Budget) -> Plain:
 
 def budget_table(account: Account) -> Table:
     """Parts at the last station, per cent of the denominators; without columns of zeros for theories not chosen."""
-    shown = [name for name in PARTS if any(each.parts[name] for each in account.last)]
-    headers = ["probe", "difference", *shown, "paper", "curved", "missed", "±"]
-    rows = [_row(at, shown) for at in account.last]
-    if "rest" in shown:
-        place = headers.index("rest") + 1
-        headers.insert(place, "±")
-        for at, row in zip(account.last, rows, strict=True):
-            row.insert(place, _cell(at, at.rest_uncertainty if at.all_parts else None))
+    columns = [
+        Column[Budget]("probe", "row.probe.name"),
+        Column("difference", lambda at: _cell(at, at.row.difference)),
+        *(column for name in PARTS if any(at.parts[name] for at in account.last) for column in _part_columns(name)),
+        Column("paper", lambda at: _cell(at, None if at.parts["contact"] else at.paper, sign=True)),
+        Column("curved", lambda at: _cell(at, at.curved or None)),
+        Column("missed", lambda at: _cell(at, at.missed, sign=True)),
+        Column("±", lambda at: _cell(at, at.missed_uncertainty)),
+    ]
     note = (
         "Per cent of the denominator of the case's table. The parts sum to the difference; negative parts make the "
         "difference smaller. Links, elements, penalty: value beside its limit. Rest: between the solvers' limits "
@@ -111,18 +112,21 @@ def budget_table(account: Account) -> Table:
         "from auto to paper at the same links; curved, error of the straight-beam formula of stress, t/(3R) to first "
         "order; missed, limit of the finite elements less the solid's limit, with the uncertainty."
     )
-    stage, choices = account.scene.stages[-1], account.choices
-    where = at_station(account.scene, stage.name, stage.stations[-1])
-    title = f"Error budget at {where} with {_count(choices.links)} links and {_count(choices.elements)} elements"
-    return without_empty(Table(f"{title} per beam, %", tuple(headers), tuple(map(tuple, rows)), note))
+    sizes = f"{_count(account.choices.links)} links and {_count(account.choices.elements)} elements"
+    return table_of(f"Error budget at {_last(account)} with {sizes} per beam, %", columns, account.last, note)
 
 
-def _row(at: Budget, shown: Sequence[str]) -> list[str]:
-    """Cells of a row: the difference, the ``shown`` parts, and the sizes beside the sum."""
-    parts = [_cell(at, at.parts[name] if at.all_parts else None, sign=True) for name in shown]
-    paper = _cell(at, None if at.parts["contact"] else at.paper, sign=True)
-    solid = _cell(at, at.missed, sign=True), _cell(at, at.missed_uncertainty)
-    return [at.row.probe.name, _cell(at, at.row.difference), *parts, paper, _cell(at, at.curved or None), *solid]
+def _part_columns(name: str) -> list[Column[Budget]]:
+    """Column of a part; of the rest with its uncertainty."""
+    found = [Column[Budget](name, lambda at: _cell(at, at.parts[name] if at.all_parts else None, sign=True))]
+    uncertainty = Column[Budget]("±", lambda at: _cell(at, at.rest_uncertainty if at.all_parts else None))
+    return [*found, uncertainty] if name == "rest" else found
+
+
+def _last(account: Account) -> str:
+    """The last station of a scene."""
+    stage = account.scene.stages[-1]
+    return at_station(account.scene, stage.name, stage.stations[-1])
 
 
 def budget_figures(account: Account) -> tuple[Figure, ...]:
@@ -142,9 +146,8 @@ def budget_figures(account: Account) -> tuple[Figure, ...]:
             text = percent(each.row.fraction(each.row.difference))
             axes.annotate(text, (1.01, place), xycoords=("axes fraction", "data"), va="center", fontsize=9.0)
         drawing.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=9.0)
-        stage = account.scene.stages[-1]
         caption = (
-            f"Parts of the differences at {at_station(account.scene, stage.name, stage.stations[-1])}: to the right "
+            f"Parts of the differences at {_last(account)}: to the right "
             "parts that make the difference larger, to the left parts that make it smaller; the diamond is the sum, "
             "and the number at the right the difference."
         )
@@ -173,14 +176,12 @@ def _draw_parts(axes: Axes, budgets: Sequence[Budget]) -> None:
 
 def _draw_missed(axes: Axes, budgets: Sequence[Budget]) -> bool:
     """Draw a thin bar below every budget with a value of the solid; True if there is any."""
-    known = [(place, each) for place, each in enumerate(budgets) if each.missed is not None]
+    known = {place + 0.42: each for place, each in enumerate(budgets) if each.missed is not None}
     if known:
-        shares, doubts = (
-            [_share(at, at.missed) for _, at in known],
-            [_share(at, at.missed_uncertainty) for _, at in known],
-        )
-        axes.barh([place + 0.42 for place, _ in known], shares, xerr=doubts, height=0.14, color=MISSED,
-                  error_kw={"linewidth": 0.8}, label="missed by beam theory: FEA to solid")  # fmt: skip
+        shares = [_share(at, at.missed) for at in known.values()]
+        doubts = [_share(at, at.missed_uncertainty) for at in known.values()]
+        axes.barh([*known], shares, xerr=doubts, height=0.14, color=MISSED, error_kw={"linewidth": 0.8},
+                  label="missed by beam theory: FEA to solid")  # fmt: skip
     return bool(known)
 
 

@@ -78,11 +78,11 @@ def with_case(
     exact = complete_part(scene, whole)
     known, asked = len(exact.stations), sum(len(stage.stations) for stage in scene.stages)
     why = None if known == asked else whole.sentence or whole.ending.value
-    trials = [tried(scene, links, elements, exact, solvers, crew) for links, elements in sizes if known]
+    trials = [trial_of(scene, links, elements, exact, solvers, crew) for links, elements in sizes if known]
     return Calibration((*found.trials, *trials), frozendict({**found.covered, scene.name: (known, asked, why)}))
 
 
-def tried(scene: Scene, links: int, elements: int, exact: Answer, solvers: Solvers, crew: Crew = ALONE) -> Trial:
+def trial_of(scene: Scene, links: int, elements: int, exact: Answer, solvers: Solvers, crew: Crew = ALONE) -> Trial:
     """The trial of a case with a known exact answer.
 
     Raises:
@@ -219,9 +219,15 @@ def _stated_against_true(found: Calibration) -> Figure:
                 axes.plot(*np.array(points).reshape(-1, 2).T, "o", color=colour, markersize=2.5, alpha=0.6, label=label)
             axes.plot([low, high], [low, high], "-", color="black", linewidth=1.0)
             axes.plot([low, high], [LARGEST_MEDIAN * low, LARGEST_MEDIAN * high], "--", color=GREY, linewidth=1.0)
-            axes.set(xscale="log", yscale="log", xlim=(low, high), ylim=(low, high), aspect="equal")
+            axes.set(
+                xscale="log",
+                yscale="log",
+                xlim=(low, high),
+                ylim=(low, high),
+                aspect="equal",
+                xlabel="true error / scale",
+            )
             axes.set_title(_NAMES[solver], loc="left")
-            axes.set_xlabel("true error / scale")
         panels[0].set_ylabel("stated error / scale")
         drawing.legend(loc="outside lower center", ncols=4, markerscale=2.0)
         caption = (

@@ -70,7 +70,7 @@ class Convergence:
         return tuple(family for family in self.families if (family.stage, family.station) == where)
 
 
-def converged(scene: Scene, sizes: Sequence[int], choices: Choices, solvers: Solvers, crew: Crew) -> Convergence:
+def convergence_of(scene: Scene, sizes: Sequence[int], choices: Choices, solvers: Solvers, crew: Crew) -> Convergence:
     """Orders and limits of a scene.
 
     Args:
@@ -106,7 +106,7 @@ def convergence_section(
 
     Args:
         question: a scene with its shown stations, or an offset question.
-        sizes, choices, solvers, crew: as of :func:`converged`.
+        sizes, choices, solvers, crew: as of :func:`convergence_of`.
 
     Raises:
         SceneError: a solver refuses the question.
@@ -115,7 +115,7 @@ def convergence_section(
         return offset_convergence.convergence_section(question, sizes, solvers.offset)
     question = at_shown(question)
     memory = AnswerMemory(pool=crew.pool, solvers=solvers)
-    found = converged(question, sizes, choices, solvers, memory)
+    found = convergence_of(question, sizes, choices, solvers, memory)
     account = account_of(question, replace(choices, links=found.shown, elements=2 * found.shown), memory)
     shown = (*tables.tables_of(found), budgets.budget_table(account))
     return Section(

@@ -10,7 +10,7 @@ from comparisons.display_units import at_station, display_unit, distance_text, w
 from comparisons.formats import number, percent, vector
 from comparisons.plain import Plain, plain
 from comparisons.present import json_document
-from comparisons.present.columns import Table, without_empty
+from comparisons.present.columns import Column, Table, table_of, without_empty
 from comparisons.studies.families import Family, size
 from comparisons.verdict.events import mechanism
 from cprbm_scene import Scene
@@ -116,19 +116,25 @@ def tables_of(found: Convergence) -> tuple[Table, ...]:
 
 
 def _criticals(found: Convergence) -> Table:
-    scene, rows = found.scene, []
+    scene = found.scene
     variants = {f"{series.method}": f"{NAMES[series.method]} ({series.variant})" for series in found.series}
-    for at in found.criticals:
-        values = [with_unit(scene, at.critical[n].value, at.unit, 6) if n in at.critical else "–" for n in found.sizes]
-        limit = ("–", "–", "–")
-        if at.found is not None:
-            value, stated = float(at.found.value[0]), float(at.found.uncertainty[0])
-            limit = number(at.found.order), with_unit(scene, value, at.unit, 5), distance_text(scene, stated, at.unit)
-        stage = f"{at.stage}, {at.place + 1}" if at.place else at.stage
-        rows.append((stage, variants[at.solver], _mechanism(at), *values, *limit))
-    headers = ("stage", "solver", "mechanism", *map(str, found.sizes), "order", "limit", "±")
+
+    def value(n: int) -> Column[Family]:
+        return Column(
+            str(n), lambda at: with_unit(scene, at.critical[n].value, at.unit, 6) if n in at.critical else None
+        )
+
+    columns = [
+        Column[Family]("stage", lambda at: f"{at.stage}, {at.place + 1}" if at.place else at.stage),
+        Column("solver", lambda at: variants[at.solver]),
+        Column("mechanism", _mechanism),
+        *map(value, found.sizes),
+        Column("order", "found.order", number),
+        Column("limit", lambda at: at.found and with_unit(scene, float(at.found.value[0]), at.unit, 5)),
+        Column("±", lambda at: at.found and distance_text(scene, float(at.found.uncertainty[0]), at.unit)),
+    ]
     note = "Of the load or drive that the stage steps. The order is observed at the three finest sizes that count."
-    return without_empty(Table(f"{scene.title or scene.name}: critical values against N", headers, tuple(rows), note))
+    return table_of(f"{scene.title or scene.name}: critical values against N", columns, found.criticals, note)
 
 
 def _mechanism(family: Family) -> str:

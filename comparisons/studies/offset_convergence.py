@@ -107,7 +107,6 @@ def _figure(question: OffsetQuestion, numbers: tuple[int, ...], families: list[F
             worst = [_largest(families, spacing, n) for n in numbers]
             axes.plot(numbers, worst, line, marker=marker, color=f"C{place % 10}", markersize=4.5, label=spacing)
         logarithmic(axes, numbers)
-        axes.set_xlabel("springs N")
-        axes.set_ylabel(f"largest error / {question.relative_to}")
+        axes.set(xlabel="springs N", ylabel=f"largest error / {question.relative_to}")
         axes.legend(loc="best")
         return finished(drawing, "convergence", "Largest error of all offsets against the number of springs.")

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -19,18 +19,26 @@ from pydantic_core import to_json
 
 from comparisons import cases, provenance
 from comparisons.bench.contenders import OURS, contenders
-from comparisons.bench.measures import asked, reference
-from comparisons.bench.running import CLOCKS, Plan, Session
+from comparisons.bench.measures import benchmark_scene, reference
+from comparisons.bench.running import Plan, Session, refusal_text
 from comparisons.bench.section import bench_section
 from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
-from comparisons.crew import Crew
 from comparisons.offset_verdict import OffsetComparison, compared_offset
 from comparisons.pairing import Solvers, paired
 from comparisons.plain import Plain
-from comparisons.present.columns import Figure, Section
-from comparisons.present.page import Chapter, case_chapter, figures_of, light, put_case, put_section
-from comparisons.store import digest
+from comparisons.present.columns import Section
+from comparisons.present.page import (
+    Chapter,
+    case_chapter,
+    figures_of,
+    light,
+    put_case,
+    put_page,
+    put_section,
+    report_page,
+)
+from comparisons.store import Run, digest
 from comparisons.studies import table1
 from comparisons.studies.convergence import convergence_section
 from comparisons.verdict.runs import Runs
@@ -48,6 +56,9 @@ AT_MOST = 4.0
 
 _CHAPTER, _TABLE = "chapter.json", "table1-section.json"
 
+Content = tuple[Comparison | OffsetComparison, tuple[Section, ...]]
+"""The comparison of a question, and further sections: error against N, and run times."""
+
 
 @dataclass(frozen=True, slots=True)
 class Parts:
@@ -57,54 +68,142 @@ class Parts:
         choices: of the comparison.
         sizes: N of the error against N; empty without this part.
         times: whether run times are measured.
+        exact: whether the exact reference is asked; with None a rule decides.
     """
 
     choices: Choices
     sizes: tuple[int, ...]
     times: bool
+    exact: bool | None
 
 
-@dataclass(frozen=True, slots=True)
-class Content:
-    """The comparison of a question, figures, and further sections: error against N, and run times."""
+@dataclass(slots=True)
+class Report:
+    """A report in a folder; the page in the folder shows all finished chapters.
 
-    compared: Comparison | OffsetComparison
-    figures: tuple[Figure, ...]
-    further: tuple[Section, ...] = ()
-
-
-def gathered(
-    question: Question,
-    pending: Callable[[], Runs] | None,
-    parts: Parts,
-    solvers: Solvers,
-    timed: Solvers,
-    crew: Crew,
-) -> Content:
-    """All parts of a question; run times come last, when no other solve runs.
-
-    Args:
-        question: a scene or an offset question.
-        pending: the runs of the comparison, if the runs began before.
-        parts: the parts, and their sizes.
-        solvers: solvers, perhaps with kept answers.
+    Attributes:
+        folder: of page and chapters.
+        questions: in the order of the chapters.
+        parts: of every chapter; a chapter with other parts is written anew.
         timed: solvers for run times, without kept answers.
-        crew: processes to share the runs.
-
-    Raises:
-        SceneError: a solver refuses the comparison; the report names other refusals.
+        origin: the machine and the versions.
+        table: the paper's Table 1 beside our run times; None before the measurement.
     """
-    further = dict[str, Callable[[], Section]]()
-    if parts.sizes:
-        further["Error against N"] = lambda: convergence_section(question, parts.sizes, parts.choices, solvers, crew)
-    if isinstance(question, OffsetQuestion):
-        found: Comparison | OffsetComparison = compared_offset(question, solvers.offset)
-    else:
-        found = compare(question, paired(question, parts.choices, solvers, crew) if pending is None else pending())
-        if parts.times:
-            further["Run times"] = lambda: _run_times(question, timed, solvers)
-    sections = tuple(_or_refusal(heading, section) for heading, section in further.items())
-    return Content(found, figures_of(found), sections)
+
+    folder: Path
+    questions: Sequence[Question]
+    parts: Parts
+    timed: Solvers
+    origin: Mapping[str, str | int]
+    chapters: dict[str, Chapter] = field(default_factory=dict)
+    table: Section | None = None
+
+    def missing(self) -> list[Question]:
+        """Questions without a kept chapter; the kept chapters, and the kept table, are read."""
+        self.table = _record_of(self.folder / _TABLE, Section, self._table_key) if self._has_table else None
+        kept = {
+            each.name: _record_of(self.folder / each.name / _CHAPTER, Chapter, self._key(each))
+            for each in self.questions
+        }
+        self.chapters = {name: chapter for name, chapter in kept.items() if chapter is not None}
+        return [question for question in self.questions if question.name not in self.chapters]
+
+    def _key(self, question: Question) -> str:
+        """Digest of the dependence of a chapter."""
+        return digest(question.model_dump_json(exclude={"file"}), repr(self.parts))
+
+    @property
+    def _table_key(self) -> str:
+        """Digest of the dependence of the table."""
+        return digest(str(sorted(self.origin.items())))
+
+    @property
+    def _has_table(self) -> bool:
+        """Whether run times are measured, and the questions include all cases of the paper's Table 1, as built in."""
+        names = {cell.case for cell in table1.CELLS}
+        return self.parts.times and all(cases.asked(name) in self.questions for name in names)
+
+    def content_of(self, question: Question, pending: Callable[[], Runs] | None, run: Run) -> Content:
+        """All numbers of a question; run times come last, when no other solve runs.
+
+        Args:
+            question: a scene or an offset question.
+            pending: the runs of the comparison, if the runs began before.
+            run: solvers with kept answers, and processes to share the runs.
+
+        Raises:
+            SceneError: a solver refuses the comparison; the report names other refusals.
+        """
+        parts, further = self.parts, dict[str, Callable[[], Section]]()
+        if parts.sizes:
+            further["Error against N"] = lambda: convergence_section(
+                question, parts.sizes, parts.choices, run.solvers, run.crew
+            )
+        if isinstance(question, OffsetQuestion):
+            found: Comparison | OffsetComparison = compared_offset(question, run.solvers.offset)
+        else:
+            runs = paired(question, parts.choices, run.solvers, run.crew) if pending is None else pending()
+            found = compare(question, runs)
+            if parts.times:
+                further["Run times"] = lambda: _run_times(question, self.timed, run.solvers)
+        return found, tuple(_or_refusal(heading, section) for heading, section in further.items())
+
+    def add(self, question: Question, compared: Comparison | OffsetComparison, further: tuple[Section, ...]) -> None:
+        """Write the chapter of a question, and the page with the chapter.
+
+        Raises:
+            OSError: the folder cannot be written to.
+        """
+        own, figures = self.folder / question.name, figures_of(compared)
+        put_case(self.folder, compared, figures)
+        for section in further:
+            put_section(own, section)
+        chapter = case_chapter(compared, figures, further)
+        chapter = replace(chapter, files=("scene.toml", *chapter.files))
+        write(own / "scene.toml", chapter.scene)
+        # the last of all files: with it all are there
+        write(own / _CHAPTER, to_json((self._key(question), chapter)))
+        self.chapters[question.name] = chapter
+        self.put_page()
+
+    def add_table(self) -> None:
+        """Write the paper's Table 1 beside our run times, and the page.
+
+        Raises:
+            OSError: the folder cannot be written to.
+        """
+        if self._has_table and self.table is None:
+            section = table1.result_of(table1.session(self.timed, self.origin, REPEAT, AT_MOST).after_all())
+            put_section(self.folder, section)
+            self.table = light(section)
+            write(self.folder / _TABLE, to_json((self._table_key, self.table)))
+        self.put_page()
+
+    def put_page(self) -> None:
+        """Write the page of all finished chapters, in the order of the questions.
+
+        Raises:
+            OSError: the folder cannot be written to.
+        """
+        names = [each.name for each in self.questions]
+        self.chapters = {name: self.chapters[name] for name in names if name in self.chapters}
+        tables = () if self.table is None else (self.table,)
+        put_page(self.folder, report_page([*self.chapters.values()], tables, self.origin))
+
+    def document(self) -> Plain:
+        """JSON of all chapters: the JSON of ``compare``, with ``convergence`` and ``bench`` as far as known.
+
+        Raises:
+            OSError: a file of the folder cannot be read.
+        """
+        found = []
+        for chapter in self.chapters.values():
+            files = {name: self.folder / chapter.name / f"{name}.json" for name in ("convergence", "bench")}
+            compared = self.folder / chapter.name / "comparison.json"
+            case: Plain = json.loads(compared.read_text("utf-8"))["cases"][0]
+            known = {name: file for name, file in files.items() if file.name in chapter.files}
+            found.append(case | {name: json.loads(file.read_text("utf-8")) for name, file in known.items()})
+        return {"machine": dict(self.origin), "cases": found}
 
 
 def _or_refusal(heading: str, section: Callable[[], Section]) -> Section:
@@ -112,8 +211,7 @@ def _or_refusal(heading: str, section: Callable[[], Section]) -> Section:
     try:
         return section()
     except SceneError as error:
-        why = "; ".join(f"{each.key}: found {each.found}; allowed: {each.allowed}" for each in error.mistakes)
-        return Section(heading, (f"A solver refuses the question: {why}.",))
+        return Section(heading, (f"A solver refuses the question: {refusal_text(error)}.",))
 
 
 def _run_times(scene: Scene, timed: Solvers, knowing: Solvers) -> Section:
@@ -127,98 +225,15 @@ def _run_times(scene: Scene, timed: Solvers, knowing: Solvers) -> Section:
     Raises:
         SceneError: every method refuses the question.
     """
-    scene = asked(scene)
+    scene = benchmark_scene(scene)
     plan = Plan(dict.fromkeys(OURS, SIZES), repeat=REPEAT, at_most=AT_MOST, clock="cpu")
     methods, known = contenders(timed, Choices(kinematics=plan.kinematics)), reference(scene, knowing)
-    return bench_section(_done(Session(scene, plan, methods, provenance.machine(), CLOCKS[plan.clock], known)))
+    return bench_section(Session(scene, plan, methods, provenance.machine(), known).after_all())
 
 
-def _done(session: Session) -> Session:
-    """The session after all of its runs."""
-    for job in session.jobs():
-        session.do(job)
-    return session
-
-
-def has_table(questions: Sequence[Question]) -> bool:
-    """Whether the questions include all cases of the paper's Table 1, as built in."""
-    return all(cases.asked(name) in questions for name in {cell.case for cell in table1.CELLS})
-
-
-def table_section(timed: Solvers, made_on: Mapping[str, str | int]) -> Section:
-    """The paper's Table 1 beside our run times.
-
-    Args:
-        timed: solvers without kept answers.
-        made_on: the machine and the versions.
-    """
-    return table1.result_of(_done(table1.session(timed, made_on, REPEAT, AT_MOST)))
-
-
-def kept(folder: Path, question: Question, wanted: str) -> Chapter | None:
-    """A question's kept chapter; None without a chapter of the same question and ``wanted`` parts."""
-    return _read_kept(folder / question.name / _CHAPTER, Chapter, _key(question, wanted))
-
-
-def added(folder: Path, question: Question, wanted: str, found: Content) -> Chapter:
-    """Write the content of a question into a folder; the chapter of the page.
-
-    Raises:
-        OSError: the folder cannot be written to.
-    """
-    own = folder / question.name
-    put_case(folder, found.compared, found.figures)
-    for section in found.further:
-        put_section(own, section)
-    chapter = case_chapter(found.compared, found.figures, found.further)
-    chapter = replace(chapter, files=("scene.toml", *chapter.files))
-    write(own / "scene.toml", chapter.scene)
-    # the last of all files: with it all are there
-    write(own / _CHAPTER, to_json((_key(question, wanted), chapter)))
-    return chapter
-
-
-def kept_table(folder: Path, made_on: Mapping[str, str | int]) -> Section | None:
-    """The kept section of the paper's Table 1; None if the program or the machine is another."""
-    return _read_kept(folder / _TABLE, Section, digest(str(sorted(made_on.items()))))
-
-
-def added_table(folder: Path, section: Section, made_on: Mapping[str, str | int]) -> Section:
-    """Write the paper's Table 1 beside ours into a folder; the section of the page.
-
-    Raises:
-        OSError: the folder cannot be written to.
-    """
-    put_section(folder, section)
-    write(folder / _TABLE, to_json((digest(str(sorted(made_on.items()))), light(section))))
-    return light(section)
-
-
-def document(folder: Path, chapters: Sequence[Chapter], made_on: Mapping[str, str | int]) -> Plain:
-    """The report's JSON: the JSON of ``compare`` for every case, with ``convergence`` and ``bench`` as far as known.
-
-    Raises:
-        OSError: a file of the folder cannot be read.
-    """
-    found = []
-    for chapter in chapters:
-        own = folder / chapter.name
-        case: Plain = json.loads((own / "comparison.json").read_text("utf-8"))["cases"][0]
-        for name in ("convergence", "bench"):
-            if f"{name}.json" in chapter.files:
-                case[name] = json.loads((own / f"{name}.json").read_text("utf-8"))
-        found.append(case)
-    return {"machine": dict(made_on), "cases": found}
-
-
-def _read_kept(file: Path, kind: type[T], key: str) -> T | None:
+def _record_of(file: Path, kind: type[T], key: str) -> T | None:
     """The record of a file; None without a record of this key."""
     with suppress(FileNotFoundError, ValidationError):
         found, record = TypeAdapter(tuple[str, kind]).validate_json(file.read_bytes())  # type: ignore[valid-type]
         return record if found == key else None
     return None
-
-
-def _key(question: Question, wanted: str) -> str:
-    """Digest of the dependence of a chapter; ``wanted`` names the parts and sizes."""
-    return digest(question.model_dump_json(exclude={"file"}), wanted)

@@ -16,13 +16,13 @@ from typing import Literal
 from comparisons import cases
 from comparisons.bench.contenders import Contender, Run, outcome_of
 from comparisons.bench.measures import at_last_loads
-from comparisons.bench.running import CLOCKS, Plan, Session, Timing
+from comparisons.bench.running import Plan, Session, Timing
 from comparisons.choices import Choices, Count
 from comparisons.formats import number
 from comparisons.pairing import Solvers
 from comparisons.plain import plain
 from comparisons.present.canvas import BLUE, RED, canvas, finished
-from comparisons.present.columns import Figure, Section, Table
+from comparisons.present.columns import Column, Figure, Section, records_of, table_of
 from cprbm_scene import Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -48,14 +48,14 @@ class Cell:
         return f"CPRBM {self.formulation}"
 
     @property
-    def sized(self) -> str:
+    def size_text(self) -> str:
         """The discretisation, as the paper writes it."""
         return f"({', '.join(map(str, self.size.values()))})" if isinstance(self.size, Mapping) else str(self.size)
 
     @property
     def name(self) -> str:
         """Case, method and discretisation."""
-        return f"{self.case}, {self.label}, {self.sized}"
+        return f"{self.case}, {self.label}, {self.size_text}"
 
 
 def _cprbm(case: str, first: int, second: int, theirs: float | None) -> tuple[Cell, ...]:
@@ -99,7 +99,6 @@ def session(
         plan,
         tuple(_contender(cell, solvers) for cell in cells),
         machine,
-        CLOCKS[plan.clock],
         largest={cell.name: math.inf for cell in cells if cell.name not in first.values()},
     )
 
@@ -112,16 +111,52 @@ def _contender(cell: Cell, solvers: Solvers) -> Contender:
     return Contender(cell.name, cell.method, cell.formulation, cell.label, lambda scene, count, at_most: run)
 
 
+Line = tuple[Cell, Timing]
+"""A cell, and its runs so far."""
+
+_COLUMNS: tuple[Column[Line], ...] = (
+    Column("case", lambda line: line[0].case),
+    Column("method", lambda line: line[0].label),
+    Column("elements or links", lambda line: line[0].size_text),
+    Column("ours", lambda line: _seconds(line[1]), number),
+    Column("spread", lambda line: line[1].spread("both") if line[1].seconds else None, lambda value: number(value, 2)),
+    Column("repeats", lambda line: len(line[1].seconds)),
+    Column("theirs", lambda line: line[0].theirs, number),
+    Column(
+        "theirs / ours", lambda line: (own := _seconds(line[1])) and line[0].theirs and line[0].theirs / own, number
+    ),
+    Column("ended", lambda line: line[1].outcome.ended or ("refused" if line[1].refusal else "not begun")),
+)
+
+_KEYS: tuple[Column[Line], ...] = (
+    Column("case", lambda line: line[0].case),
+    Column("method", lambda line: line[0].method),
+    Column("formulation", lambda line: None if line[0].method == "fea" else line[0].formulation),
+    Column("contact", lambda line: line[0].contact),
+    Column("size", lambda line: plain(line[0].size)),
+    Column("seconds", lambda line: _seconds(line[1])),
+    Column("spread", lambda line: line[1].spread("both") if line[1].seconds else None),
+    Column("repeats", lambda line: len(line[1].seconds)),
+    Column("ended", lambda line: line[1].outcome.ended if line[1].seconds else None),
+    Column("why", lambda line: line[1].why or None),
+    Column("paper_seconds", lambda line: line[0].theirs),
+)
+
+
+def _seconds(timing: Timing) -> float | None:
+    """Median, s; None without a run."""
+    return timing.median("both") if timing.seconds else None
+
+
 def result_of(measured: Session, cells: tuple[Cell, ...] = CELLS) -> Section:
     """Result of the measurements so far."""
-    timings = {each.contender.name: each for each in measured.timings.values()}
-    times = {cell: timings[cell.name] for cell in cells if cell.name in timings}
+    times = dict(zip(cells, measured.timings, strict=True))
     taken = {cell: timing for cell, timing in times.items() if timing.seconds}
     machine = measured.machine
-    table = Table(
+    table = table_of(
         "Seconds to the last load, in one load",
-        ("case", "method", "elements or links", "ours", "spread", "repeats", "theirs", "theirs / ours", "ended"),
-        tuple(_row(cell, times.get(cell)) for cell in cells),
+        _COLUMNS,
+        times.items(),
         "Ours: median of whole answers, set-up included, and the distance of the quartiles; finite elements in shear. "
         f"Ours on {machine['cpu']}, BLAS on one thread, Python {machine['python']}, NumPy {machine['numpy']}, SciPy "
         f"{machine['scipy']}, scikit-fem {machine['scikit-fem']}; theirs on {THEIR_MACHINE}.",
@@ -141,39 +176,11 @@ def result_of(measured: Session, cells: tuple[Cell, ...] = CELLS) -> Section:
         "study": "table1",
         "machine": dict(machine),
         "paper_machine": THEIR_MACHINE,
-        "rows": [_record(cell, times.get(cell)) for cell in cells],
+        "rows": records_of(_KEYS, times.items()),
     }
     complete = all(timing.outcome.completed for timing in taken.values())
     figures = (_run_times(cells, taken),) if taken else ()
     return Section("Run times, beside Table 1 of the paper", sentences, figures, (table,), "table1", data, complete)
-
-
-def _record(cell: Cell, timing: Timing | None) -> dict[str, object]:
-    """Documented JSON of a cell."""
-    quartiles = timing.quartiles("both") if timing and timing.seconds else None
-    return {
-        "case": cell.case,
-        "method": cell.method,
-        "formulation": None if cell.method == "fea" else cell.formulation,
-        "contact": cell.contact,
-        "size": plain(cell.size),
-        "seconds": quartiles and quartiles[1],
-        "spread": quartiles and quartiles[2] - quartiles[0],
-        "repeats": len(timing.seconds) if timing else 0,
-        "ended": timing.outcome.ended if timing and quartiles else None,
-        "why": timing.why or None if timing else None,
-        "paper_seconds": cell.theirs,
-    }
-
-
-def _row(cell: Cell, timing: Timing | None) -> tuple[str, ...]:
-    """Cells of a row of the table."""
-    low, ours, high = timing.quartiles("both") if timing and timing.seconds else (math.nan,) * 3
-    ended = timing.outcome.ended or "refused" if timing else "not begun"
-    ratio = number(cell.theirs / ours) if cell.theirs and ours else "–"
-    repeats = str(len(timing.seconds)) if timing else "0"
-    return (cell.case, cell.label, cell.sized, number(ours), number(high - low, 2), repeats, number(cell.theirs), ratio,
-            ended)  # fmt: skip
 
 
 def _run_times(cells: tuple[Cell, ...], taken: Mapping[Cell, Timing]) -> Figure:
@@ -189,9 +196,8 @@ def _run_times(cells: tuple[Cell, ...], taken: Mapping[Cell, Timing]) -> Figure:
         axes.plot([], [], "o", color=BLUE, label="ours")
         axes.set_yticks(range(len(cells)), [cell.name for cell in cells])
         axes.invert_yaxis()
-        axes.set_xscale("log")
         axes.grid(visible=True, which="major", axis="x", color="#e4e4e4", linewidth=0.6)
-        axes.set_xlabel("seconds")
+        axes.set(xscale="log", xlabel="seconds")
         drawing.legend(loc="outside upper right", ncols=2)
         caption = "Seconds to the last load: ours as medians with the quartiles, and the paper's, on another machine."
         return finished(drawing, "table1", caption)

@@ -14,7 +14,7 @@ SolverName = Literal["cprbm", "fea", "solid"]
 
 
 @dataclass(frozen=True, slots=True)
-class Stated:
+class WorstRow:
     """A row, by probe, stage and station, with its uncertainty as a fraction.
 
     The fraction is infinite where the value exists at one N and not at another.
@@ -44,11 +44,11 @@ class Tolerance:
     asked: float
     solver: SolverName
     n: int
-    worst: Stated | None
+    worst: WorstRow | None
     trouble: str
     probes: tuple[str, ...]
-    solved: tuple[int, ...]
-    ended: str
+    solved: tuple[int, ...] = ()
+    ended: str = ""
 
     @property
     def extrapolated(self) -> tuple[int, ...]:
@@ -56,9 +56,14 @@ class Tolerance:
         return (self.n // 2, self.n) if self.probes else ()
 
     @property
+    def fraction(self) -> float:
+        """The largest fraction: infinite in trouble, 0 without a row."""
+        return math.inf if self.trouble else 0.0 if self.worst is None else self.worst.fraction
+
+    @property
     def met(self) -> bool:
         """Whether every row is within the tolerance."""
-        return not self.trouble and (self.worst is None or self.worst.fraction <= self.asked)
+        return self.fraction <= self.asked
 
     def sentence(self, scene: Scene) -> str:
         """Result with the deciding row, with stations in the units of the scene's file."""

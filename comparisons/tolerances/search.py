@@ -30,7 +30,7 @@ from comparisons.reactions import perturbed_scene
 from comparisons.sentences import problem_sentences
 from comparisons.store import AnswerMemory
 from comparisons.tolerances.limits import Limits, limits_of
-from comparisons.tolerances.result import SolverName, Stated, Tolerance
+from comparisons.tolerances.result import SolverName, Tolerance, WorstRow
 from comparisons.verdict.rows import Row, rows_of
 from comparisons.verdict.runs import Runs
 from comparisons.verdict.station_events import Place
@@ -63,28 +63,26 @@ class _Level:
     """Answers of a solver at N and coarser.
 
     Attributes:
-        n: N; answers: by N; answer: at N, with limits as values unless a run ended early.
+        answers: by N; answer: at N, with limits as values unless a run ended early.
+        found: result of the search with N as the last number.
         limits: of the answers; None in trouble.
-        worst, trouble: as of :class:`Tolerance`.
     """
 
-    n: int
     answers: Mapping[int, Answer]
     answer: Answer
+    found: Tolerance
     limits: Limits | None = None
-    worst: Stated | None = None
-    trouble: str = ""
 
-    def end(self, tolerance: float, most: int) -> str:
+    def end(self, most: int) -> str:
         """Why the search ends at this level, with at most ``most`` for N; empty where the search goes on."""
-        fraction = math.inf if self.trouble else 0.0 if self.worst is None else self.worst.fraction
-        if fraction <= tolerance:
+        n, fraction = self.found.n, self.found.fraction
+        if self.found.met:
             return "the tolerance is met"
-        if 2 * self.n > most:
+        if 2 * n > most:
             return f"N = {most} is the largest N"
         if not math.isfinite(fraction):
-            return "no larger N would help" if self.n >= PATIENCE else ""
-        hopeless = self.n >= ENOUGH and fraction * (self.n / most) ** HIGHEST_ORDER > tolerance
+            return "no larger N would help" if n >= PATIENCE else ""
+        hopeless = n >= ENOUGH and fraction * (n / most) ** HIGHEST_ORDER > self.found.asked
         return f"N = {most}, the largest N, would not do either" if hopeless else ""
 
 
@@ -95,10 +93,11 @@ class _Search:
     scene: Scene
     solver: SolverName
     choices: Choices
+    tolerance: float
     memory: AnswerMemory
     reference: Answer | None = None
 
-    def run(self, tolerance: float) -> tuple[_Level, Tolerance]:
+    def run(self) -> tuple[_Level, Tolerance]:
         """The last level of the search, and the result."""
         n, end = FIRST[self.solver], ""
         while not end:
@@ -109,11 +108,9 @@ class _Search:
                 if n >= ENOUGH:
                     raise
                 continue
-            end = level.end(tolerance, LARGEST_PAPER if self.in_paper else LARGEST[self.solver])
-        probes = () if self.in_paper or level.limits is None else level.limits.probes
+            end = level.end(LARGEST_PAPER if self.in_paper else LARGEST[self.solver])
         sizes = self.memory.sizes(getattr(self.memory.solvers, self.solver), self.scene)
-        found = Tolerance(tolerance, self.solver, n, level.worst, level.trouble, probes, sizes, end)
-        return level, replace(found, ended="") if found.met else found
+        return level, replace(level.found, solved=sizes, ended="" if level.found.met else end)
 
     def at(self, n: int) -> _Level:
         """The level of an N.
@@ -130,11 +127,13 @@ class _Search:
         value = found.pop() if paper else None
         answers = dict(zip(ordered, found, strict=True))
         problems = {size: next(iter(problem_sentences(self.scene, each)), "") for size, each in answers.items()}
-        if trouble := problems[n // 2] or problems[n]:
-            return _Level(n, answers, value or answers[n], trouble=trouble)
+        result = Tolerance(self.tolerance, self.solver, n, None, problems[n // 2] or problems[n], ())
+        if result.trouble:
+            return _Level(answers, value or answers[n], result)
         answers = {size: answer for size, answer in answers.items() if not problems[size]}
         limits = limits_of(self.scene, answers)
-        return _Level(n, answers, value or limits.answer, limits, self._worst(limits, value))
+        result = replace(result, worst=self._worst(limits, value), probes=() if self.in_paper else limits.probes)
+        return _Level(answers, value or limits.answer, result, limits)
 
     def choices_at(self, n: int) -> Choices:
         """The choices at N."""
@@ -145,7 +144,7 @@ class _Search:
         """True for the CPRBM in ``paper``, whose values are never limits."""
         return self.solver == "cprbm" and self.choices.formulation == "paper"
 
-    def _worst(self, limits: Limits, paper: Answer | None) -> Stated | None:
+    def _worst(self, limits: Limits, paper: Answer | None) -> WorstRow | None:
         """The row with the largest f, of a value in ``paper`` with the distance from ``auto``."""
         reference = self.reference or limits.answer
         runs = Runs(
@@ -156,7 +155,7 @@ class _Search:
             settled=frozendict({"cprbm": limits.uncertainties}),
         )
         fractions = ((row, _fraction(row, limits)) for row in rows_of(self.scene, runs))
-        stated = (Stated(row.probe.name, *row.where, f) for row, f in fractions if f is not None)
+        stated = (WorstRow(row.probe.name, *row.where, f) for row, f in fractions if f is not None)
         return max(stated, key=lambda each: each.fraction, default=None)
 
 
@@ -193,7 +192,7 @@ def solve_within(
     """
     memory = AnswerMemory(solvers=with_solid(solvers) if solver == "solid" else solvers, say=say)
     theory = choices.kinematics_of(scene) if solver == "fea" else choices.theory_of(scene)
-    level, found = _Search(scene, solver, choices.within(theory), memory).run(tolerance)
+    level, found = _Search(scene, solver, choices.within(theory), tolerance, memory).run()
     return level.answer, found
 
 
@@ -211,17 +210,16 @@ def runs_within(
     """
     memory = AnswerMemory(pool=crew.pool, solvers=solvers, say=say)
     theory = choices.kinematics_of(scene)
-    of_fea = _Search(scene, "fea", choices.within(theory), memory)
-    fea, *found = of_fea.run(tolerance)
+    of_fea = _Search(scene, "fea", choices.within(theory), tolerance, memory)
+    fea, elements = of_fea.run()
     of_cprbm = replace(of_fea, solver="cprbm", reference=fea.answer)
-    cprbm, of_links = of_cprbm.run(tolerance)
-    found.insert(0, of_links)
-    at_last = replace(of_fea.choices_at(fea.n), links=cprbm.n)
+    cprbm, links = of_cprbm.run()
+    at_last = replace(of_fea.choices_at(elements.n), links=links.n)
     if cprbm.limits is None or fea.limits is None:
         runs = paired(scene, at_last, replace(solvers, solid=None), memory)
     else:
         driven = perturbed_scene(scene)
-        other, other_absence = in_other_theory(scene, replace(at_last, links=cprbm.n // 2), solvers)
+        other, other_absence = in_other_theory(scene, replace(at_last, links=links.n // 2), solvers)
         known = [(solvers.exact, scene, of_fea.choices)] if solvers.exact and theory == "bending" else []
         exact, exact_absence = exact_or_why(*memory.answers(known))
         runs = Runs(
@@ -231,12 +229,12 @@ def runs_within(
             auto=cprbm.limits.answer if of_cprbm.in_paper else None,
             other=other,
             other_absence=other_absence,
-            perturbed=None if driven is None else replace(of_cprbm, scene=driven, reference=None).at(cprbm.n).answer,
+            perturbed=None if driven is None else replace(of_cprbm, scene=driven, reference=None).at(links.n).answer,
             exact=exact,
             exact_absence=exact_absence,
             settled=frozendict({"cprbm": cprbm.limits.uncertainties, "fea": fea.limits.uncertainties}),
         )
     if solvers.solid is not None:
-        solid, of_solid = replace(of_fea, solver="solid", reference=fea.answer if fea.limits else None).run(tolerance)
-        runs, found = replace(runs, solid=tuple(solid.answers.values())), [*found, of_solid]
-    return runs, tuple(found)
+        solid, of_solid = replace(of_fea, solver="solid", reference=fea.answer if fea.limits else None).run()
+        return replace(runs, solid=tuple(solid.answers.values())), (links, elements, of_solid)
+    return runs, (links, elements)

@@ -16,7 +16,7 @@ from benchmarks.peers.kkt import stationarity
 from benchmarks.peers.method import discretised
 from benchmarks.peers.solving import LATE, Solved
 from comparisons import cases
-from comparisons.bench.measures import asked
+from comparisons.bench.measures import benchmark_scene
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer
 from cprbm.chain import add_rows, mechanism_of, row_values, strain_energy
@@ -135,7 +135,7 @@ OPTIMISERS = (
 @pytest.mark.parametrize("optimiser", OPTIMISERS)
 @pytest.mark.parametrize("case", ["hinge", "tapered"])
 def test_every_optimiser_comes_to_the_minimum_of_the_cprbm(optimiser, case):
-    scene, links = asked(cases.opened(case)), count_of(case)
+    scene, links = benchmark_scene(cases.opened(case)), count_of(case)
     energy = next(probe for probe in cases.opened("hinge").probes if probe.quantity == "potential_energy")
     scene = scene.model_copy(update={"probes": (*scene.probes, energy)})
     ours = cprbm_answer(scene, Choices(links=links, formulation="paper"))
@@ -159,7 +159,7 @@ def test_every_optimiser_comes_to_the_minimum_of_the_cprbm(optimiser, case):
 @pytest.mark.skipif(not ipopt.there(), reason="CasADi is not installed")
 @pytest.mark.parametrize("case", ["gripper", "gripper-driven", "platform"])
 def test_circles_slides_drives_and_forces_come_to_the_same(case):
-    scene, links = asked(cases.opened(case)), count_of(case)
+    scene, links = benchmark_scene(cases.opened(case)), count_of(case)
     values = cprbm_answer(scene, Choices(links=links, formulation="paper")).stations[-1].values
     found = judged(scene, problem(case), ipopt.prepared(problem(case), 60.0)())
     assert found.ended == "COMPLETED"

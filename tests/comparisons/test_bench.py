@@ -12,7 +12,7 @@ from comparisons import cases, geometry, provenance
 from comparisons.bench import measures, section, tables
 from comparisons.bench.contenders import Contender, Outcome, Run, contenders
 from comparisons.bench.running import Plan, Session, sizes_of, trend
-from comparisons.bench.standings import TARGETS, ratios, reached, standings
+from comparisons.bench.standings import TARGETS, ratios, seconds_at, standings
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
@@ -69,13 +69,10 @@ class Clock:
 
     def session(self, sizes=(40, 80, 160), **plan):
         every = frozendict({one.name: tuple(sizes) for one in self.taking_part})
-        return Session(self.scene, Plan(every, **plan), self.taking_part, MACHINE, self, KNOWN)
+        return Session(self.scene, Plan(every, **plan), self.taking_part, MACHINE, KNOWN, clock=self)
 
     def benchmark(self, sizes=(40, 80, 160), **plan):
-        session = self.session(sizes, **plan)
-        for job in session.jobs():
-            session.do(job)
-        return session
+        return self.session(sizes, **plan).after_all()
 
 
 KNOWN = measures.Reference(
@@ -91,7 +88,7 @@ def power(exponent, setup=0.0, iterations=lambda n: 5, error=lambda n: 1.6 / n**
 
 @pytest.fixture
 def bent(hinge):
-    return measures.asked(hinge)
+    return measures.benchmark_scene(hinge)
 
 
 def test_the_exponent_is_that_of_the_law_set_up_included(bent):
@@ -140,7 +137,7 @@ def test_median_and_quartiles(bent):
     times = iter([99.0, 3.0, 10.0, 1.0, 4.0, 2.0])  # the first does not count
     found = Clock(bent, auto=lambda n: (0.5, next(times), 5, "COMPLETED", 0.0)).benchmark(sizes=(40,), repeat=5)
     (row,) = found.rows()
-    assert (row.median("set-up"), row.median("solve"), row.median("both"), row.spread) == (0.5, 3.0, 3.5, 2.0)
+    assert (row.median("set-up"), row.median("solve"), row.median("both"), row.spread("solve")) == (0.5, 3.0, 3.5, 2.0)
 
 
 def test_iterations_are_counted_in_all_per_station_and_against_the_smallest(bent):
@@ -165,14 +162,14 @@ def test_a_peer_with_a_worse_error_on_the_same_problem_does_not_count(bent):
     found = Clock(bent, paper=power(1.0), ipopt=wrong, fea=power(1.0, error=lambda n: 1.0)).benchmark(repeat=1)
     assert [timing.counts for timing in found.rows("ipopt")] == [True, False, True]
     assert [timing.counts for timing in found.rows("fea")] == [True, True, True]
-    assert [tables.ended(timing) for timing in found.rows("ipopt")] == ["COMPLETED", "WORSE", "COMPLETED"]
+    assert [tables.ending_of(timing) for timing in found.rows("ipopt")] == ["COMPLETED", "WORSE", "COMPLETED"]
 
 
 def test_what_takes_too_long_is_not_repeated_and_not_exceeded(bent):
     clock = Clock(bent, auto=lambda n: (0.0, n / 40.0, 5, "COMPLETED", 0.0), fea=power(0.1))
     found = clock.benchmark(repeat=4, at_most=1.5)
     assert [(timing.n, len(timing.seconds)) for timing in found.rows("auto")] == [(40, 2), (80, 1)]
-    assert [(one.name, one.count, one.why) for one in found.left_out()] == [("auto", 160, "more than 1.5 s")]
+    assert [(one.name, one.count, one.why) for one in found.omissions()] == [("auto", 160, "more than 1.5 s")]
 
 
 def test_a_size_that_is_refused_is_left_out_and_the_rest_goes_on(bent):
@@ -180,7 +177,7 @@ def test_a_size_that_is_refused_is_left_out_and_the_rest_goes_on(bent):
     found = Clock(bent, paper=lambda n: refused if n == 40 else power(1.0)(n)).benchmark(repeat=2)
     assert [timing.n for timing in found.rows()] == [80, 160]
     why = "contacts.contact.paper: found 2 joints; allowed: 3"
-    assert [(one.count, one.why) for one in found.left_out()] == [(40, why)]
+    assert [(one.count, one.why) for one in found.omissions()] == [(40, why)]
     assert ("paper", "40", why) in tables.tables_of(found)[-1].rows
 
 
@@ -195,13 +192,13 @@ def test_an_interrupted_session_has_what_was_done(bent):
     for job in session.jobs()[:3]:
         session.do(job)
     assert [(timing.contender.name, timing.n) for timing in session.rows()] == [("auto", 40), ("auto", 80), ("fea", 40)]
-    assert {one.why for one in session.left_out()} == {"interrupted"}
+    assert {one.why for one in session.omissions()} == {"interrupted"}
 
 
 def test_numbers_by_beam_are_a_size_like_another(bent):
     found = Clock(bent, auto=power(1.0), paper=power(1.0)).benchmark(sizes=(20, FEW), repeat=1)
     assert [timing.n for timing in found.rows("auto")] == [20.0, 35.0]
-    assert tables.sized(FEW) == "30, 40"
+    assert tables.size_text(FEW) == "30, 40"
     assert tables.document(found)["rows"][1]["n"] == {"beam1": 30, "beam2": 40}
 
 
@@ -222,7 +219,7 @@ def test_when_an_error_is_reached():
         ([(1e-3, 1.0), (1e-1, 2.0)], 1e-2, None),
         ([], 1e-2, None),
     ):
-        assert reached(points, target) == (None if seconds is None else pytest.approx(seconds, rel=1e-12)), points
+        assert seconds_at(points, target) == (None if seconds is None else pytest.approx(seconds, rel=1e-12)), points
 
 
 def test_who_is_fastest_and_by_how_much(bent):
@@ -307,7 +304,7 @@ def test_an_error_of_what_vanishes_altogether_is_told_by_the_size_of_the_mechani
 
 
 def test_a_question_keeps_the_last_loads_and_what_errors_are_told_by():
-    asked = measures.asked(cases.opened("gripper-driven"))
+    asked = measures.benchmark_scene(cases.opened("gripper-driven"))
     assert [len(stage.stations) for stage in asked.stages] == [1]
     assert {probe.name for probe in asked.probes} >= {"A.reaction", "circle.force", "contact.force"}
     assert not {"C.reaction", "contact.closing_load", "beam1.bending_stress"} & {probe.name for probe in asked.probes}

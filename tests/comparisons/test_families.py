@@ -14,7 +14,7 @@ from comparisons.pairing import Solvers
 from comparisons.plain import text_of
 from comparisons.studies import convergence
 from comparisons.studies import convergence_tables as tables
-from comparisons.studies.convergence import converged
+from comparisons.studies.convergence import convergence_of
 from cprbm_scene import Ending
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
@@ -25,7 +25,7 @@ LAST = 0.67
 
 
 def _found(hinge, solvers, sizes=SIZES, theory=None):
-    return converged(hinge, sizes, Choices(theory=theory), solvers, ALONE)
+    return convergence_of(hinge, sizes, Choices(theory=theory), solvers, ALONE)
 
 
 def _family(found, probe, station=LAST, method="cprbm"):

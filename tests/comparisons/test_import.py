@@ -7,8 +7,8 @@ import pytest
 
 import cprbm
 from comparisons.cli.main import run
-from comparisons.importing.curves import fitted
-from comparisons.starting.present import trouble_with
+from comparisons.importing.curves import fit
+from comparisons.starting.libraries import trouble_with
 from cprbm_scene import Arc, Line, Spline, read
 
 needs_ezdxf = pytest.mark.skipif(bool(trouble_with("ezdxf")), reason="ezdxf cannot be imported here")
@@ -167,7 +167,7 @@ def test_a_file_that_is_not_there_is_named(tmp_path, capsys):
 
 def test_points_of_a_line_are_a_line():
     t = np.linspace(0.0, 1.0, 57)[:, None]
-    made = fitted((1.0 - t) * np.array([0.3, 0.1]) + t * np.array([0.9, -0.7]), None, 1e-5)
+    made = fit((1.0 - t) * np.array([0.3, 0.1]) + t * np.array([0.9, -0.7]), None, 1e-5)
     assert made.curve == Line(kind="line", start=(0.3, 0.1), end=(0.9, -0.7))
     assert made.deviation < 1e-15
 
@@ -176,7 +176,7 @@ def test_points_of_a_line_are_a_line():
 def test_points_of_a_circle_are_an_arc(first, turn):
     angle = first + turn * np.linspace(0.0, 1.0, 61)
     p = np.array([13.0, -7.0]) + 0.9 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    made = fitted(p, None, 1e-5)
+    made = fit(p, None, 1e-5)
     assert isinstance(made.curve, Arc)
     assert made.curve.center == pytest.approx((13.0, -7.0), rel=1e-11)
     assert made.curve.direction == ("counterclockwise" if turn > 0.0 else "clockwise")
@@ -185,7 +185,7 @@ def test_points_of_a_circle_are_an_arc(first, turn):
 def test_what_is_nearly_a_circle_is_none():
     angle = np.linspace(0.2, 1.7, 301)
     p = np.stack([3.0 * np.cos(angle), 3.00003 * np.sin(angle)], axis=1)
-    assert isinstance(fitted(p, None, 1e-5).curve, Spline)
+    assert isinstance(fit(p, None, 1e-5).curve, Spline)
 
 
 def test_a_spline_is_as_near_as_it_says():
@@ -193,7 +193,7 @@ def test_a_spline_is_as_near_as_it_says():
     x = np.linspace(0.0, 3.0, 2001)
     ways = np.array([[1.0, math.cos(at)] for at in (0.0, 3.0)])
     ways /= np.hypot(ways[:, 0], ways[:, 1])[:, None]
-    made = fitted(np.stack([x, np.sin(x)], axis=1), ways, 3e-5)
+    made = fit(np.stack([x, np.sin(x)], axis=1), ways, 3e-5)
     assert isinstance(made.curve, Spline)
     assert made.deviation <= 3e-5
     from cprbm_scene.curve_records import shape_of
@@ -207,4 +207,4 @@ def test_a_spline_is_as_near_as_it_says():
 def test_a_corner_is_no_spline():
     t = np.linspace(0.0, 1.0, 201)
     p = np.concatenate([np.stack([t, 0.0 * t], axis=1), np.stack([1.0 + 0.0 * t[1:], t[1:]], axis=1)])
-    assert fitted(p, None, 1e-9) is None
+    assert fit(p, None, 1e-9) is None

@@ -15,8 +15,8 @@ import pytest
 import cprbm
 from comparisons import cases
 from comparisons.cli.main import run
-from comparisons.starting import present
-from comparisons.starting.begun import SCHEMA, text
+from comparisons.starting import libraries
+from comparisons.starting.template import SCHEMA, text
 from cprbm_scene import read
 from cprbm_scene.reading import schema
 
@@ -81,17 +81,17 @@ def test_the_schema_refuses_what_reading_refuses():
 
 def test_the_doctor_names_what_is_missing_and_what_installs_it(monkeypatch, capsys):
     asked = (
-        present.Library("numpy", "numpy", "every number", ">=2.0"),
-        present.Library("no-such-thing", "nothing", "the impossible", ">=0.7", "dreams"),
-        present.Library("scipy", "scipy.no_such_part", "linear algebra", "", "dreams"),
+        libraries.Library("numpy", "numpy", "every number", ">=2.0"),
+        libraries.Library("no-such-thing", "nothing", "the impossible", ">=0.7", "dreams"),
+        libraries.Library("scipy", "scipy.no_such_part", "linear algebra", "", "dreams"),
     )
-    monkeypatch.setattr(present, "LIBRARIES", asked)
+    monkeypatch.setattr(libraries, "LIBRARIES", asked)
     assert run(["doctor"]) == 0
     said = capsys.readouterr().out
     line = f'{sys.executable} -m pip install "no-such-thing>=0.7"'
     assert f"no-such-thing  missing      for the impossible; install: {line}\n" in said
     assert "cannot be imported (ModuleNotFoundError: No module named 'scipy.no_such_part')" in said
-    monkeypatch.setattr(present, "LIBRARIES", (present.Library("no-such-thing", "nothing", "all", ""),))
+    monkeypatch.setattr(libraries, "LIBRARIES", (libraries.Library("no-such-thing", "nothing", "all", ""),))
     assert run(["doctor"]) == 1
 
 
@@ -104,7 +104,7 @@ def test_the_doctor_lists_all_that_the_project_asks_for():
     }
     wanted = {(Requirement(each), "") for each in project["dependencies"]}
     wanted |= {(Requirement(each), extra) for extra, asked in extras.items() for each in asked}
-    told = {(Requirement(library.name + library.least), library.extra) for library in present.LIBRARIES}
+    told = {(Requirement(library.name + library.least), library.extra) for library in libraries.LIBRARIES}
     assert told <= wanted
     assert {requirement for requirement, _ in told} == {requirement for requirement, _ in wanted}
 
@@ -113,10 +113,10 @@ def test_a_library_that_wants_one_of_the_system_is_told_with_what_installs_it(tm
     broken = 'raise OSError("libGLU.so.1: cannot open shared object file")\n'
     (tmp_path / "gmsh_of_a_bare_machine.py").write_text(broken, encoding="utf-8")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    gmsh = next(library for library in present.LIBRARIES if library.name == "gmsh")
+    gmsh = next(library for library in libraries.LIBRARIES if library.name == "gmsh")
     library = replace(gmsh, module="gmsh_of_a_bare_machine")
-    monkeypatch.setattr(present, "LIBRARIES", (library,))
-    monkeypatch.setattr(present, "version", lambda name: "4.0")
+    monkeypatch.setattr(libraries, "LIBRARIES", (library,))
+    monkeypatch.setattr(libraries, "version", lambda name: "4.0")
     assert run(["doctor"]) == 0
     assert (
         "its system libraries, as root: apt-get install --yes --no-install-recommends libgl1 libglu1-mesa"
@@ -133,10 +133,10 @@ def test_a_library_that_wants_one_of_the_system_is_told_with_what_installs_it(tm
     ],
 )
 def test_the_doctor_s_last_line_sums_up(found, said, monkeypatch, capsys):
-    states = [present.State(each, "" if each.name in found else "9.9", "") for each in present.LIBRARIES]
+    states = [libraries.State(each, "" if each.name in found else "9.9", "") for each in libraries.LIBRARIES]
     # whether VTK draws is tried where PyVista is there, and another test's concern
     states = [each for each in states if each.library.name != "pyvista" or not each.there]
-    monkeypatch.setattr(present, "looked_for", lambda: iter(states))
+    monkeypatch.setattr(libraries, "states", lambda: iter(states))
     assert run(["doctor"]) == ("numpy" in found)
     assert capsys.readouterr().out.splitlines()[-1].endswith(said)
 
@@ -144,7 +144,7 @@ def test_the_doctor_s_last_line_sums_up(found, said, monkeypatch, capsys):
 def test_a_library_that_ends_the_process_is_no_end_of_the_doctor(tmp_path, monkeypatch):
     (tmp_path / "fatal.py").write_text("import os\nos._exit(7)\n", encoding="utf-8")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    assert present.trouble_with("fatal") == "importing it ends Python with 7"
+    assert libraries.trouble_with("fatal") == "importing it ends Python with 7"
 
 
 def test_quiet_says_nothing_of_what_is_in_order(tmp_path, capsys):
@@ -154,10 +154,10 @@ def test_quiet_says_nothing_of_what_is_in_order(tmp_path, capsys):
 
 
 def test_a_quiet_doctor_says_what_is_needed_and_missing_alone(monkeypatch, capsys):
-    there, gone = present.LIBRARIES[0], present.LIBRARIES[1]
-    extra = next(library for library in present.LIBRARIES if library.extra)
-    found = [present.State(there, "9.9", ""), present.State(gone, "", ""), present.State(extra, "", "")]
-    monkeypatch.setattr(present, "looked_for", lambda: iter(found))
+    there, gone = libraries.LIBRARIES[0], libraries.LIBRARIES[1]
+    extra = next(library for library in libraries.LIBRARIES if library.extra)
+    found = [libraries.State(there, "9.9", ""), libraries.State(gone, "", ""), libraries.State(extra, "", "")]
+    monkeypatch.setattr(libraries, "states", lambda: iter(found))
     assert run(["doctor", "--quiet"]) == 1
     (line,) = capsys.readouterr().out.splitlines()
     assert line.split()[:2] == [gone.name, "missing"]
@@ -192,7 +192,7 @@ def test_a_library_of_the_core_that_is_wanting_is_a_sentence(tmp_path, library, 
 def test_the_line_that_installs_is_one_for_a_shell(monkeypatch):
     """A folder's name may have a space."""
     monkeypatch.setattr(sys, "executable", "/somewhere/of my own/python")
-    assert shlex.split(present.LIBRARIES[0].line)[0] == "/somewhere/of my own/python"
+    assert shlex.split(libraries.LIBRARIES[0].line)[0] == "/somewhere/of my own/python"
 
 
 def test_the_doctor_can_be_asked_where_numpy_is_wanting(tmp_path):

@@ -18,7 +18,7 @@ from comparisons.present import animation, space
 from comparisons.present.picture import views_of
 from comparisons.present.strips import SECTIONS, with_stresses
 from comparisons.present.vtu import ACROSS, beam_block, force_block, obstacle_block
-from comparisons.starting.present import trouble_with
+from comparisons.starting.libraries import trouble_with
 
 needs_meshio = pytest.mark.skipif(bool(trouble_with("meshio")), reason="meshio, of the extra 'view', is not there")
 needs_pyvista = pytest.mark.skipif(bool(trouble_with("pyvista")), reason="pyvista, of the extra 'view', is not there")

@@ -8,7 +8,6 @@ import pytest
 from comparisons import cases
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
-from comparisons.starting.begun import begin
 
 HINGE = (Path(cases.__file__).parent / "hinge.toml").read_text("utf-8")
 PRESTRESSED = (Path(cases.__file__).parent / "prestressed.toml").read_text("utf-8")
@@ -111,7 +110,7 @@ SCENES = {
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    begin("mine", tmp_path)
+    assert run(["new", "mine", "--out", str(tmp_path), "--quiet"]) == 0
     (tmp_path / "mine-hinge.toml").write_text(HINGE, "utf-8")
     (tmp_path / "bytes.toml").write_bytes(b'name = "\xff"')
     (tmp_path / "in the way").write_text("", "utf-8")

@@ -7,7 +7,6 @@ import click
 from comparisons.cli.commands import SolvingCommand
 from comparisons.cli.options import COUNT, OUTPUT, candidates, count, folder
 from comparisons.cli.pipeline import take_steps
-from comparisons.cli.questions import with_room
 from comparisons.cli.request import Request
 from comparisons.pairing import solvers_of
 from comparisons.store import run_into
@@ -17,7 +16,7 @@ from tests.relations.result import result_of
 
 def compare_images(request: Request, scenes: tuple[str, ...]) -> int:
     """Compare scenes with their images; exit code 1 for a broken relation."""
-    request = with_room(request)
+    request = request.with_room()
     with run_into(request.out, solvers_of(request.planted)) as run:
         pieces = study.pieces(scenes, request.choices, run.solvers)
         found = take_steps(request, study.Relations(), pieces, study.with_piece, result_of)
@@ -34,7 +33,7 @@ command = SolvingCommand(
         click.Option(["--elements"], callback=count, metavar=COUNT, default="20", show_default=True,
                      help="Finite elements per beam, in the same form."),
         *OUTPUT,
-        folder("Folder for the page and the numbers."),
+        folder(help="Folder for the page and the numbers."),
     ],
     help="Compare a scene with its moved, mirrored, reordered and scaled images.",
 )  # fmt: skip

@@ -12,7 +12,7 @@ from comparisons.cases import opened
 from comparisons.cli.bars import bar
 from comparisons.cli.commands import SolvingCommand
 from comparisons.cli.options import OUTPUT, folder, positive, whole
-from comparisons.cli.output import make_room, print_tables, write_json
+from comparisons.cli.output import print_tables, write_json
 from comparisons.cli.request import Request
 from comparisons.pairing import solvers_of
 from tests.robustness import tables
@@ -31,14 +31,14 @@ def judge(
     solvers = solvers_of(request.planted)
     plan = Plan(seed, limits=Limits(seconds=request.at_most))
     if replay is not None:
-        make_room(request.json_file)
+        request.with_room()
         there = Stress(plan, {0: replayed(opened(str(replay)), solvers, plan)}, {})
         write_json(request.json_file, tables.document(there))
         if request.prints:
             click.echo(tables.text_of(there.outcomes[0]))
         return exit_code(there.outcomes.values())
     out = request.out or Path(f"{click.get_current_context().info_name}-{seed}")
-    make_room(request.json_file, out=out)
+    request.with_room(str(out))
     there = Stress(plan, {}, {})
     try:
         with bar(scenes, shown=not request.quiet, loggers=()) as progress:
@@ -94,7 +94,7 @@ command = SolvingCommand(
         click.Option(["--replay"], type=click.Path(dir_okay=False, path_type=Path), metavar="FILE.toml",
                      help="Judge a single scene."),
         *OUTPUT,
-        folder("Folder of outcomes and failing scenes; a run goes on from there.  [default: 'robustness-SEED']"),
+        folder(help="Folder of outcomes and failing scenes; a run goes on from there.  [default: 'robustness-SEED']"),
     ],
     help="Judge both solvers on random scenes.\n\nThe question: is a certified answer ever wrong?",
 )  # fmt: skip

@@ -18,7 +18,7 @@ from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.plain import text_of
-from comparisons.studies.calibration import Calibration, Trial, result_of, tallies, tried
+from comparisons.studies.calibration import Calibration, Trial, result_of, tallies, trial_of
 from comparisons.verdict.calibration import Tally
 from comparisons.verdict.rows import rows_of
 from comparisons.verdict.words import Word
@@ -41,7 +41,7 @@ def trials(case: str) -> tuple[Trial, ...]:
     made, sizes = TRUTHS[case]
     scene, truth = made()
     exact = truth(scene, Choices())
-    return tuple(tried(scene, links, elements, exact, Solvers()) for links, elements in sizes)
+    return tuple(trial_of(scene, links, elements, exact, Solvers()) for links, elements in sizes)
 
 
 def of(case: str, solver: str) -> Tally:

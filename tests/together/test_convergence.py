@@ -16,7 +16,7 @@ from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.crew import ALONE
 from comparisons.pairing import Solvers
-from comparisons.studies.convergence import Convergence, converged
+from comparisons.studies.convergence import Convergence, convergence_of
 from comparisons.studies.convergence_tables import pairs_of
 from comparisons.studies.families import Family, size
 from cprbm_scene import Scene
@@ -34,7 +34,7 @@ def _at(case: str, stations: tuple[float, ...]) -> Scene:
 
 
 def _converged(scene: Scene, *sizes: int) -> Convergence:
-    return converged(scene, sizes, Choices(kinematics="bending"), Solvers(), ALONE)
+    return convergence_of(scene, sizes, Choices(kinematics="bending"), Solvers(), ALONE)
 
 
 @pytest.fixture(scope="module")

@@ -19,7 +19,7 @@ from comparisons.plain import text_of
 from comparisons.present import json_document
 from comparisons.present.answer_tables import answer_tables
 from comparisons.studies import convergence_tables as tables
-from comparisons.studies.convergence import converged
+from comparisons.studies.convergence import convergence_of
 from cprbm_scene import Claim, Loss
 from tests.tables import tables_of
 from tests.verdict.comparing import compared
@@ -122,7 +122,7 @@ def test_a_claimed_value_of_a_probe_is_compared_with_the_cprbms(crank):
 
 def test_critical_values_converge_though_the_branches_end(crank):
     """No probe has all stations; the critical value has its limit, the planted 70.4°."""
-    found = converged(crank, (20, 40, 80), Choices(), Solvers(*STOPPING), ALONE)
+    found = convergence_of(crank, (20, 40, 80), Choices(), Solvers(*STOPPING), ALONE)
     assert (found.completed, found.families) == (False, ())
     entries = tables.document(found)["families"]
     assert [(each["solver"], each["component"]) for each in entries] == [
@@ -140,7 +140,7 @@ def test_a_mechanism_that_changes_with_n_counts_from_there_on(crank):
     def changing(scene, choices):
         return replace(C, loss=Loss.CONTACT if choices.links == 20 else Loss.FOLD)(scene, choices)
 
-    found = converged(crank, (20, 40, 80, 160), Choices(), Solvers(changing, F), ALONE)
+    found = convergence_of(crank, (20, 40, 80, 160), Choices(), Solvers(changing, F), ALONE)
     family = found.criticals[0]
     assert family.used == (40, 80, 160)
     assert family.error(20) is None

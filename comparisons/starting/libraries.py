@@ -1,6 +1,6 @@
-"""Installed and missing libraries, their purposes, and the commands that install them.
+"""Installed and missing libraries, with purposes and install commands.
 
-Every library is imported in a process of its own: a library that lacks a part of the system may end the process.
+Every library is imported in a separate process: without a library of the system the import may end the process.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Library:
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """A library with its installed ``version``, else empty, and why it cannot be imported, else empty."""
+    """A library with the installed ``version`` and the ``trouble`` of the import; both empty without a value."""
 
     library: Library
     version: str
@@ -57,6 +57,19 @@ class State:
     def there(self) -> bool:
         """Whether the library can be used."""
         return bool(self.version) and not self.trouble
+
+    @property
+    def text(self) -> str:
+        """Version and purpose of the library, and the command that installs the library if needed."""
+        library = self.library
+        if not self.trouble:
+            install = "" if self.version else f"; install: {library.line}"
+            return f"{self.version or 'missing':<12} for {library.needed_for}{install}"
+        system = line_for(library.name, self.trouble)
+        remedy = f"install the library again: {library.line} --force-reinstall"
+        if system:
+            remedy = f"on Debian and Ubuntu install its system libraries, as root: {system}"
+        return f"{self.version:<12} cannot be imported ({self.trouble}); for {library.needed_for}; {remedy}"
 
 
 LIBRARIES = (
@@ -94,7 +107,7 @@ LIBRARIES = (
 )
 
 
-def looked_for() -> Iterator[State]:
+def states() -> Iterator[State]:
     """State of every library."""
     for library in LIBRARIES:
         found = trouble = ""
@@ -105,7 +118,7 @@ def looked_for() -> Iterator[State]:
 
 
 def trouble_with(module: str) -> str:
-    """Why a module cannot be imported: the last line of Python's message; empty if it can."""
+    """Trouble of an import: the last line of Python's message; empty after a successful import."""
     try:
         done = subprocess.run(
             [sys.executable, "-c", f"import {module}"], capture_output=True, text=True, timeout=SECONDS, check=False
@@ -117,5 +130,5 @@ def trouble_with(module: str) -> str:
 
 
 def line_for(name: str, trouble: str) -> str:
-    """Command for the libraries of the system that a library needs, if these are its ``trouble``; else empty."""
+    """Command for the libraries of the system, if the ``trouble`` of a library names a shared library; else empty."""
     return next((each.system for each in LIBRARIES if each.name == name), "") if ".so" in trouble else ""
