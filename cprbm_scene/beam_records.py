@@ -10,16 +10,16 @@ Bounds are on dimensionless numbers, with thickness t, arc length L and curvatur
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import lru_cache
+from dataclasses import replace
 from itertools import pairwise
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag
 
 from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, shape_of, with_half_waves
 from cprbm_scene.curves import SAMPLES, Array
-from cprbm_scene.mistakes import Mistake, broken, first_broken, written_place
+from cprbm_scene.mistakes import Mistake, SceneError, first_broken, written_place
 from cprbm_scene.units import NUMBER, STRESS, Length, Measured, Name, Number, Of, PositiveLength, Record
 
 THINNEST, THICKEST = 1e-5, 0.2
@@ -66,11 +66,6 @@ class FreeEnd(Record):
     joint: Literal["free"]
     point: Name | None = None
     """New name of the end, for probes, loads and drives."""
-
-    def rules(self) -> Iterator[Mistake]:
-        """A name whose body is another body of the scene."""
-        found = f"{self.point!r}, and another body with the name '{self.point}-body'"
-        return broken(self.point is not None and Mistake("point", found, "another name of the free end"))
 
 
 BeamEnd = Annotated[WeldedEnd | PinnedEnd | FreeEnd, Field(discriminator="joint")]
@@ -160,12 +155,18 @@ class Beam(Record):
     imperfection: Imperfection | None = None
     """Offset of the neutral line, without stress."""
 
-    @model_validator(mode="after")
-    def _with_imperfection(self) -> Beam:
-        if self.imperfection is not None and not any(self.curve.rules()):
-            curve = with_half_waves(self.curve, self.imperfection.amplitude, self.imperfection.half_waves)
-            self.__dict__.update(curve=curve, imperfection=None)
-        return self
+    def completed(self) -> Mapping[str, object]:
+        """The curve with the offset of the imperfection.
+
+        Raises:
+            SceneError: the offset leaves no smooth curve.
+        """
+        if self.imperfection is None:
+            return {}
+        curve = with_half_waves(self.curve, self.imperfection.amplitude, self.imperfection.half_waves)
+        if spoiled := list(curve.rules()):
+            raise SceneError([replace(each, key=f"curve.{each.key}".rstrip(".")) for each in spoiled])
+        return {"curve": curve, "imperfection": None}
 
     def thickness_at(self, u: Array) -> Array:
         """Thickness at fractions ``u`` of the arc length, m, in the same shape."""
@@ -195,15 +196,8 @@ class Beam(Record):
         """True if the thickness varies along the beam."""
         return self.thinnest < self.thickest
 
-    @property
-    def sound(self) -> bool:
-        """True if curve and sizes exist and are in proportion: geometry and clearance need this."""
-        return _sound(self)
-
     def rules(self) -> Iterator[Mistake]:
-        """Thickness out of proportion to the length or the curvature, of a curve and sizes without mistakes."""
-        if not _parts_sound(self):
-            return iter(())
+        """Thickness out of proportion to the length or the curvature."""
         length = shape_of(self.curve).length
         sizes = ((size, size / length) for size in (self.thinnest, self.thickest))
         return first_broken(
@@ -238,16 +232,6 @@ def _too_curved(beam: Beam) -> Mistake | None:
 def mix_up(share: float) -> str:
     """A question about the unit of a thickness, for a ``share`` that a unit 1000 times smaller would make ordinary."""
     return " (in mm in place of m, or in um in place of mm?)" if 2.0 <= share <= 1e3 * THICKEST else ""
-
-
-def _parts_sound(beam: Beam) -> bool:
-    parts = (part for part in (beam.curve, beam.thickness, beam.width) if isinstance(part, Record))
-    return not any(mistake for part in parts for mistake in part.rules())
-
-
-@lru_cache(maxsize=512)
-def _sound(beam: Beam) -> bool:
-    return _parts_sound(beam) and not any(beam.rules())
 
 
 def _table(size: float | Profile) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -133,15 +133,15 @@ def _kinks(beam: Beam, span: Range) -> Array:
 def wrong_clearance(scene: Scene) -> Iterator[Mistake]:
     """Beams that overlap themselves, another beam of a contact, or a rigid shape of a contact as drawn."""
     for name, beam in scene.beams.items():
-        if beam.sound and isinstance(beam.curve, Arc | Spline):
+        if isinstance(beam.curve, Arc | Spline):
             yield from _itself(f"beams.{name}.curve", beam)
     for name, contact in scene.contacts.items():
-        beams = [scene.beams[beam] for beam in contact.beams if beam in scene.beams and scene.beams[beam].sound]
-        if isinstance(contact, BeamContact) and len(beams) == len(set(contact.between)) == 2:
+        beams = [scene.beams[beam] for beam in contact.beams]
+        if isinstance(contact, BeamContact):
             found = _too_deep(scene, contact, beams) if contact.thick else _crossing(*beams)
             names = f"{contact.between[0]!r} and {contact.between[1]!r}"
             yield from (Mistake(f"contacts.{name}", f"{names} {what}", allowed) for what, allowed in found)
-        elif isinstance(contact, RigidContact) and beams and not any(contact.shape_rules()):
+        elif isinstance(contact, RigidContact):
             yield from _rigid(scene, f"contacts.{name}", contact, beams[0])
 
 
@@ -244,7 +244,7 @@ def _rigid(scene: Scene, key: str, contact: RigidContact, beam: Beam) -> Iterato
     away, samples = distance_from(contact), np.union1d(np.linspace(*WHOLE, 2 * _SAMPLES - 1), beam.knots)
     depth = -least(lambda u: np.asarray(away(shape.point(u)) - _half(beam, u, thick=contact.thick)), samples)[0]
     measure, of = (beam.thinnest, "its thickness") if contact.thick else (shape.length, "its length")
-    points = scene.bodies[contact.body].points if contact.body in scene.bodies else {}
+    points = scene.bodies[contact.body].points
     held = any(getattr(end, "point", None) in points for end in (beam.start, beam.end)) and not circle
     what = "that overlaps the circle" if circle else "on the wrong side of the edge, or overlapping the edge,"
     side = f"circle from {getattr(contact, 'side', '')}" if circle else "edge from the free side"

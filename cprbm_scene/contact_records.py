@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import chain, combinations, islice, pairwise
+from itertools import combinations, islice, pairwise
 from math import cos, dist, sin
 from typing import Annotated, ClassVar, Literal
 
@@ -58,15 +58,6 @@ class PaperRigid(Record):
     related: Named[Related] = Field(default_factory=frozendict)
     """Joints with possible contact, by the names of beams; without an entry all joints."""
 
-    def of_others(self, beams: tuple[str, ...], allowed: str) -> Iterator[Mistake]:
-        """Entries for beams outside the contact."""
-        return broken(
-            *(
-                beam not in beams and Mistake(f"paper.related.{beam}", f"the beam {beam!r}", allowed)
-                for beam in self.related
-            )
-        )
-
 
 class PaperContact(PaperRigid):
     """Boundary function g_s of two beams, for the formulation ``paper``.
@@ -97,17 +88,10 @@ class BeamContact(Record):
         return self.between
 
     def rules(self) -> Iterator[Mistake]:
-        """A pair of the same beam twice, and data for ``paper`` of other beams."""
-        (one, other), paper = self.between, self.paper
-        allowed = f"one of the pair: {one!r}, {other!r}"
+        """A pair of the same beam twice."""
+        one, other = self.between
         different = "two different beams; a beam may touch itself in a contact of kind 'beam-self'"
-        return broken(
-            one == other and Mistake("between", f"{one!r} twice", different),
-            paper is not None
-            and paper.boundary not in self.between
-            and Mistake("paper.boundary", repr(paper.boundary), allowed),
-            *(paper.of_others(self.between, allowed) if paper is not None else ()),
-        )
+        return broken(one == other and Mistake("between", f"{one!r} twice", different))
 
 
 class _OneBeam(Record):
@@ -140,9 +124,8 @@ class RigidContact(_OneBeam):
     """Data for the formulation ``paper``."""
 
     def rules(self) -> Iterator[Mistake]:
-        """Data for ``paper`` of other beams, and shapes without geometry."""
-        paper = () if self.paper is None else self.paper.of_others(self.beams, f"the contact's beam {self.beam!r}")
-        return chain(paper, islice(self.shape_rules(), 1))
+        """Shapes without geometry."""
+        return islice(self.shape_rules(), 1)
 
     def shape_rules(self) -> Iterator[Mistake]:
         """Mistakes of the shape, only the first of them valid; none by default."""
@@ -239,7 +222,9 @@ class FunctionContact(RigidContact):
     @property
     def curve(self) -> Polynomial:
         """The edge as a curve."""
-        return Polynomial(kind="polynomial", axis=self.axis, coefficients=self.coefficients, range=self.range)
+        return Polynomial.model_construct(
+            kind="polynomial", axis=self.axis, coefficients=self.coefficients, range=self.range
+        )
 
     def shape_rules(self) -> Iterator[Mistake]:
         """Coefficients and ranges without a graph of finite slope."""
@@ -265,8 +250,8 @@ class SplineContact(RigidContact):
     @property
     def curve(self) -> Spline:
         """The edge as a curve."""
-        ends = {"start_direction": self.start_direction, "end_direction": self.end_direction}
-        return Spline(kind="spline", points=self.points, **ends)
+        start, end = self.start_direction, self.end_direction
+        return Spline.model_construct(kind="spline", points=self.points, start_direction=start, end_direction=end)
 
     def shape_rules(self) -> Iterator[Mistake]:
         """Mistakes of the spline."""
@@ -292,8 +277,8 @@ class EllipseContact(RigidContact):
         turn, c, s = np.linspace(0.0, 2.0 * np.pi, 513), cos(self.angle), sin(self.angle)
         x, y = self.semi_axes[0] * np.cos(turn), self.semi_axes[1] * np.sin(turn)
         places = np.array(self.center) + np.column_stack((x * c - y * s, x * s + y * c))
-        points = tuple((x, y) for x, y in places.tolist())
-        return Spline(kind="spline", points=points, start_direction=(-s, c), end_direction=(-s, c))
+        points, end = tuple((x, y) for x, y in places.tolist()), (-s, c)
+        return Spline.model_construct(kind="spline", points=points, start_direction=end, end_direction=end)
 
 
 def measures(contact: RigidContact) -> tuple[tuple[Point, ...], list[tuple[str, float]]]:

@@ -171,12 +171,14 @@ def with_half_waves(curve: NeutralLine, amplitude: float, half_waves: int) -> Sp
     shape, u = shape_of(curve), np.linspace(0.0, 1.0, OF_HALF_WAVE * max(half_waves, 2) + 1)
     tangent = shape.tangent(u)
     normal = np.column_stack((-tangent[:, 1], tangent[:, 0]))
-    points = shape.point(u) + amplitude * np.sin(half_waves * np.pi * u)[:, None] * normal
+    offset = shape.point(u) + amplitude * np.sin(half_waves * np.pi * u)[:, None] * normal
     # with the curvature κ to the left the derivative of the offset curve is (1 - κw) t + w' n; w vanishes at the ends
     slope = amplitude * half_waves * np.pi / shape.length * np.array([1.0, (-1.0) ** half_waves])
     ends = tangent[[0, -1]] + slope[:, None] * normal[[0, -1]]
-    start, *inner, end = ((x, y) for x, y in (*ends[:1].tolist(), *points[1:-1].tolist(), *ends[1:].tolist()))
-    return Spline(kind="spline", points=(curve.start, *inner, curve.end), start_direction=start, end_direction=end)
+    inner = ((x, y) for x, y in offset[1:-1].tolist())
+    start, end = ((x, y) for x, y in ends.tolist())
+    points = (curve.start, *inner, curve.end)
+    return Spline.model_construct(kind="spline", points=points, start_direction=start, end_direction=end)
 
 
 def _curve_rules(curve: NeutralLine) -> Iterator[Mistake]:

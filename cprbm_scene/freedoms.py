@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from cprbm_scene.curve_records import MEETING
 from cprbm_scene.curves import unit_vector
 from cprbm_scene.mistakes import Mistake, first_broken, written_place
-from cprbm_scene.names import connected, unknown_names
+from cprbm_scene.names import connected
 from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,
@@ -154,17 +154,15 @@ _HELD = {"pins": "bodies", "drives": "a motion", "bodies": "a motion"}
 def wrong_mobility(scene: Scene) -> Iterator[Mistake]:
     """Pins between unsuitable points, missing supports, motions with two holders, loose bodies.
 
-    Checks of the whole mechanism need known points, guides and directions.
+    Only a whole mechanism has supports and motions.
     """
     yield from _pins(scene)
-    unknown = {mistake.key for mistake in unknown_names(scene)}
-    acting = [*scene.bodies.values(), *scene.drives.values()]
-    sound = not any(key.startswith(("drives", "pins")) or key.endswith(".point") for key in unknown)
-    sound = sound and not any(mistake for record in acting for mistake in record.rules())
-    freedoms = Freedoms(scene) if sound else None
+    if not scene.whole():
+        return
+    freedoms = Freedoms(scene)
     loose = list(unsupported(scene, freedoms))
     yield from (mistake for mistake, names in loose if not _acted_on(scene, names))
-    if freedoms is None or any(len({*map(scene.body_of, pin.points)}) == 1 for pin in scene.pins.values()):
+    if any(len({*map(scene.body_of, pin.points)}) == 1 for pin in scene.pins.values()):
         return
     if scene.pins:
         keys, rows = zip(*freedoms.constraints(scene.drives), strict=True)
@@ -182,8 +180,7 @@ def _pins(scene: Scene) -> Iterator[Mistake]:
     owners = scene.owners
     places = {point: scene.bodies[name].points[point] for point, name in owners.items()}
     extent = float(np.ptp(list(places.values()), axis=0).max()) if places else 0.0
-    known = {name: pin.points for name, pin in scene.pins.items() if owners.keys() >= set(pin.points)}
-    for key, (p, q) in ((f"pins.{name}.points", points) for name, points in known.items()):
+    for key, (p, q) in ((f"pins.{name}.points", pin.points) for name, pin in scene.pins.items()):
         one, other, apart = owners[p], owners[q], dist(places[p], places[q])
         yield from first_broken(
             one == other
@@ -199,10 +196,10 @@ def _pins(scene: Scene) -> Iterator[Mistake]:
         )
 
 
-def unsupported(scene: Scene, freedoms: Freedoms | None) -> Iterator[tuple[Mistake, set[str]]]:
+def unsupported(scene: Scene, freedoms: Freedoms) -> Iterator[tuple[Mistake, set[str]]]:
     """Scenes without ground or drives, beams without supports, bodies without a way to a support.
 
-    Beside each mistake stand the names of the bodies and beams that move together; without ``freedoms`` of beams only.
+    Beside each mistake stand the names of the bodies and beams that move together.
     """
     drives = [drive for drive in scene.drives.values() if scene.holds(drive, scene.stages[0].name)]
     if all(body.motion == "free" for body in scene.bodies.values()) and not drives:
@@ -225,8 +222,6 @@ def unsupported(scene: Scene, freedoms: Freedoms | None) -> Iterator[tuple[Mista
             ),
         )
         yield from ((mistake, {name}) for mistake in mistakes)
-    if freedoms is None:
-        return
     met = {name: {freedoms.owners[str(end.point)] for end in ends} for name, ends in joints.items()}
     met |= {name: {freedoms.owners[point] for point in pin.points} for name, pin in scene.pins.items()}
     for name, body in scene.bodies.items():
@@ -279,21 +274,20 @@ def _in_words(freedoms: Freedoms, motion: Row) -> str:
 
 def wrong_actions(scene: Scene) -> Iterator[Mistake]:
     """Loads and drives of fixed bodies or across guides, and motions with two drives or with a drive and a load."""
-    if not any(body.points for body in scene.bodies.values()):
+    if not scene.bodies:
         return
     freedoms, driven = Freedoms(scene), defaultdict[str, list[str]](list)
     drives = {f"drives.{name}": drive for name, drive in scene.drives.items()}
     loads = {f"loads.{name}": load for name, load in scene.loads.items() if isinstance(load, BodyLoad)}
     for key, acting in (drives | loads).items():
-        owner = acting.body if isinstance(acting, Moment | RotationDrive) else freedoms.owners.get(acting.point, "")
-        if owner in scene.bodies:
-            mistakes = list(_without_motion(freedoms, key, acting, driven[owner]))
-            yield from mistakes
-            if key in drives and not mistakes:
-                driven[owner].append(key.removeprefix("drives."))
+        owner = freedoms.owner(acting)
+        mistakes = list(_without_motion(freedoms, key, acting, driven[owner]))
+        yield from mistakes
+        if key in drives and not mistakes:
+            driven[owner].append(key.removeprefix("drives."))
     fixed = {point for body in scene.bodies.values() if body.motion == "fixed" for point in body.points}
     for name, load in scene.loads.items():
-        if isinstance(load, BeamForce | BeamMoment) and load.beam in scene.beams and load.at in (0.0, 1.0):
+        if isinstance(load, BeamForce | BeamMoment) and load.at in (0.0, 1.0):
             end = scene.beams[load.beam].start if load.at == 0.0 else scene.beams[load.beam].end
             found = f"{load.at:g}, an end of {load.beam!r} that is held at {end.point!r}, a point of a fixed body"
             turns = isinstance(load, BeamMoment) and isinstance(end, PinnedEnd)
@@ -314,7 +308,7 @@ def _without_motion(freedoms: Freedoms, key: str, acting: BodyLoad | Drive, driv
         place, of = ("body", "") if turns else ("point", f" {getattr(acting, 'point', '')!r}, a point of")
         allowed = f"a {place} that can move: {', '.join(map(repr, names)) or 'there is none'}"
         return iter((Mistake(f"{key}.{place}", f"{_ACTING[acting.kind]}{of} the fixed body {owner!r}", allowed),))
-    row, guide = freedoms.row(acting), [] if any(body.rules()) else freedoms.guide(owner)
+    row, guide = freedoms.row(acting), freedoms.guide(owner)
     drives = {name: scene.drives[name] for name in driven if not load or scene.drives[name].begins is None}
     opposed = [name for name, drive in drives.items() if _opposed(freedoms, acting, drive)]
     across = not independent([*guide, row])[-1]

@@ -39,7 +39,7 @@ class Mistake:
 
     Attributes:
         key: the key path in the file, such as ``beams.beam1.thickness``; empty for the file as a whole.
-        found: the value found.
+        found: the value found; empty for the consequence of another mistake.
         allowed: the values allowed.
         file: the name of the file; empty for a scene built in Python.
     """
@@ -80,6 +80,11 @@ def first_of(found: Iterable[Mistake], file: str = "") -> list[Mistake]:
     """The first :data:`MOST` mistakes, and a note if there are more."""
     some = list(islice(found, MOST + 1))
     return some if len(some) <= MOST else [*some[:MOST], Mistake("", "more mistakes", "none; mend these first", file)]
+
+
+def mistakes_of(error: ValidationError) -> list[Mistake]:
+    """The mistakes of a record with rules, from pydantic's error."""
+    return [mistake for details in error.errors() for mistake in details["ctx"]["error"].mistakes]
 
 
 def hint(word: str, known: Iterable[str]) -> str:
@@ -142,12 +147,12 @@ _ALLOWED = {
 def in_words(error: ValidationError, data: object, fields: Mapping[str, FieldInfo]) -> Iterator[Mistake]:
     """Mistakes of a record with ``fields``, read from ``data``, with keys below the record's own.
 
-    Items with mistakes of their own, and parameters with mistakes, need no further mistake.
+    Items with mistakes of their own need no further mistake.
     """
     for details in error.errors():
         kind, given, context = details["type"], details.get("input"), details.get("ctx", {})
         short = kind == "too_short" and isinstance(given, tuple) and len(given) >= context["min_length"]
-        if not short and kind != "repeats":
+        if not short:
             key = _key(details["loc"], data, own=kind in ("missing", "extra_forbidden"))
             inner = context.get("error")
             own = inner.mistakes if isinstance(inner, SceneError) else [_mistake(details, fields)]

@@ -95,8 +95,6 @@ class OffsetQuestion(Record):
                 for i, claim in enumerate(self.claims)
             ),
         )
-        if any(self.curve.rules()):
-            return
         u, shape = np.linspace(0.0, 1.0, SAMPLES), shape_of(self.curve)
         p, tangents = shape.point(u), shape.tangent(u)
         across = tangents[:, 0 if self.axis == "y" else 1]

@@ -12,6 +12,7 @@ import math
 import operator
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import Annotated, NamedTuple, get_args
 
@@ -19,7 +20,7 @@ from pydantic import Field, ValidationInfo, ValidatorFunctionWrapHandler, WithJs
 
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import SceneError, unknown_name
-from cprbm_scene.units import ANGLE, NUMBER, OR_EXPRESSION, SIZES, Reading, Record, Unit, Units, mistake
+from cprbm_scene.units import ANGLE, NUMBER, OR_EXPRESSION, SIZES, Reading, Record, Unit, Units, mistake, silent
 
 LONGEST = 300
 """Largest number of characters of an expression: the evaluation of a longer expression could exhaust the stack."""
@@ -203,13 +204,19 @@ def register(reading: Reading, parameters: Mapping[str, Parameter]) -> Mapping[s
     """The parameters in SI with the reading's settings; the reading evaluates expressions from now on.
 
     Raises:
-        SceneError: an unknown name or unit, a cycle, or a value out of range.
+        SceneError: unknown names or units, cycles, or values out of range.
     """
-    for name in reading.settings:
-        if name not in parameters:
-            raise SceneError([unknown_name(name, name, "parameter", parameters)])
     resolved = _Resolved(reading, parameters)
-    found = {name: resolved.in_si(name) for name in parameters}
+    unknown = [name for name in reading.settings if name not in parameters and not resolved.left_out(name)]
+    mistakes = [unknown_name(name, name, "parameter", parameters) for name in unknown]
+    found = {}
+    for name in parameters:
+        try:
+            found[name] = resolved.in_si(name)
+        except SceneError as error:
+            mistakes += [replace(each, key=each.key or name) for each in error.mistakes]
+    if mistakes:
+        raise SceneError(mistakes)
     reading.evaluate = resolved.evaluate
     return frozendict(found)
 
@@ -219,7 +226,12 @@ class _Resolved:
 
     def __init__(self, reading: Reading, parameters: Mapping[str, Parameter]) -> None:
         self._reading, self._parameters = reading, parameters
-        self._values: dict[str, Value | None] = {}  # None during the evaluation
+        self._values: dict[str, Value | None] = {}  # None during the evaluation, and without a value
+        self._open: list[str] = []
+
+    def left_out(self, name: str) -> bool:
+        """True if the file states a parameter of this name, with a mistake."""
+        return not {"parameters", f"parameters.{name}"}.isdisjoint(self._reading.left_out)
 
     def evaluate(self, text: str, unit: Unit | None, key: str = "") -> float:
         """Number of an expression in SI, for a key with a ``unit``; None without a check of the unit."""
@@ -256,16 +268,17 @@ class _Resolved:
         return Parameter(value=number, unit=str(own if given.unit else unit or NUMBER), range=span, tolerance=scatter)
 
     def _named(self, name: str) -> Value:
-        if name not in self._parameters:
+        if name not in self._parameters and not self.left_out(name):
             raise ExpressionError(unknown_name("", name, "parameter", self._parameters).found)
-        if name not in self._values:
+        _refuse(name in self._open, f"a cycle: {' -> '.join((*self._open, name))}")
+        if name in self._parameters and name not in self._values:
             self._values[name] = None
-            self._values[name] = self._computed(name, self._parameters[name])
-        value = self._values[name]
-        if value is not None:
-            return value
-        cycle = [*(each for each, value in self._values.items() if value is None), name]
-        raise ExpressionError(f"a cycle: {' -> '.join(cycle)}")
+            self._open.append(name)
+            try:
+                self._values[name] = self._computed(name, self._parameters[name])
+            finally:
+                self._open.pop()
+        return self._values.get(name) or silent()
 
     def _computed(self, name: str, given: Parameter) -> Value:
         setting = self._reading.settings.get(name)

@@ -177,12 +177,6 @@ class Probe(Record):
         """The probe's name in tables and JSON."""
         return f"{self.of}.{self.quantity}"
 
-    def rules(self) -> Iterator[Mistake]:
-        """Places of quantities other than stress."""
-        wrong = "points" in self.model_fields_set and self.quantity not in STRESSES
-        allowed = "points for 'bending_stress' and 'combined_stress' only"
-        return broken(wrong and Mistake("points", f"places along {self.name!r}", allowed))
-
 
 class Claim(Record):
     """Statement of a publication on a probe: the relative difference stays below ``bound``.

@@ -9,12 +9,12 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
-from itertools import product
+from itertools import chain, product
 from typing import Annotated, Literal, TypeVar
 
-from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
 from cprbm_scene.beam_records import (
     Beam,
@@ -133,16 +133,24 @@ __all__ = [
 ]
 
 Curve = NeutralLine
+MECHANISM = frozenset(
+    ("beams", "bodies", "points", "loads", "drives", "contacts", "stops", "pins", "assembly", "stages", "units")
+)
+"""Tables of a file that decide how the mechanism moves."""
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Units of a scene's file, set parameters, and a reading with other parameters: no part of the question."""
+    """Units of a scene's file, set parameters, and a reading with other parameters: no part of the question.
+
+    ``left_out`` are keys of parts with mistakes that a scene lacks while the reader checks the other parts.
+    """
 
     units: Units = field(default=Units(), compare=False)
     settings: Mapping[str, float | str] = field(default_factory=dict, compare=False)
     again: Callable[..., Scene] | None = field(default=None, compare=False)
+    left_out: frozenset[str] = field(default=frozenset(), compare=False)
 
 
 class Scene(Record):
@@ -226,9 +234,8 @@ class Scene(Record):
                 reading.stepped.update({name: each.unit for name, each in acting.items()})
         return value
 
-    @model_validator(mode="after")
-    def _completed(self) -> Scene:
-        """The scene with a free body for each named free end, and with a point for each fixed body without points."""
+    def completed(self) -> Mapping[str, object]:
+        """Beams and bodies with a free body for each named free end, and a point of each fixed body without points."""
         beams, bodies = dict(self.beams), dict(self.bodies)
         for name, side in product(self.beams, ("start", "end")):
             end, place = getattr(beams[name], side), getattr(beams[name].curve, side)
@@ -239,10 +246,10 @@ class Scene(Record):
         for name, each in self.bodies.items():
             if not each.points:
                 edges = (e for e in self.contacts.values() if isinstance(e, RigidContact) and e.body == name)
-                place = next((measures(edge)[0][0] for edge in edges), next(iter(beams.values())).curve.start)
+                curves = (beam.curve.start for beam in beams.values())
+                place = next(chain((measures(edge)[0][0] for edge in edges), curves), (0.0, 0.0))
                 bodies[name] = FixedBody(motion="fixed", points=frozendict({f"{name}-point": place}))
-        self.__dict__.update(beams=frozendict(beams), bodies=frozendict(bodies))
-        return self
+        return {"beams": frozendict(beams), "bodies": frozendict(bodies)}
 
     def with_parameters(self, **values: float) -> Scene:
         """The scene with other values of its parameters, checked as a file is checked.
@@ -276,6 +283,19 @@ class Scene(Record):
     def display_units(self) -> Units:
         """Units of the scene's file, for tables and figures; ``model_fields_set`` lists the stated ones."""
         return self._origin.units
+
+    def left_out(self, *tables: str) -> list[str]:
+        """Names of the parts of ``tables`` with mistakes that the reader left out."""
+        keys = (key.partition(".") for key in sorted(self._origin.left_out))
+        return [name for table, _, name in keys if table in tables]
+
+    def lacks(self, name: str, *tables: str) -> bool:
+        """True if the reader left out a part of this name, or parts of unknown names, of the ``tables``."""
+        return not {name, ""}.isdisjoint(self.left_out(*tables))
+
+    def whole(self, tables: Collection[str] = MECHANISM) -> bool:
+        """False if the reader left out parts of the ``tables``."""
+        return not any(key.partition(".")[0] in tables for key in self._origin.left_out)
 
     def limit(self, probe: Probe) -> float:
         """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""
