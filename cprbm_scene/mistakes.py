@@ -131,7 +131,7 @@ _ALLOWED = {
     "model_type": "a table",
     "model_attributes_type": "a table",
     "string_unicode": "a text in quotes",
-    "string_pattern_mismatch": "a name of letters, digits, '_' and '-' that starts with a letter or '_'",
+    "string_pattern_mismatch": "a name of letters, digits, '_', '-' and single spaces inside, first a letter or '_'",
     "greater_than": "a number greater than {gt:g}",
     "greater_than_equal": "a number of at least {ge:g}",
     "less_than": "a number less than {lt:g}",
@@ -172,6 +172,8 @@ def _mistake(details: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Mistake:
             return unknown_name("", str(loc[-1]), "key here", (name for name in fields if name != "file"))
         case "string_pattern_mismatch" if "x00" in context["pattern"]:
             allowed = "a text without control characters"
+        case "string_pattern_mismatch" if " " not in context["pattern"]:
+            allowed = "a name of letters, digits, '_' and '-' that starts with a letter or '_'"
         case "missing":
             found = "nothing"
             allowed = "an item here" if isinstance(loc[-1], int) else "a value: this key is required"

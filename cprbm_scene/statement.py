@@ -69,7 +69,7 @@ from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.parameters import Parameter, Tolerance, register
 from cprbm_scene.question_records import CRITICAL, STRESSES, UNITS, Claim, Probe, Quantity, Stage
-from cprbm_scene.units import Name, Named, Of, Point, PositiveShare, Reading, Record, Text, Title, Units
+from cprbm_scene.units import Name, Named, NamedByWords, Of, Point, PositiveShare, Reading, Record, Text, Title, Units
 
 __all__ = [
     "CRITICAL",
@@ -170,7 +170,7 @@ class Scene(Record):
     """Units of the numbers in the file."""
     theory: Literal["bending", "stretch", "shear"] = "shear"
     """Beam theory of the CPRBM and the finite elements: bending alone, with stretch, or with stretch and shear."""
-    parameters: Named[Parameter] = Field(default_factory=frozendict)
+    parameters: NamedByWords[Parameter] = Field(default_factory=frozendict)
     """Named numbers for expressions."""
     materials: Named[Material]
     """Materials by name."""

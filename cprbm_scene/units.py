@@ -50,8 +50,10 @@ from cprbm_scene.mistakes import Mistake, SceneError, in_words
 T = TypeVar("T")
 
 _LETTERS = "A-Za-z_À-ÖØ-öø-ɏΑ-Ωα-ω"
-Name = Annotated[str, StringConstraints(pattern=f"^[{_LETTERS}][{_LETTERS}0-9-]*$", max_length=64)]
-"""Latin and Greek letters, digits, '_' and '-': names are parts of file names, of HTML identifiers and of options."""
+Word = Annotated[str, StringConstraints(pattern=f"^[{_LETTERS}][{_LETTERS}0-9-]*$", max_length=64)]
+"""Latin and Greek letters, digits, '_' and '-': the name of a parameter in an expression."""
+Name = Annotated[str, StringConstraints(pattern=f"^[{_LETTERS}][{_LETTERS}0-9-]*( [{_LETTERS}0-9-]+)*$", max_length=64)]
+"""Words with a single space between them: names are parts of keys, of file names and of options."""
 Text = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x08\x0b-\x1f\x7f-\x9f]*$")]
 """Text without control characters, but for tabs and line ends."""
 Title = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
@@ -59,6 +61,7 @@ Title = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 
 
 Named = Annotated[Mapping[Name, T], AfterValidator(frozendict)]
+NamedByWords = Annotated[Mapping[Word, T], AfterValidator(frozendict)]
 
 
 @dataclass(frozen=True, slots=True)
