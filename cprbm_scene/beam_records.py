@@ -199,34 +199,33 @@ class Beam(Record):
     def rules(self) -> Iterator[Mistake]:
         """Thickness out of proportion to the length or the curvature."""
         length = shape_of(self.curve).length
-        sizes = ((size, size / length) for size in (self.thinnest, self.thickest))
         return first_broken(
             *(
-                not THINNEST <= share <= THICKEST
+                not THINNEST <= size / length <= THICKEST
                 and Mistake(
                     "thickness",
-                    f"{size:g} m, which is {share:.3g} of the beam's length{mix_up(share)}",
+                    f"{size:g} m, which is {size / length:.3g} of the beam's length{mix_up(size / length)}",
                     f"a thickness between {THINNEST:g} and {THICKEST:g} of the beam's length",
                 )
-                for size, share in sizes
+                for size in (self.thinnest, self.thickest)
             ),
             _too_curved(self),
         )
 
 
-def _too_curved(beam: Beam) -> Mistake | None:
-    """The mistake of a thickness beside the radius of curvature."""
+def _too_curved(beam: Beam) -> Mistake | bool:
+    """The mistake of a thickness beside the radius of curvature; a bound on the largest curvature comes first."""
     shape = shape_of(beam.curve)
-    share = 0.5 * beam.thickest * shape.largest_curvature
-    if share < MOST_CURVED:
-        return None
     u = np.union1d(np.linspace(0.0, 1.0, SAMPLES), beam.knots)
-    shares = 0.5 * beam.thickness_at(u) * shape.curvature(u)
-    worst, share = u[[shares.argmax()]], float(shares.max()) if beam.tapered else share
-    found = f"{float(beam.thickness_at(worst)[0]):g} m, half of which is {share:.3g} of the radius of curvature at "
-    found += f"{float(worst[0]):.3g} of the length, near {written_place(shape.point(worst)[0])} m{mix_up(share)}"
-    allowed = f"half a thickness less than {MOST_CURVED:g} of the radius of curvature"
-    return Mistake("thickness", found, allowed) if share >= MOST_CURVED else None
+    bound = 0.5 * beam.thickest * shape.largest_curvature
+    shares = 0.5 * beam.thickness_at(u) * shape.curvature(u) if bound >= MOST_CURVED else np.zeros(1)
+    worst, share = u[[shares.argmax()]], float(shares.max()) if beam.tapered else bound
+    return share >= MOST_CURVED and Mistake(
+        "thickness",
+        f"{float(beam.thickness_at(worst)[0]):g} m, half of which is {share:.3g} of the radius of curvature at "
+        f"{float(worst[0]):.3g} of the length, near {written_place(shape.point(worst)[0])} m{mix_up(share)}",
+        f"half a thickness less than {MOST_CURVED:g} of the radius of curvature",
+    )
 
 
 def mix_up(share: float) -> str:

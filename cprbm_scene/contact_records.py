@@ -42,9 +42,9 @@ class Related(Record):
     def rules(self) -> Iterator[Mistake]:
         """Ranges of both coordinates or of none, and descending ranges."""
         ranges = {axis: span for axis, span in (("x", self.x), ("y", self.y)) if span is not None}
-        found = "both x and y" if ranges else "neither x nor y"
         return broken(
-            len(ranges) != 1 and Mistake("", found, "a range in exactly one of x and y"),
+            len(ranges) != 1
+            and Mistake("", "both x and y" if ranges else "neither x nor y", "a range in exactly one of x and y"),
             *(
                 low >= high and Mistake(axis, str([low, high]), "a range from the smaller to the larger value")
                 for axis, (low, high) in ranges.items()
@@ -89,9 +89,14 @@ class BeamContact(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """A pair of the same beam twice."""
-        one, other = self.between
-        different = "two different beams; a beam may touch itself in a contact of kind 'beam-self'"
-        return broken(one == other and Mistake("between", f"{one!r} twice", different))
+        return broken(
+            len(set(self.between)) == 1
+            and Mistake(
+                "between",
+                f"{self.between[0]!r} twice",
+                "two different beams; a beam may touch itself in a contact of kind 'beam-self'",
+            )
+        )
 
 
 class _OneBeam(Record):
@@ -122,14 +127,6 @@ class RigidContact(_OneBeam):
     """Body of the rigid shape."""
     paper: PaperRigid | None = None
     """Data for the formulation ``paper``."""
-
-    def rules(self) -> Iterator[Mistake]:
-        """Shapes without geometry."""
-        return islice(self.shape_rules(), 1)
-
-    def shape_rules(self) -> Iterator[Mistake]:
-        """Mistakes of the shape, only the first of them valid; none by default."""
-        return iter(())
 
 
 class CircleContact(RigidContact):
@@ -162,8 +159,11 @@ class LineContact(RigidContact):
         """True if the last point is the first."""
         return len(self.points) > 2 and self.points[0] == self.points[-1]
 
-    def shape_rules(self) -> Iterator[Mistake]:
-        """Too many points, repeated points, lines with reversals or crossings."""
+    def rules(self) -> Iterator[Mistake]:
+        """The first mistake: too many points, repeated points, lines with reversals or crossings."""
+        return islice(self._mistakes(), 1)
+
+    def _mistakes(self) -> Iterator[Mistake]:
         pieces = list(pairwise(self.points))
         yield from broken(
             len(self.points) > MOST_POINTS
@@ -175,15 +175,25 @@ class LineContact(RigidContact):
         )
         tau = [unit_vector((b[0] - a[0], b[1] - a[1])) for a, b in pieces]
         corners = enumerate(pairwise([*tau, tau[0]] if self.closed else tau), start=1)
-        back = "a point at which the line turns back on itself"
         yield from broken(
-            *(1.0 + a @ b < BACKWARDS and Mistake(f"points[{i}]", back, "a line that goes on") for i, (a, b) in corners)
+            *(
+                1.0 + a @ b < BACKWARDS
+                and Mistake(f"points[{i}]", "a point at which the line turns back on itself", "a line that goes on")
+                for i, (a, b) in corners
+            )
         )
         for (i, first), (j, second) in combinations(enumerate(pieces), 2):
             neighbours = j - i in ((1, len(pieces) - 1) if self.closed else (1,))
-            if not neighbours and _crosses(first, second) and _crosses(second, first):
-                found = f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}"
-                yield Mistake("points", found, "a line that does not meet itself")
+            yield from broken(
+                not neighbours
+                and _crosses(first, second)
+                and _crosses(second, first)
+                and Mistake(
+                    "points",
+                    f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}",
+                    "a line that does not meet itself",
+                )
+            )
 
 
 def _crosses(piece: tuple[Point, Point], other: tuple[Point, Point]) -> bool:
@@ -226,9 +236,9 @@ class FunctionContact(RigidContact):
             kind="polynomial", axis=self.axis, coefficients=self.coefficients, range=self.range
         )
 
-    def shape_rules(self) -> Iterator[Mistake]:
+    def rules(self) -> Iterator[Mistake]:
         """Coefficients and ranges without a graph of finite slope."""
-        return graph_rules(self.curve)
+        return islice(graph_rules(self.curve), 1)
 
 
 class SplineContact(RigidContact):
@@ -250,10 +260,14 @@ class SplineContact(RigidContact):
     @property
     def curve(self) -> Spline:
         """The edge as a curve."""
-        start, end = self.start_direction, self.end_direction
-        return Spline.model_construct(kind="spline", points=self.points, start_direction=start, end_direction=end)
+        return Spline.model_construct(
+            kind="spline",
+            points=self.points,
+            start_direction=self.start_direction,
+            end_direction=self.end_direction,
+        )
 
-    def shape_rules(self) -> Iterator[Mistake]:
+    def rules(self) -> Iterator[Mistake]:
         """Mistakes of the spline."""
         return self.curve.rules()
 
@@ -291,8 +305,9 @@ def measures(contact: RigidContact) -> tuple[tuple[Point, ...], list[tuple[str, 
         case LineContact(points=points):
             return points, [(f"points[{i}]", dist(*ends)) for i, ends in enumerate(pairwise(points), start=1)]
         case FunctionContact(curve=curve) | SplineContact(curve=curve):
-            part = "range" if isinstance(contact, FunctionContact) else "points"
-            return (curve.start, curve.end), [(part, shape_of(curve).length)]
+            return (curve.start, curve.end), [
+                ("range" if isinstance(contact, FunctionContact) else "points", shape_of(curve).length)
+            ]
         case HalfPlaneContact(point=point):
             return (point,), []
     raise TypeError(type(contact))
