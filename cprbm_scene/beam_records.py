@@ -20,7 +20,7 @@ from pydantic import Discriminator, Field, Tag
 from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, shape_of, with_half_waves
 from cprbm_scene.curves import SAMPLES, Array
 from cprbm_scene.mistakes import Mistake, SceneError, first_broken, written_place
-from cprbm_scene.units import NUMBER, STRESS, Length, Measured, Name, Number, Of, PositiveLength, Record
+from cprbm_scene.units import NUMBER, STRESS, Length, Measured, Name, Number, Of, Point, PositiveLength, Record
 
 THINNEST, THICKEST = 1e-5, 0.2
 MOST_CURVED = 0.5
@@ -167,6 +167,11 @@ class Beam(Record):
         if spoiled := list(curve.rules()):
             raise SceneError([replace(each, key=f"curve.{each.key}".rstrip(".")) for each in spoiled])
         return {"curve": curve, "imperfection": None}
+
+    @property
+    def ends(self) -> tuple[tuple[str, BeamEnd, Point], tuple[str, BeamEnd, Point]]:
+        """Side, joint and initial place of the start and of the end."""
+        return ("start", self.start, self.curve.start), ("end", self.end, self.curve.end)
 
     def thickness_at(self, u: Array) -> Array:
         """Thickness at fractions ``u`` of the arc length, m, in the same shape."""

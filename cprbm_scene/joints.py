@@ -22,13 +22,18 @@ STRAIGHT = 1e-9
 def distant_ends(scene: Scene) -> Iterator[Mistake]:
     """Ends of beams away from their points, unless an assembly brings them together."""
     for name, beam in scene.beams.items():
-        for side in ("start", "end"):
-            apart, joint, at = _distance(scene, beam, side), getattr(beam, side), getattr(beam.curve, side)
-            assembled = side == "end" and (is_apart(scene, beam) or scene.lacks("", "assembly"))
-            if apart is not None and not assembled:
-                found = f"a beam end that meets no body: the curve's {side} is at {written_place(at)} m, the point "
-                found += f"{joint.point!r} at {written_place(scene.place_of(joint.point))} m, {apart:.3g} m apart"
-                yield Mistake(f"beams.{name}.{side}", found, f"at most {MEETING:g} of the beam's length between them")
+        for side, joint, place in beam.ends:
+            apart, point = _distance(scene, beam, side), str(joint.point)
+            yield from broken(
+                apart is not None
+                and not (side == "end" and (is_apart(scene, beam) or scene.lacks("", "assembly")))
+                and Mistake(
+                    f"beams.{name}.{side}",
+                    f"a beam end that meets no body: the curve's {side} is at {written_place(place)} m, the point "
+                    f"{point!r} at {written_place(scene.place_of(point))} m, {apart:.3g} m apart",
+                    f"at most {MEETING:g} of the beam's length between them",
+                )
+            )
 
 
 def is_apart(scene: Scene, beam: Beam) -> bool:
@@ -73,7 +78,6 @@ def wrong_assembly(scene: Scene) -> Iterator[Mistake]:
         beam = scene.beams[name]
         point, length = str(beam.end.point), shape_of(beam.curve).length
         reach = dist(beam.curve.start, scene.place_of(point))
-        stays = _stays(scene, beam.start.point) and _stays(scene, point)
         yield from broken(
             not isinstance(beam.start, WeldedEnd)
             and Mistake(
@@ -82,7 +86,8 @@ def wrong_assembly(scene: Scene) -> Iterator[Mistake]:
                 "a weld: the beam has to stand by itself before it is assembled",
             ),
             isinstance(beam.start, WeldedEnd)
-            and stays
+            and _stays(scene, beam.start.point)
+            and _stays(scene, point)
             and reach >= (1.0 - TAUT) * length
             and Mistake(
                 f"beams.{name}.end",
@@ -94,10 +99,9 @@ def wrong_assembly(scene: Scene) -> Iterator[Mistake]:
 
 def _stays(scene: Scene, point: str | None) -> bool:
     """True if a point is at rest without loads and with all drives at zero."""
-    name, turned = scene.owners.get(str(point)), {getattr(drive, "body", None) for drive in scene.drives.values()}
-    body = scene.bodies.get(str(name))
-    pivots = isinstance(body, TurningBody) and (body.about == point or name in turned)
-    return body is not None and (body.motion == "fixed" or pivots)
+    name = scene.body_of(str(point))
+    body, turned = scene.bodies[name], [getattr(drive, "body", None) for drive in scene.drives.values()]
+    return body.motion == "fixed" or (isinstance(body, TurningBody) and (body.about == point or name in turned))
 
 
 def wrong_stops(scene: Scene) -> Iterator[Mistake]:
@@ -105,10 +109,12 @@ def wrong_stops(scene: Scene) -> Iterator[Mistake]:
     taken, owners = dict[tuple[str, str], str](), scene.owners
     for name, stop in scene.stops.items():
         key, first = f"stops.{name}", taken.setdefault((stop.beam, stop.end), name)
-        again = f"the {stop.end} of {stop.beam!r}, which stops.{first} limits"
-        yield from broken(first != name and Mistake(key, again, "one stop for each end"))
         joint = getattr(scene.beams[stop.beam], stop.end)
         body, other = owners.get(joint.point), owners[stop.towards]
+        yield from broken(
+            first != name
+            and Mistake(key, f"the {stop.end} of {stop.beam!r}, which stops.{first} limits", "one stop for each end")
+        )
         mistakes = first_broken(
             not isinstance(joint, PinnedEnd)
             and Mistake(
@@ -133,10 +139,10 @@ def _exceeded_as_drawn(scene: Scene, key: str, stop: Stop) -> Iterator[Mistake]:
     beam = scene.beams[stop.beam]
     if stop.end == "end" and is_apart(scene, beam):
         return iter(())
-    u, sign = (0.0, 1.0) if stop.end == "start" else (1.0, -1.0)
-    tx, ty = sign * shape_of(beam.curve).tangent(np.array([u]))[0]
-    (px, py), (qx, qy) = scene.place_of(getattr(beam, stop.end).point), scene.place_of(stop.towards)
-    angle = (atan2(ty, tx) - atan2(qy - py, qx - px)) % tau
+    start, end = shape_of(beam.curve).tangent(np.array([0.0, 1.0]))
+    tangent = start if stop.end == "start" else -end
+    line = np.subtract(scene.place_of(stop.towards), scene.place_of(getattr(beam, stop.end).point))
+    angle = (atan2(*tangent[::-1]) - atan2(*line[::-1])) % tau
     angle -= tau if angle > pi + STRAIGHT else 0.0
     least, most = -inf if stop.least is None else stop.least, inf if stop.most is None else stop.most
     stands = f"rad, where the beam as drawn stands at {angle:.6g} rad ({degrees(angle):.4g} degrees)"

@@ -30,7 +30,6 @@ from cprbm_scene.statement import (
 )
 from cprbm_scene.units import Of, Record
 
-SIDES = ("start", "end")
 RESERVED = "scene"
 """Name of the scene itself in a probe."""
 
@@ -64,28 +63,33 @@ def repeated_names(scene: Scene) -> Iterator[Mistake]:
 
     A scene has a body for each named free end, unless the name of the body was taken.
     """
-    bodies = [(f"bodies.{name}", name) for name in scene.bodies]
-    points = [(f"bodies.{name}.points.{point}", point) for name, body in scene.bodies.items() for point in body.points]
-    others = [(f"{table}.{name}", name) for table in _TABLES for name in getattr(scene, table)]
-    named, first = (*bodies, *points, *others), dict[str, str]()
-    allowed = "names that are used once among points, bodies, beams, loads, drives, contacts, stops and pins"
-    free = [(f"beams.{name}.{side}", getattr(beam, side)) for name, beam in scene.beams.items() for side in SIDES]
+    named = [
+        *((f"bodies.{name}", name) for name in scene.bodies),
+        *((f"bodies.{name}.points.{point}", point) for name, body in scene.bodies.items() for point in body.points),
+        *((f"{table}.{name}", name) for table in _TABLES for name in getattr(scene, table)),
+    ]
+    first = {name: key for key, name in reversed(named)}
     return broken(
         *(
             isinstance(end, FreeEnd)
             and end.point is not None
             and Mistake(
-                f"{key}.point",
+                f"beams.{name}.{side}.point",
                 f"{end.point!r}, and another body with the name '{end.point}-body'",
                 "another name of the free end",
             )
-            for key, end in free
+            for name, beam in scene.beams.items()
+            for side, end, _ in beam.ends
         ),
         *(
             Mistake(key, f"the name {name!r}, which stands for the scene itself", "another name")
             if name == RESERVED
-            else first.setdefault(name, key) != key
-            and Mistake(key, f"the name {name!r}, which {first[name]} has too", allowed)
+            else first[name] != key
+            and Mistake(
+                key,
+                f"the name {name!r}, which {first[name]} has too",
+                "names that are used once among points, bodies, beams, loads, drives, contacts, stops and pins",
+            )
             for key, name in named
         ),
     )
@@ -102,8 +106,10 @@ def repeated_contacts(scene: Scene) -> Iterator[Mistake]:
             what, part = "beam and the shape", ""
             same = frozenset(value for value in contact if value[0] not in {"thick", "paper"})
         first = seen.setdefault(same, name)
-        if first != name:
-            yield Mistake(f"contacts.{name}{part}", f"the {what} of contacts.{first} again", f"each {what} once")
+        yield from broken(
+            first != name
+            and Mistake(f"contacts.{name}{part}", f"the {what} of contacts.{first} again", f"each {what} once")
+        )
 
 
 MECHANICAL = ("point", "body", "beam")
@@ -277,9 +283,15 @@ def wrong_stages(scene: Scene) -> Iterator[Mistake]:
 def wrong_spacings(scene: Scene) -> Iterator[Mistake]:
     """Elements of the formulation ``paper`` along an axis with reversals or without extent of the beam."""
     for name, beam in scene.beams.items():
-        if beam.paper is not None and not _runs_along(beam, "xy".index(beam.paper.uniform)):
-            found = f"{beam.paper.uniform!r}, along which the curve turns back or does not run"
-            yield Mistake(f"beams.{name}.paper.uniform", found, "an axis along which the curve runs one way")
+        yield from broken(
+            beam.paper is not None
+            and not _runs_along(beam, "xy".index(beam.paper.uniform))
+            and Mistake(
+                f"beams.{name}.paper.uniform",
+                f"{beam.paper.uniform!r}, along which the curve turns back or does not run",
+                "an axis along which the curve runs one way",
+            )
+        )
 
 
 def wrong_paper(scene: Scene) -> Iterator[Mistake]:
@@ -314,9 +326,9 @@ def _beside(ascending: Mapping[str, list[float]], value: float) -> Iterator[tupl
 def _bearers(scene: Scene) -> dict[str, list[str]]:
     """Names of the parts of the scene with a quantity, by the values of ``_OF``."""
     fixed = {point for body in scene.bodies.values() if body.motion == "fixed" for point in body.points}
-    ends = [end for beam in scene.beams.values() for end in (beam.start, beam.end)]
-    supports = [end.point for end in ends if not isinstance(end, FreeEnd) and end.point in fixed]
-    supports += [point for pin in scene.pins.values() for point in pin.points if point in fixed]
+    joined = [str(end.point) for beam in scene.beams.values() for _, end, _ in beam.ends]
+    joined += [point for pin in scene.pins.values() for point in pin.points]
+    supports = [point for point in joined if point in fixed]
     moved = [body.about for body in scene.bodies.values() if isinstance(body, TurningBody)]
     moved += [drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)]
     moved += [name for name, body in scene.bodies.items() if isinstance(body, SlidingBody)]
@@ -345,8 +357,8 @@ def connected(names: set[str], groups: Collection[set[str]]) -> set[str]:
 
 def _pinned(scene: Scene, contact: EdgeContact) -> bool:
     """True if pins at the same point join the beam and the edge's body; fixed bodies count as the same body."""
-    beam, own = scene.beams.get(contact.beam), scene.bodies.get(contact.body)
-    ends = {end.point for end in (beam.start, beam.end) if isinstance(end, PinnedEnd)} if beam else set[str]()
-    together = connected(ends, [set(pin.points) for pin in scene.pins.values()])
-    fixed = [body for body in scene.bodies.values() if body.motion == "fixed"]
-    return any(together & set(body.points) for body in (fixed if own in fixed else [own]) if body is not None)
+    own = scene.bodies[contact.body]
+    pinned = {end.point for _, end, _ in scene.beams[contact.beam].ends if isinstance(end, PinnedEnd)}
+    together = connected(pinned, [set(pin.points) for pin in scene.pins.values()])
+    bodies = [body for body in scene.bodies.values() if body == own or body.motion == own.motion == "fixed"]
+    return any(together & set(body.points) for body in bodies)

@@ -81,8 +81,7 @@ def _of_stations(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
     stage = claim.get("stage")
     units = {unit for name, unit in reading.stages.items() if stage in (None, name)}
     if len(units) > 1 and reading.units != Units():
-        found = "a number in the unit of several stages, which step different kinds"
-        raise mistake(found, "a stage beside it")
+        raise mistake("a number in the unit of several stages, which step different kinds", "a stage beside it")
     return next(iter(units), None)
 
 
@@ -138,12 +137,18 @@ class Stage(Record):
         stations, together = self.stations, self.together
         ascending = sorted(range(len(stations)), key=stations.__getitem__)
         again = {max(i, j) for i, j in pairwise(ascending) if isclose(stations[i], stations[j], rel_tol=1e-9)}
-        allowed = "each value once in a stage; a further stage may go back to it"
-        different = together[:1] in ((), (self.steps,)) and len(set(together)) == len(together)
         known = set(stations)
         return broken(
-            *(Mistake(f"stations[{j}]", f"{stations[j]:g} again", allowed) for j in sorted(again)),
-            not different and Mistake("steps", f"{list(together)}", "different loads, each once"),
+            *(
+                Mistake(
+                    f"stations[{j}]",
+                    f"{stations[j]:g} again",
+                    "each value once in a stage; a further stage may go back to it",
+                )
+                for j in sorted(again)
+            ),
+            not (together[:1] in ((), (self.steps,)) and len(set(together)) == len(together))
+            and Mistake("steps", f"{list(together)}", "different loads, each once"),
             *(
                 value not in known and Mistake(f"shown[{j}]", f"{value:g}", "one of the stage's stations")
                 for j, value in enumerate(self.shown)

@@ -98,8 +98,12 @@ def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) 
     """
     question = read_question(path, parameters)
     if isinstance(question, OffsetQuestion):
-        allowed = "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it"
-        raise SceneError([Mistake("question", repr(question.question), allowed, question.file)])
+        raise _refused(
+            path,
+            repr(question.question),
+            "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it",
+            "question",
+        )
     return question
 
 
@@ -120,7 +124,7 @@ def read_question(path: str | Path, parameters: Mapping[str, float | str] | None
     if "question" not in data:
         return scene_from(data, file=str(path), parameters=parameters)
     if parameters:
-        raise SceneError([Mistake("parameters", f"values of {', '.join(parameters)}", "a scene of beams", str(path))])
+        raise _refused(path, f"values of {', '.join(parameters)}", "a scene of beams", "parameters")
     return offset_from(data, file=str(path))
 
 
@@ -151,8 +155,8 @@ def toml_data(path: str | Path) -> dict[str, Any]:
     raise _refused(path, f"a key of more than {DEEPEST} parts", "the keys of a scene")
 
 
-def _refused(path: str | Path, found: str, allowed: str) -> SceneError:
-    return SceneError([Mistake("", found, allowed, str(path))])
+def _refused(path: str | Path, found: str, allowed: str, key: str = "") -> SceneError:
+    return SceneError([Mistake(key, found, allowed, str(path))])
 
 
 def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str, float | str] | None = None) -> Scene:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
-from itertools import chain, product
+from itertools import chain
 from typing import Annotated, Literal, TypeVar
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
@@ -237,11 +237,9 @@ class Scene(Record):
     def completed(self) -> Mapping[str, object]:
         """Beams and bodies with a free body for each named free end, and a point of each fixed body without points."""
         beams, bodies = dict(self.beams), dict(self.bodies)
-        for name, side in product(self.beams, ("start", "end")):
-            end, place = getattr(beams[name], side), getattr(beams[name].curve, side)
-            body = f"{end.point}-body"
-            if isinstance(end, FreeEnd) and end.point is not None and body not in bodies:
-                bodies[body] = FreeBody(motion="free", points=frozendict({end.point: place}))
+        for name, (side, end, place) in ((name, end) for name, beam in self.beams.items() for end in beam.ends):
+            if isinstance(end, FreeEnd) and end.point is not None and f"{end.point}-body" not in bodies:
+                bodies[f"{end.point}-body"] = FreeBody(motion="free", points=frozendict({end.point: place}))
                 beams[name] = beams[name].model_copy(update={side: WeldedEnd(joint="weld", point=end.point)})
         for name, each in self.bodies.items():
             if not each.points:
