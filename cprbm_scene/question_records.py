@@ -73,13 +73,18 @@ CRITICAL = "critical"
 
 def _of_stage(reading: Reading, stage: Mapping[str, Any]) -> Unit | None:
     """Unit of a stage's stations: the unit of the stepped load or drive."""
-    return reading.stepped.get(stage.get("steps", ""))
+    return _unit_of_stepped(reading, stage.get("steps", ""))
+
+
+def _unit_of_stepped(reading: Reading, name: str) -> Unit | None:
+    loads, drives = (reading.parts.get(table, {}) for table in ("loads", "drives"))
+    return getattr(loads.get(name) or drives.get(name), "unit", None)
 
 
 def _of_stations(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
     """Unit of the stations of a claim's stages."""
-    stage = claim.get("stage")
-    units = {unit for name, unit in reading.stages.items() if stage in (None, name)}
+    stages = [each for each in reading.parts.get("stages", {}).values() if claim.get("stage") in (None, each.name)]
+    units = {_unit_of_stepped(reading, each.steps) for each in stages} - {None}
     if len(units) > 1 and reading.units != Units():
         raise mistake("a number in the unit of several stages, which step different kinds", "a stage beside it")
     return next(iter(units), None)
@@ -87,10 +92,10 @@ def _of_stations(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
 
 def _of_value(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
     """Unit of a claim's probe."""
-    probe = claim.get("probe")
-    if probe == CRITICAL or reading.probes.get(str(probe), LENGTH) is None:
-        return _of_stations(reading, claim)
-    return reading.probes.get(str(probe))
+    probe = reading.parts.get("probes", {}).get(str(claim.get("probe")))
+    unit = None if probe is None else UNITS.get(probe.quantity)
+    of_stage = claim.get("probe") == CRITICAL or (probe is not None and unit is None)
+    return _of_stations(reading, claim) if of_stage else unit
 
 
 Station = Annotated[float, Measured(_of_stage)]

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
@@ -68,7 +68,7 @@ from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.parameters import Parameter, Tolerance, register
-from cprbm_scene.question_records import CRITICAL, STRESSES, UNITS, Claim, Probe, Quantity, Stage
+from cprbm_scene.question_records import CRITICAL, STRESSES, Claim, Probe, Quantity, Stage
 from cprbm_scene.units import Name, Named, NamedByWords, Of, Point, PositiveShare, Reading, Record, Text, Title, Units
 
 __all__ = [
@@ -137,7 +137,6 @@ MECHANISM = frozenset(
     ("beams", "bodies", "points", "loads", "drives", "contacts", "stops", "pins", "assembly", "stages", "units")
 )
 """Tables of a file that decide how the mechanism moves."""
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,7 +213,7 @@ class Scene(Record):
 
     @field_validator("units", "parameters", "loads", "drives", "stages", "probes")
     @classmethod
-    def _register(cls, value: T, info: ValidationInfo) -> T | Units | Mapping[str, Parameter]:
+    def _register(cls, value: Any, info: ValidationInfo) -> object:  # noqa: ANN401 - of several fields
         """The value itself, with units stored for later fields; SI units in place of the file's units."""
         reading = info.context
         if not isinstance(reading, Reading):
@@ -225,13 +224,8 @@ class Scene(Record):
                 return Units()
             case "parameters", Mapping() as parameters:
                 return register(reading, parameters)
-            case "stages", tuple(stages):
-                known = ((stage.name, reading.stepped.get(stage.steps)) for stage in stages)
-                reading.stages.update({name: unit for name, unit in known if unit is not None})
-            case "probes", tuple(probes):
-                reading.probes.update({probe.name: UNITS.get(probe.quantity) for probe in probes})
-            case _, Mapping() as acting:
-                reading.stepped.update({name: each.unit for name, each in acting.items()})
+        parts = value if isinstance(value, Mapping) else {each.name: each for each in value}
+        reading.parts[str(info.field_name)] = parts
         return value
 
     def completed(self) -> Mapping[str, object]:

@@ -145,17 +145,16 @@ def silent(*_: object) -> NoReturn:
 
 @dataclass(slots=True)
 class Reading:
-    """State while a file is read: ``settings`` of parameters, the file's ``folder``, units read so far, parts left out.
+    """State while a file is read: ``settings`` of parameters, the file's ``folder``, its units, and parts read so far.
 
-    Expressions are silent mistakes until the parameters are read.
+    ``parts`` are loads, drives, stages and probes by the names of their fields and by their own names.  Expressions are
+    silent mistakes until the parameters are read.
     """
 
     settings: Mapping[str, float | str] = field(default_factory=dict)
     folder: Path = Path()
     units: Units = field(default_factory=Units)
-    stepped: dict[str, Unit] = field(default_factory=dict)
-    stages: dict[str, Unit] = field(default_factory=dict)
-    probes: dict[str, Unit | None] = field(default_factory=dict)
+    parts: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     left_out: Collection[str] = ()
     evaluate: Callable[[str, Unit | None], float] = silent
 
