@@ -12,8 +12,9 @@ from cprbm_scene.mistakes import Mistake
 from cprbm_scene.statement import Beam, Body, Material, Probe, Scene, Stage
 from cprbm_scene.units import Name, Named
 
-_PLACE = re.compile(r"([^.\[]*)\W?([^.\[\]]*)")
+_PART = re.compile(r"([^.\[]*)\W?([^.\[\]]*)")
 """Begin of a key: a table with the name of a part, or a list with the number of a part."""
+_NUMBER = re.compile(r"^(\w+)\[(\d+)")
 
 
 class PartialScene(Scene):
@@ -47,14 +48,12 @@ class Draft:
 
     def of_file(self, mistake: Mistake) -> Mistake:
         """A mistake of the present data, with the number in the file of a part of a list."""
-        table, part, rest = _split(mistake.key)
-        if table not in self._lists or not part:
-            return mistake
-        return replace(mistake, key=f"{table}[{list(self._parts[table])[int(part)]}{rest}")
+        key = _NUMBER.sub(lambda place: f"{place[1]}[{[*self._parts[place[1]]][int(place[2])]}", mistake.key)
+        return replace(mistake, key=key)
 
     def leave_out(self, key: str) -> None:
         """Leave out the part of the file with a mistake at a ``key``; a whole table if the part is unknown."""
-        table, part, _ = _split(key)
+        table, part = re.findall(_PART, key)[0]
         parts = self._parts.get(table)
         if isinstance(parts, dict) and part in parts:
             self._parts[table] = {name: value for name, value in parts.items() if name != part}
@@ -65,30 +64,22 @@ class Draft:
             self.left_out.update({table, *{"bodies": ["points"], "beams": ["points", "bodies"]}.get(table, [])})
 
 
-def _split(key: str) -> tuple[str, str, str]:
-    """Table or list of a key, the name or the number of the part, and the rest."""
-    begin = _PLACE.match(key)
-    return (begin[1], begin[2], key[begin.end() :]) if begin else ("", "", key)
-
-
 def _names(table: str, part: str, item: object) -> Iterator[str]:
     """Keys of the names that a part defines; the key of the table without readable names."""
     yield f"{table}.{part}"
     match table, item:
         case "bodies", {"points": dict() as points}:
             yield from (f"points.{point}" for point in points)
-        case "bodies", _:
-            yield "points"
         case "beams", dict():
-            for end in (item.get("start"), item.get("end")):
-                match end:
-                    case {"joint": "weld" | "pin"}:
-                        pass
-                    case {"point": str() as point}:
-                        yield from (f"points.{point}", f"bodies.{point}-body")
+            # an end with another joint may be a free end with a mistake
+            ends = [item.get(side) for side in ("start", "end")]
+            new = (
+                end.get("point") for end in ends if isinstance(end, dict) and end.get("joint") not in ("weld", "pin")
+            )
+            yield from (key for point in new for key in (f"points.{point}", f"bodies.{point}-body"))
         case "stages", {"name": name}:
             yield f"stages.{name}"
         case "probes", {"of": of, "quantity": quantity}:
             yield f"probes.{of}.{quantity}"
-        case (("stages" | "probes"), _):
-            yield table
+        case (("bodies" | "stages" | "probes"), _):
+            yield {"bodies": "points"}.get(table, table)

@@ -51,8 +51,10 @@ def _numbers(values: Sequence[Value], units: Units) -> tuple[list[float], Unit |
     unit = next((value.unit for value in values if value.unit is not None), None)
     if unit is None:
         return [value.number for value in values], None
-    different = any(value.unit is not None and value.unit.dimension != unit.dimension for value in values)
-    _refuse(different, "different units in one sum or function")
+    _refuse(
+        any(value.unit is not None and value.unit.dimension != unit.dimension for value in values),
+        "different units in one sum or function",
+    )
     return [value.number if value.unit is not None else unit.in_si(value.number, units) for value in values], unit
 
 
@@ -171,8 +173,8 @@ _NAMED: Mapping[str, Value] = frozendict(
 
 
 def _or_expression(value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
-    expression = isinstance(info.context, Reading) and isinstance(value, str) and value.startswith("=")
-    return value if expression else handler(value)
+    of_file = isinstance(info.context, Reading)
+    return value if of_file and isinstance(value, str) and value.startswith("=") else handler(value)
 
 
 Scatter = Annotated[float, Field(gt=0.0)] | None
@@ -207,8 +209,11 @@ def register(reading: Reading, parameters: Mapping[str, Parameter]) -> Mapping[s
         SceneError: unknown names or units, cycles, or values out of range.
     """
     resolved = _Resolved(reading, parameters)
-    unknown = [name for name in reading.settings if name not in parameters and not resolved.left_out(name)]
-    mistakes = [unknown_name(name, name, "parameter", parameters) for name in unknown]
+    mistakes = [
+        unknown_name(name, name, "parameter", parameters)
+        for name in reading.settings
+        if name not in parameters and not resolved.left_out(name)
+    ]
     found = {}
     for name in parameters:
         try:
@@ -249,8 +254,11 @@ class _Resolved:
         try:
             return evaluated(text.removeprefix("="), self._named, self._reading.units)
         except ExpressionError as error:
-            known = ", ".join((*self._parameters, "pi", *FUNCTIONS))
-            raise mistake(f"{text!r}: {error}", f"an expression of numbers, + - * / ** ( ) and {known}", key) from None
+            raise mistake(
+                f"{text!r}: {error}",
+                f"an expression of numbers, + - * / ** ( ) and {', '.join((*self._parameters, 'pi', *FUNCTIONS))}",
+                key,
+            ) from None
 
     def in_si(self, name: str) -> Parameter:
         """A parameter with all numbers in SI."""

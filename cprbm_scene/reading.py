@@ -37,7 +37,7 @@ from cprbm_scene.names import (
 from cprbm_scene.offset import OffsetQuestion
 from cprbm_scene.parameters import register
 from cprbm_scene.statement import Origin, Scene
-from cprbm_scene.units import Reading, Record
+from cprbm_scene.units import Reading
 
 _BY_NAME = (repeated_names, unknown_names, repeated_contacts, wrong_paper, wrong_stages, wrong_probes, wrong_claims)
 _BY_PLACE = (
@@ -183,7 +183,6 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
         >>> scene_from(data).beams["beam1"].thickness
         0.003
     """
-    _refuse_file(Scene, data, file)
     settings, found = dict(parameters or {}), list[Mistake]()
     draft = Draft({"parameters": {}, **data})  # the reading needs parameters, be there none
     while len(found) <= MOST:
@@ -214,7 +213,6 @@ def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
     Raises:
         SceneError: the data are no valid question. The error names every mistake with its key.
     """
-    _refuse_file(OffsetQuestion, data, file)
     reading = Reading()
     register(reading, {})
     question, found = _validated(OffsetQuestion, data, file, reading)
@@ -227,19 +225,14 @@ def _validated(
     kind: type[Asked], data: Mapping[str, Any], file: str, reading: Reading
 ) -> tuple[Asked | None, list[Mistake]]:
     """A question of a ``kind`` from plain data, or None with the mistakes of its records."""
+    if "file" in data:  # a record has the name of the file, and a file has not
+        return None, [unknown_name("file", "file", "key here", (key for key in kind.model_fields if key != "file"))]
     try:
         return kind.model_validate({**_tuples(data), "file": file}, context=reading), []
     except ValidationError as error:
         return None, mistakes_of(error)
     except RecursionError:
         return None, [Mistake("", "tables nested too deeply", "a scene")]
-
-
-def _refuse_file(kind: type[Record], data: Mapping[str, Any], file: str) -> None:
-    """Refuse the key of the file's name, which a record has and a file has not."""
-    if "file" in data:
-        keys = (key for key in kind.model_fields if key != "file")
-        raise SceneError([replace(unknown_name("file", "file", "key here", keys), file=file)])
 
 
 def _tuples(value: Any) -> Any:  # noqa: ANN401 - whatever TOML holds
