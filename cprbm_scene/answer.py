@@ -192,8 +192,7 @@ class PointForces:
 
     def chosen(self, source: str, target: str) -> Flags:
         """Which forces (k,) a ``source`` exerts on a ``target``."""
-        pairs = zip(self.source, self.target, strict=True)
-        return np.fromiter((pair == (source, target) for pair in pairs), dtype=bool, count=len(self.source))
+        return np.array([pair == (source, target) for pair in zip(self.source, self.target, strict=True)], dtype=bool)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,17 +10,17 @@ Bounds are on dimensionless numbers, with thickness t, arc length L and curvatur
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import lru_cache
+from dataclasses import replace
 from itertools import pairwise
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag
 
 from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, shape_of, with_half_waves
 from cprbm_scene.curves import SAMPLES, Array
-from cprbm_scene.mistakes import Mistake, broken, first_broken, written_place
-from cprbm_scene.units import NUMBER, STRESS, Length, Measured, Name, Number, Of, PositiveLength, Record
+from cprbm_scene.mistakes import Mistake, SceneError, first_broken, written_place
+from cprbm_scene.units import NUMBER, STRESS, Length, Measured, Name, Number, Of, Point, PositiveLength, Record
 
 THINNEST, THICKEST = 1e-5, 0.2
 MOST_CURVED = 0.5
@@ -66,11 +66,6 @@ class FreeEnd(Record):
     joint: Literal["free"]
     point: Name | None = None
     """New name of the end, for probes, loads and drives."""
-
-    def rules(self) -> Iterator[Mistake]:
-        """A name whose body is another body of the scene."""
-        found = f"{self.point!r}, and another body with the name '{self.point}-body'"
-        return broken(self.point is not None and Mistake("point", found, "another name of the free end"))
 
 
 BeamEnd = Annotated[WeldedEnd | PinnedEnd | FreeEnd, Field(discriminator="joint")]
@@ -160,12 +155,23 @@ class Beam(Record):
     imperfection: Imperfection | None = None
     """Offset of the neutral line, without stress."""
 
-    @model_validator(mode="after")
-    def _with_imperfection(self) -> Beam:
-        if self.imperfection is not None and not any(self.curve.rules()):
-            curve = with_half_waves(self.curve, self.imperfection.amplitude, self.imperfection.half_waves)
-            self.__dict__.update(curve=curve, imperfection=None)
-        return self
+    def completed(self) -> Mapping[str, object]:
+        """The curve with the offset of the imperfection.
+
+        Raises:
+            SceneError: the offset leaves no smooth curve.
+        """
+        if self.imperfection is None:
+            return {}
+        curve = with_half_waves(self.curve, self.imperfection.amplitude, self.imperfection.half_waves)
+        if spoiled := list(curve.rules()):
+            raise SceneError([replace(each, key=f"curve.{each.key}".rstrip(".")) for each in spoiled])
+        return {"curve": curve, "imperfection": None}
+
+    @property
+    def ends(self) -> tuple[tuple[str, BeamEnd, Point], tuple[str, BeamEnd, Point]]:
+        """Side, joint and initial place of the start and of the end."""
+        return ("start", self.start, self.curve.start), ("end", self.end, self.curve.end)
 
     def thickness_at(self, u: Array) -> Array:
         """Thickness at fractions ``u`` of the arc length, m, in the same shape."""
@@ -195,59 +201,41 @@ class Beam(Record):
         """True if the thickness varies along the beam."""
         return self.thinnest < self.thickest
 
-    @property
-    def sound(self) -> bool:
-        """True if curve and sizes exist and are in proportion: geometry and clearance need this."""
-        return _sound(self)
-
     def rules(self) -> Iterator[Mistake]:
-        """Thickness out of proportion to the length or the curvature, of a curve and sizes without mistakes."""
-        if not _parts_sound(self):
-            return iter(())
+        """Thickness out of proportion to the length or the curvature."""
         length = shape_of(self.curve).length
-        sizes = ((size, size / length) for size in (self.thinnest, self.thickest))
         return first_broken(
             *(
-                not THINNEST <= share <= THICKEST
+                not THINNEST <= size / length <= THICKEST
                 and Mistake(
                     "thickness",
-                    f"{size:g} m, which is {share:.3g} of the beam's length{mix_up(share)}",
+                    f"{size:g} m, which is {size / length:.3g} of the beam's length{mix_up(size / length)}",
                     f"a thickness between {THINNEST:g} and {THICKEST:g} of the beam's length",
                 )
-                for size, share in sizes
+                for size in (self.thinnest, self.thickest)
             ),
             _too_curved(self),
         )
 
 
-def _too_curved(beam: Beam) -> Mistake | None:
-    """The mistake of a thickness beside the radius of curvature."""
+def _too_curved(beam: Beam) -> Mistake | bool:
+    """The mistake of a thickness beside the radius of curvature; a bound on the largest curvature comes first."""
     shape = shape_of(beam.curve)
-    share = 0.5 * beam.thickest * shape.largest_curvature
-    if share < MOST_CURVED:
-        return None
     u = np.union1d(np.linspace(0.0, 1.0, SAMPLES), beam.knots)
-    shares = 0.5 * beam.thickness_at(u) * shape.curvature(u)
-    worst, share = u[[shares.argmax()]], float(shares.max()) if beam.tapered else share
-    found = f"{float(beam.thickness_at(worst)[0]):g} m, half of which is {share:.3g} of the radius of curvature at "
-    found += f"{float(worst[0]):.3g} of the length, near {written_place(shape.point(worst)[0])} m{mix_up(share)}"
-    allowed = f"half a thickness less than {MOST_CURVED:g} of the radius of curvature"
-    return Mistake("thickness", found, allowed) if share >= MOST_CURVED else None
+    bound = 0.5 * beam.thickest * shape.largest_curvature
+    shares = 0.5 * beam.thickness_at(u) * shape.curvature(u) if bound >= MOST_CURVED else np.zeros(1)
+    worst, share = u[[shares.argmax()]], float(shares.max()) if beam.tapered else bound
+    return share >= MOST_CURVED and Mistake(
+        "thickness",
+        f"{float(beam.thickness_at(worst)[0]):g} m, half of which is {share:.3g} of the radius of curvature at "
+        f"{float(worst[0]):.3g} of the length, near {written_place(shape.point(worst)[0])} m{mix_up(share)}",
+        f"half a thickness less than {MOST_CURVED:g} of the radius of curvature",
+    )
 
 
 def mix_up(share: float) -> str:
     """A question about the unit of a thickness, for a ``share`` that a unit 1000 times smaller would make ordinary."""
     return " (in mm in place of m, or in um in place of mm?)" if 2.0 <= share <= 1e3 * THICKEST else ""
-
-
-def _parts_sound(beam: Beam) -> bool:
-    parts = (part for part in (beam.curve, beam.thickness, beam.width) if isinstance(part, Record))
-    return not any(mistake for part in parts for mistake in part.rules())
-
-
-@lru_cache(maxsize=512)
-def _sound(beam: Beam) -> bool:
-    return _parts_sound(beam) and not any(beam.rules())
 
 
 def _table(size: float | Profile) -> tuple[tuple[float, ...], tuple[float, ...]]:

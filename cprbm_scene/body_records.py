@@ -78,7 +78,6 @@ class SlidingBody(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """A pin without a point, of another body or without ``turns``."""
-        nothing = "nothing: of the points of a body that slides and turns, one stays in the slot"
         return broken(
             _pivot(self.about, self.points),
             self.about in self.points
@@ -91,7 +90,11 @@ class SlidingBody(Record):
             self.turns
             and self.about is None
             and len(self.points) > 1
-            and Mistake("about", nothing, f"one of {', '.join(map(repr, self.points))}"),
+            and Mistake(
+                "about",
+                "nothing: of the points of a body that slides and turns, one stays in the slot",
+                f"one of {', '.join(map(repr, self.points))}",
+            ),
         )
 
 
@@ -147,10 +150,12 @@ class Stop(Record):
     def rules(self) -> Iterator[Mistake]:
         """No limit, or limits in the wrong order."""
         least, most = (nan if limit is None else limit for limit in (self.least, self.most))
-        both = f"least = {least:g} rad and most = {most:g} rad"
         return broken(
             isnan(least) and isnan(most) and Mistake("", "neither 'least' nor 'most'", "at least one of the two, rad"),
-            least >= most and Mistake("", both, "a least angle that is less than the most"),
+            least >= most
+            and Mistake(
+                "", f"least = {least:g} rad and most = {most:g} rad", "a least angle that is less than the most"
+            ),
         )
 
 
@@ -224,9 +229,15 @@ class DistributedLoad(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """A stretch without length."""
-        (begin, end), allowed = self.along, "two fractions of the beam's length, the smaller one first"
-        found = f"a stretch from {begin:.9g} to {end:.9g}"
-        return broken(end - begin < SHORTEST_STRETCH and Mistake("along", found, allowed))
+        begin, end = self.along
+        return broken(
+            end - begin < SHORTEST_STRETCH
+            and Mistake(
+                "along",
+                f"a stretch from {begin:.9g} to {end:.9g}",
+                "two fractions of the beam's length, the smaller one first",
+            )
+        )
 
 
 Load = Annotated[Moment | Force | BeamForce | BeamMoment | DistributedLoad, Field(discriminator="kind")]

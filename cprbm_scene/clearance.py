@@ -99,9 +99,9 @@ def beam_gap(first: Beam, second: Beam, range1: Range = WHOLE, range2: Range = W
     from scipy.spatial import cKDTree  # scenes without contact of beams need no SciPy
 
     one, two = shape_of(first.curve), shape_of(second.curve)
-    samples = np.union1d(np.linspace(*range1, _SAMPLES), _kinks(first, range1))
-    known = np.union1d(np.linspace(*range2, _SAMPLES), _kinks(second, range2))
-    tree, kinks = cKDTree(two.point(known)), _kinks(second, range2)
+    samples, kinks = np.union1d(np.linspace(*range1, _SAMPLES), _kinks(first, range1)), _kinks(second, range2)
+    known = np.union1d(np.linspace(*range2, _SAMPLES), kinks)
+    tree = cKDTree(two.point(known))
 
     def foot(u: Array) -> Array:
         p = one.point(u)
@@ -119,8 +119,9 @@ def beam_gap(first: Beam, second: Beam, range1: Range = WHOLE, range2: Range = W
 
     def gap(u: Array) -> Array:
         v = foot(u)
-        d = np.hypot(*(one.point(u) - two.point(v)).T)
-        return np.asarray(d - _half(first, u, thick=thick) - _half(second, v, thick=thick))
+        return np.asarray(
+            np.hypot(*(one.point(u) - two.point(v)).T) - _half(first, u, thick=thick) - _half(second, v, thick=thick)
+        )
 
     value, place = least(gap, samples, refined_below=2.0 * (one.length + two.length) / _SAMPLES)
     return Gap(value, place, float(foot(np.array([place]))[0]))
@@ -133,16 +134,13 @@ def _kinks(beam: Beam, span: Range) -> Array:
 def wrong_clearance(scene: Scene) -> Iterator[Mistake]:
     """Beams that overlap themselves, another beam of a contact, or a rigid shape of a contact as drawn."""
     for name, beam in scene.beams.items():
-        if beam.sound and isinstance(beam.curve, Arc | Spline):
+        if isinstance(beam.curve, Arc | Spline):
             yield from _itself(f"beams.{name}.curve", beam)
     for name, contact in scene.contacts.items():
-        beams = [scene.beams[beam] for beam in contact.beams if beam in scene.beams and scene.beams[beam].sound]
-        if isinstance(contact, BeamContact) and len(beams) == len(set(contact.between)) == 2:
-            found = _too_deep(scene, contact, beams) if contact.thick else _crossing(*beams)
-            names = f"{contact.between[0]!r} and {contact.between[1]!r}"
-            yield from (Mistake(f"contacts.{name}", f"{names} {what}", allowed) for what, allowed in found)
-        elif isinstance(contact, RigidContact) and beams and not any(contact.shape_rules()):
-            yield from _rigid(scene, f"contacts.{name}", contact, beams[0])
+        if isinstance(contact, BeamContact):
+            yield from (_too_deep if contact.thick else _crossing)(scene, f"contacts.{name}", contact)
+        elif isinstance(contact, RigidContact):
+            yield from _rigid(scene, f"contacts.{name}", contact)
 
 
 def overlap_at_rest(scene: Scene, contact: BeamContact) -> float:
@@ -165,52 +163,66 @@ def _left(ranges: list[Range]) -> bool:
     return all(low < high for low, high in ranges)
 
 
-def _too_deep(scene: Scene, contact: BeamContact, beams: list[Beam]) -> list[tuple[str, str]]:
-    """Values found and allowed for thick beams; none without an overlap beyond touching."""
-    depth, mean = overlap_at_rest(scene, contact), 0.5 * sum(beam.thinnest for beam in beams)
-    most = OVERLAP if any(beam.tapered for beam in beams) else TOUCHING
-    found = f"that overlap at the start by {depth:.3g} m, {depth / mean:.3g} of their mean thickness"
-    allowed = f"beams that touch or are apart (overlap at most {most:g} of the mean thickness)"
-    return [(found, allowed)] if depth > most * mean else []
+def _too_deep(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]:
+    """Thick beams with an overlap beyond touching."""
+    first, second = (scene.beams[beam] for beam in contact.between)
+    depth, mean = overlap_at_rest(scene, contact), 0.5 * (first.thinnest + second.thinnest)
+    most = OVERLAP if first.tapered or second.tapered else TOUCHING
+    return broken(
+        depth > most * mean
+        and Mistake(
+            key,
+            f"{contact.between[0]!r} and {contact.between[1]!r} that overlap at the start by {depth:.3g} m, "
+            f"{depth / mean:.3g} of their mean thickness",
+            f"beams that touch or are apart (overlap at most {most:g} of the mean thickness)",
+        )
+    )
 
 
-def _crossing(first: Beam, second: Beam) -> list[tuple[str, str]]:
-    """Values found and allowed for beams as lines; none without a crossing."""
+def _crossing(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]:
+    """Beams as lines that cross."""
+    first, second = (scene.beams[beam] for beam in contact.between)
     shapes = shape_of(first.curve), shape_of(second.curve)
     shortest = min(shape.length for shape in shapes)
     ranges = _apart_from_shared(first, second, CROSSING_ANGLE * shortest)
     if not _left(ranges):
-        return []
+        return iter(())
     gap, *places = beam_gap(first, second, *ranges, thick=False)
     t1, t2 = (shape.tangent(np.array([u]))[0] for shape, u in zip(shapes, places, strict=True))
-    inside = gap <= MEETING * shortest and all(1e-6 < u < 1.0 - 1e-6 for u in places)
-    found = f"that cross at the start, at {written_place(shapes[0].point(np.array(places[:1]))[0])} m"
-    crossing = inside and abs(t1[0] * t2[1] - t1[1] * t2[0]) > CROSSING_ANGLE
-    return [(found, "neutral lines that touch or are apart")] if crossing else []
+    return broken(
+        gap <= MEETING * shortest
+        and all(1e-6 < u < 1.0 - 1e-6 for u in places)
+        and abs(t1[0] * t2[1] - t1[1] * t2[0]) > CROSSING_ANGLE
+        and Mistake(
+            key,
+            f"{contact.between[0]!r} and {contact.between[1]!r} that cross at the start, at "
+            f"{written_place(shapes[0].point(np.array(places[:1]))[0])} m",
+            "neutral lines that touch or are apart",
+        )
+    )
 
 
 def _apart_from_shared(first: Beam, second: Beam, left_out: float) -> list[Range]:
     """Ranges of u without ``left_out`` (m) beside shared ends; an empty range if nothing is left."""
+    ends = [(beam.curve.start, beam.curve.end) for beam in (first, second)]
     lengths = [shape_of(beam.curve).length for beam in (first, second)]
-    ranges = []
-    for beam, other, length in ((first, second, lengths[0]), (second, first, lengths[1])):
-        starts, ends = (
-            any(dist(place, end) <= MEETING * max(lengths) for end in (other.curve.start, other.curve.end))
-            for place in (beam.curve.start, beam.curve.end)
-        )
-        ranges.append((left_out / length if starts else 0.0, 1.0 - left_out / length if ends else 1.0))
-    return ranges
+    shared = [
+        [any(dist(place, other) <= MEETING * max(lengths) for other in ends[1 - i]) for place in ends[i]]
+        for i in range(2)
+    ]
+    return [
+        (left_out / length if start else 0.0, 1.0 - left_out / length if end else 1.0)
+        for length, (start, end) in zip(lengths, shared, strict=True)
+    ]
 
 
 def _apart_from_held(scene: Scene, beams: tuple[Beam, Beam], mean: float, ranges: list[Range]) -> list[Range]:
     """The ranges of u without stretches beside ends welded side by side to the same body."""
-    owners, cut = scene.owners, list(ranges)
-    for sides in product(("start", "end"), repeat=2):
-        joints = [getattr(beam, side) for beam, side in zip(beams, sides, strict=True)]
-        places = [getattr(beam.curve, side) for beam, side in zip(beams, sides, strict=True)]
-        one, other = (owners.get(joint.point) if isinstance(joint, WeldedEnd) else None for joint in joints)
-        if one is not None and one == other and dist(*places) <= SIDE_BY_SIDE * mean:
-            for i, (beam, side) in enumerate(zip(beams, sides, strict=True)):
+    cut, owners = list(ranges), scene.owners
+    for ends in product(*(beam.ends for beam in beams)):
+        bodies = [owners[joint.point] for _, joint, _ in ends if isinstance(joint, WeldedEnd)]
+        if len(bodies) == len(ends) and len(set(bodies)) == 1 and dist(ends[0][2], ends[1][2]) <= SIDE_BY_SIDE * mean:
+            for i, (beam, (side, _, _)) in enumerate(zip(beams, ends, strict=True)):
                 share = JOINED * mean / shape_of(beam.curve).length
                 low, high = (share, 1.0) if side == "start" else (0.0, 1.0 - share)
                 cut[i] = max(cut[i][0], low), min(cut[i][1], high)
@@ -231,21 +243,28 @@ def _itself(key: str, beam: Beam) -> Iterator[Mistake]:
     ranges = ((max(0.0, at - step), min(1.0, at + step)) for at in (float(u[i[k]]), float(u[j[k]])))
     gap, *places = beam_gap(beam, beam, *ranges)
     thickness = float(np.mean(beam.thickness_at(np.array(places))))
-    found = f"a beam that overlaps itself: near {written_place(shape.point(np.array(places[:1]))[0])} m it comes to "
-    found += f"{thickness + gap:.3g} m from itself, and is {thickness:g} m thick"
-    return broken(-gap > OVERLAP * thickness and Mistake(key, found, "a curve that keeps a thickness away from itself"))
+    return broken(
+        -gap > OVERLAP * thickness
+        and Mistake(
+            key,
+            f"a beam that overlaps itself: near {written_place(shape.point(np.array(places[:1]))[0])} m it comes to "
+            f"{thickness + gap:.3g} m from itself, and is {thickness:g} m thick",
+            "a curve that keeps a thickness away from itself",
+        )
+    )
 
 
-def _rigid(scene: Scene, key: str, contact: RigidContact, beam: Beam) -> Iterator[Mistake]:
+def _rigid(scene: Scene, key: str, contact: RigidContact) -> Iterator[Mistake]:
     """A shape out of proportion to the beam, or a beam that overlaps the shape or lies behind the edge."""
-    shape, circle = shape_of(beam.curve), isinstance(contact, CircleContact)
+    beam, circle = scene.beams[contact.beam], isinstance(contact, CircleContact)
+    shape = shape_of(beam.curve)
     if mistakes := list(_proportions(key, contact, shape.length)):
         return iter(mistakes[:1])
     away, samples = distance_from(contact), np.union1d(np.linspace(*WHOLE, 2 * _SAMPLES - 1), beam.knots)
     depth = -least(lambda u: np.asarray(away(shape.point(u)) - _half(beam, u, thick=contact.thick)), samples)[0]
     measure, of = (beam.thinnest, "its thickness") if contact.thick else (shape.length, "its length")
-    points = scene.bodies[contact.body].points if contact.body in scene.bodies else {}
-    held = any(getattr(end, "point", None) in points for end in (beam.start, beam.end)) and not circle
+    own = scene.bodies[contact.body].points
+    held = not circle and any(joint.point in own for _, joint, _ in beam.ends)
     what = "that overlaps the circle" if circle else "on the wrong side of the edge, or overlapping the edge,"
     side = f"circle from {getattr(contact, 'side', '')}" if circle else "edge from the free side"
     return broken(
@@ -261,7 +280,6 @@ def _rigid(scene: Scene, key: str, contact: RigidContact, beam: Beam) -> Iterato
 def _proportions(key: str, contact: RigidContact, length: float) -> Iterator[Mistake]:
     """Mistakes of sizes and coordinates beside the beam's ``length``, m."""
     places, sizes = measures(contact)
-    where = f"{key}.center" if isinstance(contact, CircleContact) else key
     largest = max(abs(coordinate) for place in places for coordinate in place)
     return broken(
         *(
@@ -275,7 +293,7 @@ def _proportions(key: str, contact: RigidContact, length: float) -> Iterator[Mis
         ),
         not SHORTEST * largest <= length
         and Mistake(
-            where,
+            f"{key}.center" if isinstance(contact, CircleContact) else key,
             f"coordinates up to {largest:.3g} m beside a beam of {length:.3g} m",
             f"coordinates of which the beam's length is at least {SHORTEST:g}",
         ),
@@ -321,10 +339,9 @@ def _from_line(points: Array, sign: float, p: Array, *, closed: bool) -> Array:
     # at a corner the normals of both pieces decide the side
     other = np.where(t <= 0.0, nearest - 1, np.where(t >= length[nearest], nearest + 1, nearest))
     other = other % len(tau) if closed else other
-    beyond = (other < 0) | (other >= len(tau))
+    inside = (other >= 0) & (other < len(tau))
     towards = n[nearest] + n[np.clip(other, 0, len(tau) - 1)]
-    behind = ~beyond & ((away * towards).sum(axis=1) < 0.0)
-    return np.asarray(np.where(behind, -1.0, 1.0) * np.hypot(*away.T))
+    return np.asarray(np.where(inside & ((away * towards).sum(axis=1) < 0.0), -1.0, 1.0) * np.hypot(*away.T))
 
 
 def _from_curve(curve: Curve, sign: float, p: Array, *, closed: bool) -> Array:

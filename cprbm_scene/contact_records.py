@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import chain, combinations, islice, pairwise
+from itertools import combinations, islice, pairwise
 from math import cos, dist, sin
 from typing import Annotated, ClassVar, Literal
 
@@ -42,9 +42,9 @@ class Related(Record):
     def rules(self) -> Iterator[Mistake]:
         """Ranges of both coordinates or of none, and descending ranges."""
         ranges = {axis: span for axis, span in (("x", self.x), ("y", self.y)) if span is not None}
-        found = "both x and y" if ranges else "neither x nor y"
         return broken(
-            len(ranges) != 1 and Mistake("", found, "a range in exactly one of x and y"),
+            len(ranges) != 1
+            and Mistake("", "both x and y" if ranges else "neither x nor y", "a range in exactly one of x and y"),
             *(
                 low >= high and Mistake(axis, str([low, high]), "a range from the smaller to the larger value")
                 for axis, (low, high) in ranges.items()
@@ -57,15 +57,6 @@ class PaperRigid(Record):
 
     related: Named[Related] = Field(default_factory=frozendict)
     """Joints with possible contact, by the names of beams; without an entry all joints."""
-
-    def of_others(self, beams: tuple[str, ...], allowed: str) -> Iterator[Mistake]:
-        """Entries for beams outside the contact."""
-        return broken(
-            *(
-                beam not in beams and Mistake(f"paper.related.{beam}", f"the beam {beam!r}", allowed)
-                for beam in self.related
-            )
-        )
 
 
 class PaperContact(PaperRigid):
@@ -97,16 +88,14 @@ class BeamContact(Record):
         return self.between
 
     def rules(self) -> Iterator[Mistake]:
-        """A pair of the same beam twice, and data for ``paper`` of other beams."""
-        (one, other), paper = self.between, self.paper
-        allowed = f"one of the pair: {one!r}, {other!r}"
-        different = "two different beams; a beam may touch itself in a contact of kind 'beam-self'"
+        """A pair of the same beam twice."""
         return broken(
-            one == other and Mistake("between", f"{one!r} twice", different),
-            paper is not None
-            and paper.boundary not in self.between
-            and Mistake("paper.boundary", repr(paper.boundary), allowed),
-            *(paper.of_others(self.between, allowed) if paper is not None else ()),
+            len(set(self.between)) == 1
+            and Mistake(
+                "between",
+                f"{self.between[0]!r} twice",
+                "two different beams; a beam may touch itself in a contact of kind 'beam-self'",
+            )
         )
 
 
@@ -139,15 +128,6 @@ class RigidContact(_OneBeam):
     paper: PaperRigid | None = None
     """Data for the formulation ``paper``."""
 
-    def rules(self) -> Iterator[Mistake]:
-        """Data for ``paper`` of other beams, and shapes without geometry."""
-        paper = () if self.paper is None else self.paper.of_others(self.beams, f"the contact's beam {self.beam!r}")
-        return chain(paper, islice(self.shape_rules(), 1))
-
-    def shape_rules(self) -> Iterator[Mistake]:
-        """Mistakes of the shape, only the first of them valid; none by default."""
-        return iter(())
-
 
 class CircleContact(RigidContact):
     """Contact of a beam with a rigid circle, from outside or inside."""
@@ -179,8 +159,11 @@ class LineContact(RigidContact):
         """True if the last point is the first."""
         return len(self.points) > 2 and self.points[0] == self.points[-1]
 
-    def shape_rules(self) -> Iterator[Mistake]:
-        """Too many points, repeated points, lines with reversals or crossings."""
+    def rules(self) -> Iterator[Mistake]:
+        """The first mistake: too many points, repeated points, lines with reversals or crossings."""
+        return islice(self._mistakes(), 1)
+
+    def _mistakes(self) -> Iterator[Mistake]:
         pieces = list(pairwise(self.points))
         yield from broken(
             len(self.points) > MOST_POINTS
@@ -192,15 +175,25 @@ class LineContact(RigidContact):
         )
         tau = [unit_vector((b[0] - a[0], b[1] - a[1])) for a, b in pieces]
         corners = enumerate(pairwise([*tau, tau[0]] if self.closed else tau), start=1)
-        back = "a point at which the line turns back on itself"
         yield from broken(
-            *(1.0 + a @ b < BACKWARDS and Mistake(f"points[{i}]", back, "a line that goes on") for i, (a, b) in corners)
+            *(
+                1.0 + a @ b < BACKWARDS
+                and Mistake(f"points[{i}]", "a point at which the line turns back on itself", "a line that goes on")
+                for i, (a, b) in corners
+            )
         )
         for (i, first), (j, second) in combinations(enumerate(pieces), 2):
             neighbours = j - i in ((1, len(pieces) - 1) if self.closed else (1,))
-            if not neighbours and _crosses(first, second) and _crosses(second, first):
-                found = f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}"
-                yield Mistake("points", found, "a line that does not meet itself")
+            yield from broken(
+                not neighbours
+                and _crosses(first, second)
+                and _crosses(second, first)
+                and Mistake(
+                    "points",
+                    f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}",
+                    "a line that does not meet itself",
+                )
+            )
 
 
 def _crosses(piece: tuple[Point, Point], other: tuple[Point, Point]) -> bool:
@@ -239,11 +232,13 @@ class FunctionContact(RigidContact):
     @property
     def curve(self) -> Polynomial:
         """The edge as a curve."""
-        return Polynomial(kind="polynomial", axis=self.axis, coefficients=self.coefficients, range=self.range)
+        return Polynomial.model_construct(
+            kind="polynomial", axis=self.axis, coefficients=self.coefficients, range=self.range
+        )
 
-    def shape_rules(self) -> Iterator[Mistake]:
+    def rules(self) -> Iterator[Mistake]:
         """Coefficients and ranges without a graph of finite slope."""
-        return graph_rules(self.curve)
+        return islice(graph_rules(self.curve), 1)
 
 
 class SplineContact(RigidContact):
@@ -265,10 +260,14 @@ class SplineContact(RigidContact):
     @property
     def curve(self) -> Spline:
         """The edge as a curve."""
-        ends = {"start_direction": self.start_direction, "end_direction": self.end_direction}
-        return Spline(kind="spline", points=self.points, **ends)
+        return Spline.model_construct(
+            kind="spline",
+            points=self.points,
+            start_direction=self.start_direction,
+            end_direction=self.end_direction,
+        )
 
-    def shape_rules(self) -> Iterator[Mistake]:
+    def rules(self) -> Iterator[Mistake]:
         """Mistakes of the spline."""
         return self.curve.rules()
 
@@ -292,8 +291,8 @@ class EllipseContact(RigidContact):
         turn, c, s = np.linspace(0.0, 2.0 * np.pi, 513), cos(self.angle), sin(self.angle)
         x, y = self.semi_axes[0] * np.cos(turn), self.semi_axes[1] * np.sin(turn)
         places = np.array(self.center) + np.column_stack((x * c - y * s, x * s + y * c))
-        points = tuple((x, y) for x, y in places.tolist())
-        return Spline(kind="spline", points=points, start_direction=(-s, c), end_direction=(-s, c))
+        points, end = tuple((x, y) for x, y in places.tolist()), (-s, c)
+        return Spline.model_construct(kind="spline", points=points, start_direction=end, end_direction=end)
 
 
 def measures(contact: RigidContact) -> tuple[tuple[Point, ...], list[tuple[str, float]]]:
@@ -306,8 +305,9 @@ def measures(contact: RigidContact) -> tuple[tuple[Point, ...], list[tuple[str, 
         case LineContact(points=points):
             return points, [(f"points[{i}]", dist(*ends)) for i, ends in enumerate(pairwise(points), start=1)]
         case FunctionContact(curve=curve) | SplineContact(curve=curve):
-            part = "range" if isinstance(contact, FunctionContact) else "points"
-            return (curve.start, curve.end), [(part, shape_of(curve).length)]
+            return (curve.start, curve.end), [
+                ("range" if isinstance(contact, FunctionContact) else "points", shape_of(curve).length)
+            ]
         case HalfPlaneContact(point=point):
             return (point,), []
     raise TypeError(type(contact))

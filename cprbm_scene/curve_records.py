@@ -171,12 +171,14 @@ def with_half_waves(curve: NeutralLine, amplitude: float, half_waves: int) -> Sp
     shape, u = shape_of(curve), np.linspace(0.0, 1.0, OF_HALF_WAVE * max(half_waves, 2) + 1)
     tangent = shape.tangent(u)
     normal = np.column_stack((-tangent[:, 1], tangent[:, 0]))
-    points = shape.point(u) + amplitude * np.sin(half_waves * np.pi * u)[:, None] * normal
+    inner = shape.point(u) + amplitude * np.sin(half_waves * np.pi * u)[:, None] * normal
     # with the curvature κ to the left the derivative of the offset curve is (1 - κw) t + w' n; w vanishes at the ends
     slope = amplitude * half_waves * np.pi / shape.length * np.array([1.0, (-1.0) ** half_waves])
     ends = tangent[[0, -1]] + slope[:, None] * normal[[0, -1]]
-    start, *inner, end = ((x, y) for x, y in (*ends[:1].tolist(), *points[1:-1].tolist(), *ends[1:].tolist()))
-    return Spline(kind="spline", points=(curve.start, *inner, curve.end), start_direction=start, end_direction=end)
+    start, *points, end = ((x, y) for x, y in np.vstack((ends[:1], inner[1:-1], ends[1:])).tolist())
+    return Spline.model_construct(
+        kind="spline", points=(curve.start, *points, curve.end), start_direction=start, end_direction=end
+    )
 
 
 def _curve_rules(curve: NeutralLine) -> Iterator[Mistake]:
@@ -184,10 +186,19 @@ def _curve_rules(curve: NeutralLine) -> Iterator[Mistake]:
         yield from graph_rules(curve)
     if isinstance(curve, Spline):
         yield from _spline_rules(curve)
-    same = f"a start and an end at the same place {written_place(curve.start)} m"
-    yield from broken(curve.start == curve.end and Mistake("", same, "two different places"))
-    if isinstance(curve, Arc):
-        yield from _arc_rules(curve)
+    radii = [dist(end, curve.center) for end in (curve.start, curve.end)] if isinstance(curve, Arc) else [1.0, 1.0]
+    yield from broken(
+        curve.start == curve.end
+        and Mistake("", f"a start and an end at the same place {written_place(curve.start)} m", "two different places"),
+        min(radii) == 0.0 and Mistake("", "an end at the arc's own center", "ends on a circle about the center"),
+        not abs(radii[1] - radii[0]) <= MEETING * radii[0]
+        and Mistake(
+            "",
+            f"ends that lie on no common circle: the start is {radii[0]:.9g} m from the center, the end "
+            f"{radii[1]:.9g} m",
+            f"distances that differ by at most {MEETING:g} of the radius",
+        ),
+    )
     places = (curve.start, curve.end, *getattr(curve, "points", ()), getattr(curve, "center", curve.start))
     length, largest = shape_of(curve).length, max(abs(number) for place in places for number in place)
     term = _largest_term(curve) if isinstance(curve, Polynomial) else 0.0
@@ -207,29 +218,24 @@ def _curve_rules(curve: NeutralLine) -> Iterator[Mistake]:
     )
 
 
-def _arc_rules(curve: Arc) -> Iterator[Mistake]:
-    first, last = dist(curve.start, curve.center), dist(curve.end, curve.center)
-    found = f"ends that lie on no common circle: the start is {first:.9g} m from the center, the end {last:.9g} m"
-    allowed = f"distances that differ by at most {MEETING:g} of the radius"
-    return broken(
-        min(first, last) == 0.0 and Mistake("", "an end at the arc's own center", "ends on a circle about the center"),
-        not abs(last - first) <= MEETING * first and Mistake("", found, allowed),
-    )
-
-
 def graph_rules(curve: Polynomial) -> Iterator[Mistake]:
     """Mistakes of a polynomial that leave no graph with a finite slope; a rule needs the rules before."""
-    (first, last), count = curve.range, len(curve.coefficients)
-    most, same = f"at most {HIGHEST_DEGREE + 1} of them", f"a range from {first:g} m to the same {last:g} m"
+    (first, last), count, axis = curve.range, len(curve.coefficients), "xy".index(curve.axis)
     yield from broken(
-        count > HIGHEST_DEGREE + 1 and Mistake("coefficients", f"{count} coefficients", most),
-        first == last and Mistake("range", same, "two different values"),
+        count > HIGHEST_DEGREE + 1
+        and Mistake("coefficients", f"{count} coefficients", f"at most {HIGHEST_DEGREE + 1} of them"),
+        first == last and Mistake("range", f"a range from {first:g} m to the same {last:g} m", "two different values"),
     )
     finite = isfinite(_largest_term(curve)) and isfinite(last - first)
-    slope = steepest(shape_of(curve), along=0 if curve.axis == "x" else 1) if finite else inf
-    allowed = f"a slope of at most {STEEPEST:g} (a steeper curve may be a function of {'yx'['xy'.index(curve.axis)]})"
-    found = f"a slope of up to {slope:.3g} in the range"
-    yield from broken(not slope <= STEEPEST and Mistake("coefficients", found, allowed))
+    slope = steepest(shape_of(curve), along=axis) if finite else inf
+    yield from broken(
+        not slope <= STEEPEST
+        and Mistake(
+            "coefficients",
+            f"a slope of up to {slope:.3g} in the range",
+            f"a slope of at most {STEEPEST:g} (a steeper curve may be a function of {'yx'[axis]})",
+        )
+    )
 
 
 def _largest_term(curve: Polynomial) -> float:
@@ -255,6 +261,11 @@ def _spline_rules(curve: Spline) -> Iterator[Mistake]:
         ),
     )
     speed, place = slowest(shape_of(curve))
-    found = f"points through which a smooth line has to turn back on the spot, near {written_place(place)} m"
-    allowed = "points (and directions) that a smooth line follows; more of them where it turns sharply"
-    yield from broken(not speed >= SLOWEST and Mistake("points", found, allowed))
+    yield from broken(
+        not speed >= SLOWEST
+        and Mistake(
+            "points",
+            f"points through which a smooth line has to turn back on the spot, near {written_place(place)} m",
+            "points (and directions) that a smooth line follows; more of them where it turns sharply",
+        )
+    )

@@ -194,8 +194,8 @@ def graph(coefficients: Sequence[float], first: float, last: float, *, along: in
         # a steep graph has its sharpest bend where the graph is level
         level = slope.roots() if np.all(np.isfinite(g.coef)) else np.zeros(0)
         value = float(Polynomial(coefficients)(first))
+        derivatives = ((Polynomial([0.0, sense]), g), (Polynomial([sense]), g.deriv()), (Polynomial([0.0]), g.deriv(2)))
     level = level.real[(np.abs(level.imag) < _REAL) & (level.real > 0.0) & (level.real < 1.0)]
-    derivatives = ((Polynomial([0.0, sense]), g), (Polynomial([sense]), g.deriv()), (Polynomial([0.0]), g.deriv(2)))
 
     def q(w: Array, order: int) -> Array:
         x, y = (np.asarray(each(w), dtype=np.float64) for each in derivatives[order])

@@ -35,8 +35,8 @@ from numpy.typing import NDArray
 
 from cprbm_scene.curve_records import MEETING
 from cprbm_scene.curves import unit_vector
-from cprbm_scene.mistakes import Mistake, first_broken, written_place
-from cprbm_scene.names import connected, unknown_names
+from cprbm_scene.mistakes import Mistake, broken, first_broken, written_place
+from cprbm_scene.names import connected
 from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,
@@ -123,12 +123,11 @@ class Freedoms:
 
     def joints(self) -> Iterator[Row]:
         """Wide rows of the beams' ends, with every beam as a rigid part."""
-        for name, beam in self.scene.beams.items():
-            for end in (beam.start, beam.end):
-                if not isinstance(end, FreeEnd):
-                    pinned = [self.along(end.point, axis) for axis in AXES]
-                    for row in np.eye(3) if isinstance(end, WeldedEnd) else pinned:
-                        yield self.wide({f"beams.{name}": row, f"bodies.{self.owners[end.point]}": -row})
+        for name, end in ((name, end) for name, beam in self.scene.beams.items() for _, end, _ in beam.ends):
+            if not isinstance(end, FreeEnd):
+                pinned = [self.along(end.point, axis) for axis in AXES]
+                for row in np.eye(3) if isinstance(end, WeldedEnd) else pinned:
+                    yield self.wide({f"beams.{name}": row, f"bodies.{self.owners[end.point]}": -row})
 
 
 def independent(rows: Sequence[Row]) -> list[bool]:
@@ -154,26 +153,25 @@ _HELD = {"pins": "bodies", "drives": "a motion", "bodies": "a motion"}
 def wrong_mobility(scene: Scene) -> Iterator[Mistake]:
     """Pins between unsuitable points, missing supports, motions with two holders, loose bodies.
 
-    Checks of the whole mechanism need known points, guides and directions.
+    Only a whole mechanism has supports and motions.
     """
     yield from _pins(scene)
-    unknown = {mistake.key for mistake in unknown_names(scene)}
-    acting = [*scene.bodies.values(), *scene.drives.values()]
-    sound = not any(key.startswith(("drives", "pins")) or key.endswith(".point") for key in unknown)
-    sound = sound and not any(mistake for record in acting for mistake in record.rules())
-    freedoms = Freedoms(scene) if sound else None
+    if not scene.whole():
+        return
+    freedoms = Freedoms(scene)
     loose = list(unsupported(scene, freedoms))
     yield from (mistake for mistake, names in loose if not _acted_on(scene, names))
-    if freedoms is None or any(len({*map(scene.body_of, pin.points)}) == 1 for pin in scene.pins.values()):
+    if any(len({*map(scene.body_of, pin.points)}) == 1 for pin in scene.pins.values()):
         return
     if scene.pins:
         keys, rows = zip(*freedoms.constraints(scene.drives), strict=True)
-        held_twice = dict.fromkeys(key for key, free in zip(keys, independent(rows), strict=True) if not free)
-        allowed = "as many pins and drives as there are motions to hold, each for one of its own"
-        found = "that guides, pins and drives hold already where it begins"
-        yield from (Mistake(key, f"{_HELD[key.partition('.')[0]]} {found}", allowed) for key in held_twice)
-    held_otherwise = scene.contacts or scene.stops or scene.assembly is not None
-    if not loose and (scene.pins or not held_otherwise):
+        for key in dict.fromkeys(key for key, free in zip(keys, independent(rows), strict=True) if not free):
+            yield Mistake(
+                key,
+                f"{_HELD[key.partition('.')[0]]} that guides, pins and drives hold already where it begins",
+                "as many pins and drives as there are motions to hold, each for one of its own",
+            )
+    if not loose and (scene.pins or not (scene.contacts or scene.stops or scene.assembly is not None)):
         yield from _loose(scene, freedoms)
 
 
@@ -181,16 +179,14 @@ def _pins(scene: Scene) -> Iterator[Mistake]:
     """Pins within a body, between fixed bodies, or between distant points."""
     owners = scene.owners
     places = {point: scene.bodies[name].points[point] for point, name in owners.items()}
-    extent = float(np.ptp(list(places.values()), axis=0).max()) if places else 0.0
-    known = {name: pin.points for name, pin in scene.pins.items() if owners.keys() >= set(pin.points)}
-    for key, (p, q) in ((f"pins.{name}.points", points) for name, points in known.items()):
+    for key, (p, q) in ((f"pins.{name}.points", pin.points) for name, pin in scene.pins.items()):
         one, other, apart = owners[p], owners[q], dist(places[p], places[q])
         yield from first_broken(
             one == other
             and Mistake(key, f"{p!r} and {q!r}, both of the body {one!r}", "points of two different bodies"),
             scene.bodies[one].motion == scene.bodies[other].motion == "fixed"
             and Mistake(key, f"points of two fixed bodies, {one!r} and {other!r}", "one that moves"),
-            not apart <= MEETING * extent
+            not apart <= MEETING * np.ptp(list(places.values()), axis=0).max()
             and Mistake(
                 key,
                 f"points {apart:.3g} m apart: {written_place(places[p])} m and {written_place(places[q])} m",
@@ -199,18 +195,16 @@ def _pins(scene: Scene) -> Iterator[Mistake]:
         )
 
 
-def unsupported(scene: Scene, freedoms: Freedoms | None) -> Iterator[tuple[Mistake, set[str]]]:
+def unsupported(scene: Scene, freedoms: Freedoms) -> Iterator[tuple[Mistake, set[str]]]:
     """Scenes without ground or drives, beams without supports, bodies without a way to a support.
 
-    Beside each mistake stand the names of the bodies and beams that move together; without ``freedoms`` of beams only.
+    Beside each mistake stand the names of the bodies and beams that move together.
     """
     drives = [drive for drive in scene.drives.values() if scene.holds(drive, scene.stages[0].name)]
     if all(body.motion == "free" for body in scene.bodies.values()) and not drives:
         yield Mistake("bodies", "no fixed body", 'at least one body with motion = "fixed"'), set()
         return
-    joints = {
-        name: [end for end in (beam.start, beam.end) if end.joint != "free"] for name, beam in scene.beams.items()
-    }
+    joints = {name: [end for _, end, _ in beam.ends if end.joint != "free"] for name, beam in scene.beams.items()}
     for name, ends in joints.items():
         mistakes = first_broken(
             not ends
@@ -225,8 +219,6 @@ def unsupported(scene: Scene, freedoms: Freedoms | None) -> Iterator[tuple[Mista
             ),
         )
         yield from ((mistake, {name}) for mistake in mistakes)
-    if freedoms is None:
-        return
     met = {name: {freedoms.owners[str(end.point)] for end in ends} for name, ends in joints.items()}
     met |= {name: {freedoms.owners[point] for point in pin.points} for name, pin in scene.pins.items()}
     for name, body in scene.bodies.items():
@@ -234,14 +226,17 @@ def unsupported(scene: Scene, freedoms: Freedoms | None) -> Iterator[tuple[Mista
         rows = [row for each in together for row in freedoms.guide(each)]
         rows += [freedoms.row(drive) for drive in drives if freedoms.owner(drive) in together]
         if sum(independent(rows)) < FREEDOMS:
-            mistake = Mistake(
-                f"bodies.{name}",
-                f"a {_KINDS.get(body.motion, 'free')} body that no {'fixed body holds' if reached else 'beam meets'}",
-                "beams that lead to a fixed body, or slides, pivots, drives, contacts and loads that hold it"
-                if reached
-                else "a beam's end, a pin, a contact or a load on it",
+            yield (
+                Mistake(
+                    f"bodies.{name}",
+                    f"a {_KINDS.get(body.motion, 'free')} body that no "
+                    f"{'fixed body holds' if reached else 'beam meets'}",
+                    "beams that lead to a fixed body, or slides, pivots, drives, contacts and loads that hold it"
+                    if reached
+                    else "a beam's end, a pin, a contact or a load on it",
+                ),
+                together | {beam for beam in met if met[beam] & together},
             )
-            yield mistake, together | {beam for beam in met if met[beam] & together}
 
 
 def _acted_on(scene: Scene, names: set[str]) -> bool:
@@ -256,15 +251,18 @@ def _acted_on(scene: Scene, names: set[str]) -> bool:
 def _loose(scene: Scene, freedoms: Freedoms) -> Iterator[Mistake]:
     """Bodies with a motion in the null space of B."""
     drives = [name for name, drive in scene.drives.items() if scene.holds(drive, scene.stages[0].name)]
-    rows = [*(row for _, row in freedoms.constraints(drives)), *freedoms.joints()]
-    _, values, motions = np.linalg.svd(np.array(rows))
+    rows = [row for _, row in freedoms.constraints(drives)]
+    _, values, motions = np.linalg.svd(np.array([*rows, *freedoms.joints()]))
     null_space = motions[np.count_nonzero(values > NEGLIGIBLE) :]
     for i, name in enumerate(scene.bodies):
         own = [motion for motion in null_space[:, 3 * i : 3 * i + 3] if np.abs(motion).max() > NEGLIGIBLE]
         if own:
             how = _in_words(freedoms, own[0]) if len(null_space) == 1 else f"move in {sum(independent(own))} ways"
-            found = f"a body that can {how} where it is without bending a beam"
-            yield Mistake(f"bodies.{name}", found, "pins, guides, drives and beams that hold it")
+            yield Mistake(
+                f"bodies.{name}",
+                f"a body that can {how} where it is without bending a beam",
+                "pins, guides, drives and beams that hold it",
+            )
 
 
 def _in_words(freedoms: Freedoms, motion: Row) -> str:
@@ -279,26 +277,30 @@ def _in_words(freedoms: Freedoms, motion: Row) -> str:
 
 def wrong_actions(scene: Scene) -> Iterator[Mistake]:
     """Loads and drives of fixed bodies or across guides, and motions with two drives or with a drive and a load."""
-    if not any(body.points for body in scene.bodies.values()):
+    if not scene.bodies:
         return
     freedoms, driven = Freedoms(scene), defaultdict[str, list[str]](list)
     drives = {f"drives.{name}": drive for name, drive in scene.drives.items()}
     loads = {f"loads.{name}": load for name, load in scene.loads.items() if isinstance(load, BodyLoad)}
     for key, acting in (drives | loads).items():
-        owner = acting.body if isinstance(acting, Moment | RotationDrive) else freedoms.owners.get(acting.point, "")
-        if owner in scene.bodies:
-            mistakes = list(_without_motion(freedoms, key, acting, driven[owner]))
-            yield from mistakes
-            if key in drives and not mistakes:
-                driven[owner].append(key.removeprefix("drives."))
-    fixed = {point for body in scene.bodies.values() if body.motion == "fixed" for point in body.points}
+        owner = freedoms.owner(acting)
+        mistakes = list(_without_motion(freedoms, key, acting, driven[owner]))
+        yield from mistakes
+        if key in drives and not mistakes:
+            driven[owner].append(key.removeprefix("drives."))
     for name, load in scene.loads.items():
-        if isinstance(load, BeamForce | BeamMoment) and load.beam in scene.beams and load.at in (0.0, 1.0):
-            end = scene.beams[load.beam].start if load.at == 0.0 else scene.beams[load.beam].end
-            found = f"{load.at:g}, an end of {load.beam!r} that is held at {end.point!r}, a point of a fixed body"
-            turns = isinstance(load, BeamMoment) and isinstance(end, PinnedEnd)
-            if end.point in fixed and not turns:
-                yield Mistake(f"loads.{name}.at", found, "a place of the beam that can move")
+        if isinstance(load, BeamForce | BeamMoment) and load.at in (0.0, 1.0):
+            _, end, _ = scene.beams[load.beam].ends[int(load.at)]
+            held = end.point in freedoms.owners and scene.bodies[freedoms.owners[str(end.point)]].motion == "fixed"
+            yield from broken(
+                held
+                and not (isinstance(load, BeamMoment) and isinstance(end, PinnedEnd))
+                and Mistake(
+                    f"loads.{name}.at",
+                    f"{load.at:g}, an end of {load.beam!r} that is held at {end.point!r}, a point of a fixed body",
+                    "a place of the beam that can move",
+                )
+            )
 
 
 def _without_motion(freedoms: Freedoms, key: str, acting: BodyLoad | Drive, driven: list[str]) -> Iterator[Mistake]:
@@ -314,13 +316,12 @@ def _without_motion(freedoms: Freedoms, key: str, acting: BodyLoad | Drive, driv
         place, of = ("body", "") if turns else ("point", f" {getattr(acting, 'point', '')!r}, a point of")
         allowed = f"a {place} that can move: {', '.join(map(repr, names)) or 'there is none'}"
         return iter((Mistake(f"{key}.{place}", f"{_ACTING[acting.kind]}{of} the fixed body {owner!r}", allowed),))
-    row, guide = freedoms.row(acting), [] if any(body.rules()) else freedoms.guide(owner)
+    row, guide = freedoms.row(acting), freedoms.guide(owner)
     drives = {name: scene.drives[name] for name in driven if not load or scene.drives[name].begins is None}
     opposed = [name for name, drive in drives.items() if _opposed(freedoms, acting, drive)]
     across = not independent([*guide, row])[-1]
     twice = bool(opposed) or not independent([*guide, *map(freedoms.row, drives.values()), row])[-1]
     first = " and ".join(f"drives.{name}" for name in opposed or drives)
-    way = "towards the pivot" if isinstance(body, TurningBody) else "across the slide"
     return first_broken(
         across
         and turns
@@ -329,7 +330,9 @@ def _without_motion(freedoms: Freedoms, key: str, acting: BodyLoad | Drive, driv
         ),
         across
         and Mistake(
-            f"{key}.direction", f"a direction {way} of {owner!r}", "a direction along which the point can move"
+            f"{key}.direction",
+            f"a direction {'towards the pivot' if isinstance(body, TurningBody) else 'across the slide'} of {owner!r}",
+            "a direction along which the point can move",
         ),
         twice
         and load
@@ -347,6 +350,6 @@ def _opposed(freedoms: Freedoms, load: BodyLoad | Drive, drive: Drive) -> bool:
     """True for a force at the place of a driven displacement, with a component along the displacement."""
     if not isinstance(load, Force) or isinstance(drive, RotationDrive):
         return False
-    apart = freedoms.places[load.point] - freedoms.places[drive.point]
+    apart = np.abs(freedoms.places[load.point] - freedoms.places[drive.point]).max()
     component = abs(float(unit(load.direction) @ unit(drive.direction)))
-    return float(abs(apart).max()) <= NEGLIGIBLE * freedoms.extent and component > NEGLIGIBLE
+    return bool(apart <= NEGLIGIBLE * freedoms.extent) and component > NEGLIGIBLE

@@ -9,7 +9,7 @@ import numpy as np
 
 from cprbm_scene.curve_records import MEETING, shape_of
 from cprbm_scene.mistakes import Mistake, broken, first_broken, written_place
-from cprbm_scene.statement import Beam, FreeEnd, PinnedEnd, Scene, Stop, TurningBody, WeldedEnd
+from cprbm_scene.statement import Beam, PinnedEnd, Scene, Stop, TurningBody, WeldedEnd
 
 TAUT = 1e-6
 """Share of the length by which a beam must exceed the distance of its points: a taut beam is straight."""
@@ -22,24 +22,30 @@ STRAIGHT = 1e-9
 def distant_ends(scene: Scene) -> Iterator[Mistake]:
     """Ends of beams away from their points, unless an assembly brings them together."""
     for name, beam in scene.beams.items():
-        for side in ("start", "end"):
-            apart, joint, at = _distance(scene, beam, side), getattr(beam, side), getattr(beam.curve, side)
-            if apart is not None and not (side == "end" and is_apart(scene, beam)):
-                found = f"a beam end that meets no body: the curve's {side} is at {written_place(at)} m, the point "
-                found += f"{joint.point!r} at {written_place(scene.place_of(joint.point))} m, {apart:.3g} m apart"
-                yield Mistake(f"beams.{name}.{side}", found, f"at most {MEETING:g} of the beam's length between them")
+        for side, joint, place in beam.ends:
+            apart, point = _distance(scene, beam, side), str(joint.point)
+            yield from broken(
+                apart is not None
+                and not (side == "end" and (is_apart(scene, beam) or scene.lacks("", "assembly")))
+                and Mistake(
+                    f"beams.{name}.{side}",
+                    f"a beam end that meets no body: the curve's {side} is at {written_place(place)} m, the point "
+                    f"{point!r} at {written_place(scene.place_of(point))} m, {apart:.3g} m apart",
+                    f"at most {MEETING:g} of the beam's length between them",
+                )
+            )
 
 
 def is_apart(scene: Scene, beam: Beam) -> bool:
-    """True if an assembly brings the beam's end to the point; False if the curve or the point does not exist."""
+    """True if an assembly brings the beam's end to the point."""
     assembled = scene.assembly is not None and isinstance(beam.end, PinnedEnd)
     return assembled and _distance(scene, beam, "end") is not None
 
 
 def _distance(scene: Scene, beam: Beam, side: str) -> float | None:
-    """Distance of an end from the point, m; None if the end meets the point, or either does not exist."""
+    """Distance of an end from the point, m; None if the end meets the point or has none."""
     point = getattr(beam, side).point
-    if point not in scene.owners or any(beam.curve.rules()):
+    if point not in scene.owners:
         return None
     apart = dist(getattr(beam.curve, side), scene.place_of(point))
     return None if apart <= MEETING * shape_of(beam.curve).length else apart
@@ -47,21 +53,19 @@ def _distance(scene: Scene, beam: Beam, side: str) -> float | None:
 
 def wrong_assembly(scene: Scene) -> Iterator[Mistake]:
     """An assembly without distant ends, moments on other ends, beams too short for their points."""
-    joints = [joint for beam in scene.beams.values() for joint in (beam.start, beam.end)]
-    known = all(isinstance(joint, FreeEnd) or joint.point in scene.owners for joint in joints)
-    if scene.assembly is None or not known:
+    if scene.assembly is None:
         return
     apart = [name for name, beam in scene.beams.items() if is_apart(scene, beam)]
     yield from broken(
         not apart
+        and scene.whole()
         and Mistake(
             "assembly",
             "no beam with an end to be brought to its point",
             "a beam whose pinned end is drawn apart from its point, or no assembly",
         ),
         *(
-            name in scene.beams
-            and name not in apart
+            name not in apart
             and Mistake(
                 f"assembly.moments.{name}",
                 f"a moment on {name!r}, whose end is where it belongs",
@@ -74,7 +78,6 @@ def wrong_assembly(scene: Scene) -> Iterator[Mistake]:
         beam = scene.beams[name]
         point, length = str(beam.end.point), shape_of(beam.curve).length
         reach = dist(beam.curve.start, scene.place_of(point))
-        stays = _stays(scene, beam.start.point) and _stays(scene, point)
         yield from broken(
             not isinstance(beam.start, WeldedEnd)
             and Mistake(
@@ -83,7 +86,8 @@ def wrong_assembly(scene: Scene) -> Iterator[Mistake]:
                 "a weld: the beam has to stand by itself before it is assembled",
             ),
             isinstance(beam.start, WeldedEnd)
-            and stays
+            and _stays(scene, beam.start.point)
+            and _stays(scene, point)
             and reach >= (1.0 - TAUT) * length
             and Mistake(
                 f"beams.{name}.end",
@@ -95,10 +99,9 @@ def wrong_assembly(scene: Scene) -> Iterator[Mistake]:
 
 def _stays(scene: Scene, point: str | None) -> bool:
     """True if a point is at rest without loads and with all drives at zero."""
-    name, turned = scene.owners.get(str(point)), {getattr(drive, "body", None) for drive in scene.drives.values()}
-    body = scene.bodies.get(str(name))
-    pivots = isinstance(body, TurningBody) and (body.about == point or name in turned)
-    return body is not None and (body.motion == "fixed" or pivots)
+    name = scene.body_of(str(point))
+    body, turned = scene.bodies[name], [getattr(drive, "body", None) for drive in scene.drives.values()]
+    return body.motion == "fixed" or (isinstance(body, TurningBody) and (body.about == point or name in turned))
 
 
 def wrong_stops(scene: Scene) -> Iterator[Mistake]:
@@ -106,35 +109,40 @@ def wrong_stops(scene: Scene) -> Iterator[Mistake]:
     taken, owners = dict[tuple[str, str], str](), scene.owners
     for name, stop in scene.stops.items():
         key, first = f"stops.{name}", taken.setdefault((stop.beam, stop.end), name)
-        again = f"the {stop.end} of {stop.beam!r}, which stops.{first} limits"
-        yield from broken(first != name and Mistake(key, again, "one stop for each end"))
-        joint = getattr(scene.beams.get(stop.beam), stop.end, None)
-        body, other = owners.get(getattr(joint, "point", None) or ""), owners.get(stop.towards)
-        if joint is not None and not isinstance(joint, PinnedEnd):
-            found = f"the {stop.end} of {stop.beam!r}, whose joint is {joint.joint!r}"
-            yield Mistake(f"{key}.end", found, "an end whose joint is 'pin'")
-        elif joint is not None and body is not None and other is not None:
-            mistakes = first_broken(
-                body != other
-                and Mistake(
-                    f"{key}.towards",
-                    f"{stop.towards!r}, a point of {other!r}",
-                    f"a point of {body!r}, to which the end is pinned",
-                ),
-                scene.place_of(stop.towards) == scene.place_of(joint.point)
-                and Mistake(f"{key}.towards", f"{stop.towards!r}, which is where the pin is", "a point away from it"),
-            )
-            yield from list(mistakes) or _exceeded_as_drawn(scene, key, stop)
+        joint = getattr(scene.beams[stop.beam], stop.end)
+        body, other = owners.get(joint.point), owners[stop.towards]
+        yield from broken(
+            first != name
+            and Mistake(key, f"the {stop.end} of {stop.beam!r}, which stops.{first} limits", "one stop for each end")
+        )
+        mistakes = first_broken(
+            not isinstance(joint, PinnedEnd)
+            and Mistake(
+                f"{key}.end",
+                f"the {stop.end} of {stop.beam!r}, whose joint is {joint.joint!r}",
+                "an end whose joint is 'pin'",
+            ),
+            body != other
+            and Mistake(
+                f"{key}.towards",
+                f"{stop.towards!r}, a point of {other!r}",
+                f"a point of {body!r}, to which the end is pinned",
+            ),
+            body == other
+            and scene.place_of(stop.towards) == scene.place_of(joint.point)
+            and Mistake(f"{key}.towards", f"{stop.towards!r}, which is where the pin is", "a point away from it"),
+        )
+        yield from list(mistakes) or _exceeded_as_drawn(scene, key, stop)
 
 
 def _exceeded_as_drawn(scene: Scene, key: str, stop: Stop) -> Iterator[Mistake]:
     beam = scene.beams[stop.beam]
-    if not beam.sound or (stop.end == "end" and is_apart(scene, beam)):
+    if stop.end == "end" and is_apart(scene, beam):
         return iter(())
-    u, sign = (0.0, 1.0) if stop.end == "start" else (1.0, -1.0)
-    tx, ty = sign * shape_of(beam.curve).tangent(np.array([u]))[0]
-    (px, py), (qx, qy) = scene.place_of(getattr(beam, stop.end).point), scene.place_of(stop.towards)
-    angle = (atan2(ty, tx) - atan2(qy - py, qx - px)) % tau
+    start, end = shape_of(beam.curve).tangent(np.array([0.0, 1.0]))
+    tangent = start if stop.end == "start" else -end
+    line = np.subtract(scene.place_of(stop.towards), scene.place_of(getattr(beam, stop.end).point))
+    angle = (atan2(*tangent[::-1]) - atan2(*line[::-1])) % tau
     angle -= tau if angle > pi + STRAIGHT else 0.0
     least, most = -inf if stop.least is None else stop.least, inf if stop.most is None else stop.most
     stands = f"rad, where the beam as drawn stands at {angle:.6g} rad ({degrees(angle):.4g} degrees)"

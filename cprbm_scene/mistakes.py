@@ -39,7 +39,7 @@ class Mistake:
 
     Attributes:
         key: the key path in the file, such as ``beams.beam1.thickness``; empty for the file as a whole.
-        found: the value found.
+        found: the value found; empty for the consequence of another mistake.
         allowed: the values allowed.
         file: the name of the file; empty for a scene built in Python.
     """
@@ -80,6 +80,11 @@ def first_of(found: Iterable[Mistake], file: str = "") -> list[Mistake]:
     """The first :data:`MOST` mistakes, and a note if there are more."""
     some = list(islice(found, MOST + 1))
     return some if len(some) <= MOST else [*some[:MOST], Mistake("", "more mistakes", "none; mend these first", file)]
+
+
+def mistakes_of(error: ValidationError) -> list[Mistake]:
+    """The mistakes of a record with rules, from pydantic's error."""
+    return [mistake for details in error.errors() for mistake in details["ctx"]["error"].mistakes]
 
 
 def hint(word: str, known: Iterable[str]) -> str:
@@ -126,7 +131,7 @@ _ALLOWED = {
     "model_type": "a table",
     "model_attributes_type": "a table",
     "string_unicode": "a text in quotes",
-    "string_pattern_mismatch": "a name of letters, digits, '_' and '-' that starts with a letter or '_'",
+    "string_pattern_mismatch": "a name of letters, digits, '_', '-' and single spaces inside, first a letter or '_'",
     "greater_than": "a number greater than {gt:g}",
     "greater_than_equal": "a number of at least {ge:g}",
     "less_than": "a number less than {lt:g}",
@@ -142,12 +147,12 @@ _ALLOWED = {
 def in_words(error: ValidationError, data: object, fields: Mapping[str, FieldInfo]) -> Iterator[Mistake]:
     """Mistakes of a record with ``fields``, read from ``data``, with keys below the record's own.
 
-    Items with mistakes of their own, and parameters with mistakes, need no further mistake.
+    Items with mistakes of their own need no further mistake.
     """
     for details in error.errors():
         kind, given, context = details["type"], details.get("input"), details.get("ctx", {})
         short = kind == "too_short" and isinstance(given, tuple) and len(given) >= context["min_length"]
-        if not short and kind != "repeats":
+        if not short:
             key = _key(details["loc"], data, own=kind in ("missing", "extra_forbidden"))
             inner = context.get("error")
             own = inner.mistakes if isinstance(inner, SceneError) else [_mistake(details, fields)]
@@ -167,6 +172,8 @@ def _mistake(details: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Mistake:
             return unknown_name("", str(loc[-1]), "key here", (name for name in fields if name != "file"))
         case "string_pattern_mismatch" if "x00" in context["pattern"]:
             allowed = "a text without control characters"
+        case "string_pattern_mismatch" if " " not in context["pattern"]:
+            allowed = "a name of letters, digits, '_' and '-' that starts with a letter or '_'"
         case "missing":
             found = "nothing"
             allowed = "an item here" if isinstance(loc[-1], int) else "a value: this key is required"

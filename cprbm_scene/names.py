@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Container, Iterator, Mapping
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from cprbm_scene.statement import (
     DisplacementDrive,
     EdgeContact,
     FreeEnd,
+    PaperContact,
     PinnedEnd,
     Quantity,
     RigidContact,
@@ -58,20 +59,39 @@ def point_names(scene: Scene) -> list[str]:
 
 
 def repeated_names(scene: Scene) -> Iterator[Mistake]:
-    """Names of points, bodies, beams, contacts, stops, pins, loads and drives with repeated or reserved names."""
-    bodies = [(f"bodies.{name}", name) for name in scene.bodies]
-    points = [(f"bodies.{name}.points.{point}", point) for name, body in scene.bodies.items() for point in body.points]
-    others = [(f"{table}.{name}", name) for table in _TABLES for name in getattr(scene, table)]
-    named, first = (*bodies, *points, *others), dict[str, str]()
-    allowed = "names that are used once among points, bodies, beams, loads, drives, contacts, stops and pins"
+    """Names of points, bodies, beams, contacts, stops, pins, loads and drives with repeated or reserved names.
+
+    A scene has a body for each named free end, unless the name of the body was taken.
+    """
+    named = [
+        *((f"bodies.{name}", name) for name in scene.bodies),
+        *((f"bodies.{name}.points.{point}", point) for name, body in scene.bodies.items() for point in body.points),
+        *((f"{table}.{name}", name) for table in _TABLES for name in getattr(scene, table)),
+    ]
+    first = {name: key for key, name in reversed(named)}
     return broken(
+        *(
+            isinstance(end, FreeEnd)
+            and end.point is not None
+            and Mistake(
+                f"beams.{name}.{side}.point",
+                f"{end.point!r}, and another body with the name '{end.point}-body'",
+                "another name of the free end",
+            )
+            for name, beam in scene.beams.items()
+            for side, end, _ in beam.ends
+        ),
         *(
             Mistake(key, f"the name {name!r}, which stands for the scene itself", "another name")
             if name == RESERVED
-            else first.setdefault(name, key) != key
-            and Mistake(key, f"the name {name!r}, which {first[name]} has too", allowed)
+            else first[name] != key
+            and Mistake(
+                key,
+                f"the name {name!r}, which {first[name]} has too",
+                "names that are used once among points, bodies, beams, loads, drives, contacts, stops and pins",
+            )
             for key, name in named
-        )
+        ),
     )
 
 
@@ -86,31 +106,49 @@ def repeated_contacts(scene: Scene) -> Iterator[Mistake]:
             what, part = "beam and the shape", ""
             same = frozenset(value for value in contact if value[0] not in {"thick", "paper"})
         first = seen.setdefault(same, name)
-        if first != name:
-            yield Mistake(f"contacts.{name}{part}", f"the {what} of contacts.{first} again", f"each {what} once")
+        yield from broken(
+            first != name
+            and Mistake(f"contacts.{name}{part}", f"the {what} of contacts.{first} again", f"each {what} once")
+        )
 
 
-def unknown_names(scene: Scene) -> Iterator[Mistake]:
-    """References to materials, points, bodies, beams, loads, drives and stages without a definition."""
-    edges = [name for name, contact in scene.contacts.items() if isinstance(contact, RigidContact)]
-    known: dict[str, Iterable[str]] = {
-        "material": scene.materials,
-        "point": point_names(scene),
-        "body": scene.bodies,
-        "beam": scene.beams,
-        "stage": [stage.name for stage in scene.stages],
-        "load": scene.loads,
-        "load or drive": (*scene.loads, *scene.drives),
-        "beam or contact with a rigid edge": (*scene.beams, *edges),
+MECHANICAL = ("point", "body", "beam")
+"""Kinds of named parts without which a record has no place in the mechanism."""
+_KINDS: Mapping[str, tuple[str, ...]] = frozendict(
+    {
+        "material": ("materials",),
+        "point": ("points",),
+        "body": ("bodies",),
+        "beam": ("beams",),
+        "stage": ("stages",),
+        "load": ("loads",),
+        "load or drive": ("loads", "drives"),
+        "beam or contact with a rigid edge": ("beams", "edges"),
     }
+)
+"""Kinds of named parts, and their tables: ``points`` are of all bodies, ``edges`` the contacts with rigid edges."""
+
+
+def unknown_names(scene: Scene, kinds: Collection[str] = tuple(_KINDS)) -> Iterator[Mistake]:
+    """References to parts of some kinds without a definition; without words if the reader left the part out."""
+    tables = {
+        "points": point_names(scene),
+        "stages": [stage.name for stage in scene.stages],
+        "edges": [name for name, contact in scene.contacts.items() if isinstance(contact, RigidContact)],
+    }
+    tables |= {table: list(getattr(scene, table)) for table in ("materials", "bodies", "beams", "loads", "drives")}
+    known = {kind: [name for table in _KINDS[kind] for name in tables[table]] for kind in kinds}
     return (
-        unknown_name(f"{key}.{of.key or field}{part}".removeprefix("."), name, of.kind, known[of.kind])
+        Mistake(place, "", "")
+        if scene.lacks(name, *_KINDS[of.kind])
+        else unknown_name(place, name, of.kind, [*known[of.kind], *scene.left_out(*_KINDS[of.kind])])
         for key, record in records(scene)
         for field, info in type(record).model_fields.items()
         for of in info.metadata
-        if isinstance(of, Of)
+        if isinstance(of, Of) and of.kind in kinds
         for part, name in _named(getattr(record, field))
         if name not in known[of.kind]
+        for place in [f"{key}.{of.key or field}{part}".removeprefix(".")]
     )
 
 
@@ -146,6 +184,10 @@ _OF: Mapping[Quantity, str] = frozendict(
 _LISTED = 200
 """Stations of a stage in a message."""
 
+_BEARERS = ("bodies", "points", "beams", "contacts", "stops")
+_OF_JOINTS: Container[Quantity] = ("reaction", "reaction_moment", "moment")
+"""Quantities of parts that a joint to other parts has, or a drive."""
+
 _SEVERAL = STRESSES | {"displacement", "reaction", "ends"}
 """Quantities of more than one number."""
 
@@ -156,7 +198,7 @@ _LEAST_EXTENT = 1e-3
 
 
 def wrong_probes(scene: Scene) -> Iterator[Mistake]:
-    """Probes of unknown names, of parts without the quantity, and repeated probes."""
+    """Probes of unknown names, of parts without the quantity, repeated probes, and places of other than stress."""
     bearers = _bearers(scene)
     everything = list(dict.fromkeys(name for names in bearers.values() for name in names))
     first = {probe.name: i for i, probe in reversed(list(enumerate(scene.probes)))}
@@ -165,11 +207,25 @@ def wrong_probes(scene: Scene) -> Iterator[Mistake]:
         allowed = f"{probe.quantity!r} of {part}: {', '.join(map(repr, known)) or 'there is none'}"
         yield from broken(
             probe.of not in everything
-            and unknown_name(f"probes[{i}].of", probe.of, "point, body, beam, contact or stop", everything),
+            and not scene.lacks(probe.of, *_BEARERS)
+            and unknown_name(
+                f"probes[{i}].of",
+                probe.of,
+                "point, body, beam, contact or stop",
+                [*everything, *scene.left_out(*_BEARERS)],
+            ),
             probe.of in everything
             and probe.of not in known
+            and (scene.whole() or probe.quantity not in _OF_JOINTS)
             and Mistake(f"probes[{i}]", f"{probe.quantity!r} of {probe.of!r}", allowed),
             first[probe.name] < i and Mistake(f"probes[{i}]", f"{probe.name!r} again", "each probe once"),
+            "points" in probe.model_fields_set
+            and probe.quantity not in STRESSES
+            and Mistake(
+                f"probes[{i}].points",
+                f"places along {probe.name!r}",
+                "points for 'bending_stress' and 'combined_stress' only",
+            ),
         )
 
 
@@ -182,7 +238,8 @@ def wrong_claims(scene: Scene) -> Iterator[Mistake]:
         unasked = claim.stage in ascending and probe is not None and not probe.asked_in(claim.stage)
         stations = (value for stage in scene.stages if claim.in_stage(stage.name) for value in stage.stations[:_LISTED])
         yield from broken(
-            not (probe or critical) and unknown_name(f"{key}.probe", claim.probe, "probe", [*probes, CRITICAL]),
+            not (probe or critical or scene.lacks(claim.probe, "probes"))
+            and unknown_name(f"{key}.probe", claim.probe, "probe", [*probes, CRITICAL]),
             claim.value is not None
             and probe is not None
             and probe.quantity in _SEVERAL
@@ -194,6 +251,7 @@ def wrong_claims(scene: Scene) -> Iterator[Mistake]:
             and Mistake(f"{key}.station", f"{claim.station:g}", f"none: of {CRITICAL!r} the first of a stage is meant"),
             claim.station is not None
             and not (unasked or critical)
+            and scene.whole(["stages"])
             and not any(claim.speaks_of(*station) for station in _beside(ascending, claim.station))
             and Mistake(
                 f"{key}.station",
@@ -225,9 +283,31 @@ def wrong_stages(scene: Scene) -> Iterator[Mistake]:
 def wrong_spacings(scene: Scene) -> Iterator[Mistake]:
     """Elements of the formulation ``paper`` along an axis with reversals or without extent of the beam."""
     for name, beam in scene.beams.items():
-        if beam.paper is not None and beam.sound and not _runs_along(beam, "xy".index(beam.paper.uniform)):
-            found = f"{beam.paper.uniform!r}, along which the curve turns back or does not run"
-            yield Mistake(f"beams.{name}.paper.uniform", found, "an axis along which the curve runs one way")
+        yield from broken(
+            beam.paper is not None
+            and not _runs_along(beam, "xy".index(beam.paper.uniform))
+            and Mistake(
+                f"beams.{name}.paper.uniform",
+                f"{beam.paper.uniform!r}, along which the curve turns back or does not run",
+                "an axis along which the curve runs one way",
+            )
+        )
+
+
+def wrong_paper(scene: Scene) -> Iterator[Mistake]:
+    """Data of contacts for the formulation ``paper`` on beams outside the contact."""
+    for name, contact in scene.contacts.items():
+        key, names = f"contacts.{name}.paper", ", ".join(map(repr, contact.beams))
+        allowed = f"one of the pair: {names}" if isinstance(contact, BeamContact) else f"the contact's beam {names}"
+        boundary = contact.paper.boundary if isinstance(contact.paper, PaperContact) else contact.beams[0]
+        related = contact.paper.related if contact.paper is not None else ()
+        yield from broken(
+            boundary not in contact.beams and Mistake(f"{key}.boundary", repr(boundary), allowed),
+            *(
+                beam not in contact.beams and Mistake(f"{key}.related.{beam}", f"the beam {beam!r}", allowed)
+                for beam in related
+            ),
+        )
 
 
 def _runs_along(beam: Beam, axis: int) -> bool:
@@ -246,9 +326,9 @@ def _beside(ascending: Mapping[str, list[float]], value: float) -> Iterator[tupl
 def _bearers(scene: Scene) -> dict[str, list[str]]:
     """Names of the parts of the scene with a quantity, by the values of ``_OF``."""
     fixed = {point for body in scene.bodies.values() if body.motion == "fixed" for point in body.points}
-    ends = [end for beam in scene.beams.values() for end in (beam.start, beam.end)]
-    supports = [end.point for end in ends if not isinstance(end, FreeEnd) and end.point in fixed]
-    supports += [point for pin in scene.pins.values() for point in pin.points if point in fixed]
+    joined = [str(end.point) for beam in scene.beams.values() for _, end, _ in beam.ends]
+    joined += [point for pin in scene.pins.values() for point in pin.points]
+    supports = [point for point in joined if point in fixed]
     moved = [body.about for body in scene.bodies.values() if isinstance(body, TurningBody)]
     moved += [drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)]
     moved += [name for name, body in scene.bodies.items() if isinstance(body, SlidingBody)]
@@ -277,8 +357,8 @@ def connected(names: set[str], groups: Collection[set[str]]) -> set[str]:
 
 def _pinned(scene: Scene, contact: EdgeContact) -> bool:
     """True if pins at the same point join the beam and the edge's body; fixed bodies count as the same body."""
-    beam, own = scene.beams.get(contact.beam), scene.bodies.get(contact.body)
-    ends = {end.point for end in (beam.start, beam.end) if isinstance(end, PinnedEnd)} if beam else set[str]()
-    together = connected(ends, [set(pin.points) for pin in scene.pins.values()])
-    fixed = [body for body in scene.bodies.values() if body.motion == "fixed"]
-    return any(together & set(body.points) for body in (fixed if own in fixed else [own]) if body is not None)
+    own = scene.bodies[contact.body]
+    pinned = {end.point for _, end, _ in scene.beams[contact.beam].ends if isinstance(end, PinnedEnd)}
+    together = connected(pinned, [set(pin.points) for pin in scene.pins.values()])
+    bodies = [body for body in scene.bodies.values() if body == own or body.motion == own.motion == "fixed"]
+    return any(together & set(body.points) for body in bodies)

@@ -95,8 +95,6 @@ class OffsetQuestion(Record):
                 for i, claim in enumerate(self.claims)
             ),
         )
-        if any(self.curve.rules()):
-            return
         u, shape = np.linspace(0.0, 1.0, SAMPLES), shape_of(self.curve)
         p, tangents = shape.point(u), shape.tangent(u)
         across = tangents[:, 0 if self.axis == "y" else 1]
@@ -104,9 +102,11 @@ class OffsetQuestion(Record):
             yield Mistake("axis", repr(self.axis), "an axis to which the curve is nowhere parallel")
             return
         normals = self.sign * np.column_stack((-tangents[:, 1], tangents[:, 0]))
-        allowed = "less than the radius of curvature on that side of the curve"
         for part, offsets in (("offsets", self.offsets), ("shown.offsets", shown)):
             for i, t in enumerate(offsets):
                 # beyond the radius of curvature the offset curve runs backwards, with a cusp
                 forwards = (np.diff(p + t * normals, axis=0) * tangents[:-1]).sum(axis=1)
-                yield from broken(np.min(forwards) <= 0.0 and Mistake(f"{part}[{i}]", f"{t:g}", allowed))
+                yield from broken(
+                    np.min(forwards) <= 0.0
+                    and Mistake(f"{part}[{i}]", f"{t:g}", "less than the radius of curvature on that side of the curve")
+                )

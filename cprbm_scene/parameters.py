@@ -12,6 +12,7 @@ import math
 import operator
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import Annotated, NamedTuple, get_args
 
@@ -19,7 +20,7 @@ from pydantic import Field, ValidationInfo, ValidatorFunctionWrapHandler, WithJs
 
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import SceneError, unknown_name
-from cprbm_scene.units import ANGLE, NUMBER, OR_EXPRESSION, SIZES, Reading, Record, Unit, Units, mistake
+from cprbm_scene.units import ANGLE, NUMBER, OR_EXPRESSION, SIZES, Reading, Record, Unit, Units, mistake, silent
 
 LONGEST = 300
 """Largest number of characters of an expression: the evaluation of a longer expression could exhaust the stack."""
@@ -50,8 +51,10 @@ def _numbers(values: Sequence[Value], units: Units) -> tuple[list[float], Unit |
     unit = next((value.unit for value in values if value.unit is not None), None)
     if unit is None:
         return [value.number for value in values], None
-    different = any(value.unit is not None and value.unit.dimension != unit.dimension for value in values)
-    _refuse(different, "different units in one sum or function")
+    _refuse(
+        any(value.unit is not None and value.unit.dimension != unit.dimension for value in values),
+        "different units in one sum or function",
+    )
     return [value.number if value.unit is not None else unit.in_si(value.number, units) for value in values], unit
 
 
@@ -170,8 +173,8 @@ _NAMED: Mapping[str, Value] = frozendict(
 
 
 def _or_expression(value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
-    expression = isinstance(info.context, Reading) and isinstance(value, str) and value.startswith("=")
-    return value if expression else handler(value)
+    of_file = isinstance(info.context, Reading)
+    return value if of_file and isinstance(value, str) and value.startswith("=") else handler(value)
 
 
 Scatter = Annotated[float, Field(gt=0.0)] | None
@@ -203,13 +206,22 @@ def register(reading: Reading, parameters: Mapping[str, Parameter]) -> Mapping[s
     """The parameters in SI with the reading's settings; the reading evaluates expressions from now on.
 
     Raises:
-        SceneError: an unknown name or unit, a cycle, or a value out of range.
+        SceneError: unknown names or units, cycles, or values out of range.
     """
-    for name in reading.settings:
-        if name not in parameters:
-            raise SceneError([unknown_name(name, name, "parameter", parameters)])
     resolved = _Resolved(reading, parameters)
-    found = {name: resolved.in_si(name) for name in parameters}
+    mistakes = [
+        unknown_name(name, name, "parameter", parameters)
+        for name in reading.settings
+        if name not in parameters and not resolved.left_out(name)
+    ]
+    found = {}
+    for name in parameters:
+        try:
+            found[name] = resolved.in_si(name)
+        except SceneError as error:
+            mistakes += [replace(each, key=each.key or name) for each in error.mistakes]
+    if mistakes:
+        raise SceneError(mistakes)
     reading.evaluate = resolved.evaluate
     return frozendict(found)
 
@@ -219,7 +231,12 @@ class _Resolved:
 
     def __init__(self, reading: Reading, parameters: Mapping[str, Parameter]) -> None:
         self._reading, self._parameters = reading, parameters
-        self._values: dict[str, Value | None] = {}  # None during the evaluation
+        self._values: dict[str, Value | None] = {}  # None during the evaluation, and without a value
+        self._open: list[str] = []
+
+    def left_out(self, name: str) -> bool:
+        """True if the file states a parameter of this name, with a mistake."""
+        return not {"parameters", f"parameters.{name}"}.isdisjoint(self._reading.left_out)
 
     def evaluate(self, text: str, unit: Unit | None, key: str = "") -> float:
         """Number of an expression in SI, for a key with a ``unit``; None without a check of the unit."""
@@ -237,8 +254,11 @@ class _Resolved:
         try:
             return evaluated(text.removeprefix("="), self._named, self._reading.units)
         except ExpressionError as error:
-            known = ", ".join((*self._parameters, "pi", *FUNCTIONS))
-            raise mistake(f"{text!r}: {error}", f"an expression of numbers, + - * / ** ( ) and {known}", key) from None
+            raise mistake(
+                f"{text!r}: {error}",
+                f"an expression of numbers, + - * / ** ( ) and {', '.join((*self._parameters, 'pi', *FUNCTIONS))}",
+                key,
+            ) from None
 
     def in_si(self, name: str) -> Parameter:
         """A parameter with all numbers in SI."""
@@ -256,16 +276,17 @@ class _Resolved:
         return Parameter(value=number, unit=str(own if given.unit else unit or NUMBER), range=span, tolerance=scatter)
 
     def _named(self, name: str) -> Value:
-        if name not in self._parameters:
+        if name not in self._parameters and not self.left_out(name):
             raise ExpressionError(unknown_name("", name, "parameter", self._parameters).found)
-        if name not in self._values:
+        _refuse(name in self._open, f"a cycle: {' -> '.join((*self._open, name))}")
+        if name in self._parameters and name not in self._values:
             self._values[name] = None
-            self._values[name] = self._computed(name, self._parameters[name])
-        value = self._values[name]
-        if value is not None:
-            return value
-        cycle = [*(each for each, value in self._values.items() if value is None), name]
-        raise ExpressionError(f"a cycle: {' -> '.join(cycle)}")
+            self._open.append(name)
+            try:
+                self._values[name] = self._computed(name, self._parameters[name])
+            finally:
+                self._open.pop()
+        return self._values.get(name) or silent()
 
     def _computed(self, name: str, given: Parameter) -> Value:
         setting = self._reading.settings.get(name)

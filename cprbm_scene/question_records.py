@@ -73,25 +73,29 @@ CRITICAL = "critical"
 
 def _of_stage(reading: Reading, stage: Mapping[str, Any]) -> Unit | None:
     """Unit of a stage's stations: the unit of the stepped load or drive."""
-    return reading.stepped.get(stage.get("steps", ""))
+    return _unit_of_stepped(reading, stage.get("steps", ""))
+
+
+def _unit_of_stepped(reading: Reading, name: str) -> Unit | None:
+    loads, drives = (reading.parts.get(table, {}) for table in ("loads", "drives"))
+    return getattr(loads.get(name) or drives.get(name), "unit", None)
 
 
 def _of_stations(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
     """Unit of the stations of a claim's stages."""
-    stage = claim.get("stage")
-    units = {unit for name, unit in reading.stages.items() if stage in (None, name)}
+    stages = [each for each in reading.parts.get("stages", {}).values() if claim.get("stage") in (None, each.name)]
+    units = {_unit_of_stepped(reading, each.steps) for each in stages} - {None}
     if len(units) > 1 and reading.units != Units():
-        found = "a number in the unit of several stages, which step different kinds"
-        raise mistake(found, "a stage beside it")
+        raise mistake("a number in the unit of several stages, which step different kinds", "a stage beside it")
     return next(iter(units), None)
 
 
 def _of_value(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
     """Unit of a claim's probe."""
-    probe = claim.get("probe")
-    if probe == CRITICAL or reading.probes.get(str(probe), LENGTH) is None:
-        return _of_stations(reading, claim)
-    return reading.probes.get(str(probe))
+    probe = reading.parts.get("probes", {}).get(str(claim.get("probe")))
+    unit = None if probe is None else UNITS.get(probe.quantity)
+    of_stage = claim.get("probe") == CRITICAL or (probe is not None and unit is None)
+    return _of_stations(reading, claim) if of_stage else unit
 
 
 Station = Annotated[float, Measured(_of_stage)]
@@ -138,12 +142,18 @@ class Stage(Record):
         stations, together = self.stations, self.together
         ascending = sorted(range(len(stations)), key=stations.__getitem__)
         again = {max(i, j) for i, j in pairwise(ascending) if isclose(stations[i], stations[j], rel_tol=1e-9)}
-        allowed = "each value once in a stage; a further stage may go back to it"
-        different = together[:1] in ((), (self.steps,)) and len(set(together)) == len(together)
         known = set(stations)
         return broken(
-            *(Mistake(f"stations[{j}]", f"{stations[j]:g} again", allowed) for j in sorted(again)),
-            not different and Mistake("steps", f"{list(together)}", "different loads, each once"),
+            *(
+                Mistake(
+                    f"stations[{j}]",
+                    f"{stations[j]:g} again",
+                    "each value once in a stage; a further stage may go back to it",
+                )
+                for j in sorted(again)
+            ),
+            not (together[:1] in ((), (self.steps,)) and len(set(together)) == len(together))
+            and Mistake("steps", f"{list(together)}", "different loads, each once"),
             *(
                 value not in known and Mistake(f"shown[{j}]", f"{value:g}", "one of the stage's stations")
                 for j, value in enumerate(self.shown)
@@ -176,12 +186,6 @@ class Probe(Record):
     def name(self) -> str:
         """The probe's name in tables and JSON."""
         return f"{self.of}.{self.quantity}"
-
-    def rules(self) -> Iterator[Mistake]:
-        """Places of quantities other than stress."""
-        wrong = "points" in self.model_fields_set and self.quantity not in STRESSES
-        allowed = "points for 'bending_stress' and 'combined_stress' only"
-        return broken(wrong and Mistake("points", f"places along {self.name!r}", allowed))
 
 
 class Claim(Record):

@@ -9,25 +9,27 @@ from __future__ import annotations
 import re
 import tomllib
 from codecs import BOM_UTF8
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from itertools import chain
+from itertools import islice
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
 from cprbm_scene.clearance import wrong_clearance
+from cprbm_scene.drafts import Draft, PartialScene
 from cprbm_scene.freedoms import wrong_actions, wrong_mobility
 from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
-from cprbm_scene.mistakes import Mistake, SceneError, first_of, unknown_name
+from cprbm_scene.mistakes import MOST, Mistake, SceneError, first_of, mistakes_of, unknown_name
 from cprbm_scene.names import (
-    records,
+    MECHANICAL,
     repeated_contacts,
     repeated_names,
     unknown_names,
     wrong_claims,
+    wrong_paper,
     wrong_probes,
     wrong_spacings,
     wrong_stages,
@@ -37,35 +39,29 @@ from cprbm_scene.parameters import register
 from cprbm_scene.statement import Origin, Scene
 from cprbm_scene.units import Reading
 
-_CHECKS = (
-    repeated_names,
-    unknown_names,
+_BY_NAME = (repeated_names, unknown_names, repeated_contacts, wrong_paper, wrong_stages, wrong_probes, wrong_claims)
+_BY_PLACE = (
     distant_ends,
     wrong_assembly,
     wrong_stops,
     wrong_mobility,
     wrong_actions,
-    repeated_contacts,
     wrong_spacings,
     wrong_clearance,
-    wrong_stages,
-    wrong_probes,
-    wrong_claims,
 )
+_FIRST = ("units", "parameters")
+"""Parts of a file that decide on the numbers of all other parts."""
+_AT_ONCE = 1000
+"""Unknown names of a pass over the file."""
 
 
-def mistakes_in(question: Scene | OffsetQuestion) -> list[Mistake]:
-    """All mistakes of a question; empty for a valid question.
+def mistakes_in(scene: Scene) -> Iterator[Mistake]:
+    """Mistakes between the records of a scene; none of a valid scene.
 
-    A check is silent on parts with other mistakes: a slip has a single message.
+    Checks of places need the units of all numbers.
     """
-    rules = (
-        replace(mistake, key=f"{key}.{mistake.key}".strip("."))
-        for key, record in records(question)
-        for mistake in record.rules()
-    )
-    between = (check(question) for check in _CHECKS) if isinstance(question, Scene) else ()
-    return [replace(mistake, file=question.file) for mistake in first_of(chain(rules, *between))]
+    checks = _BY_NAME if scene.lacks("length", "units") else (*_BY_NAME, *_BY_PLACE)
+    return (mistake for check in checks for mistake in check(scene) if mistake.found)
 
 
 Question = Scene | OffsetQuestion
@@ -102,8 +98,12 @@ def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) 
     """
     question = read_question(path, parameters)
     if isinstance(question, OffsetQuestion):
-        allowed = "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it"
-        raise SceneError([Mistake("question", repr(question.question), allowed, question.file)])
+        raise _refused(
+            path,
+            repr(question.question),
+            "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it",
+            "question",
+        )
     return question
 
 
@@ -124,7 +124,7 @@ def read_question(path: str | Path, parameters: Mapping[str, float | str] | None
     if "question" not in data:
         return scene_from(data, file=str(path), parameters=parameters)
     if parameters:
-        raise SceneError([Mistake("parameters", f"values of {', '.join(parameters)}", "a scene of beams", str(path))])
+        raise _refused(path, f"values of {', '.join(parameters)}", "a scene of beams", "parameters")
     return offset_from(data, file=str(path))
 
 
@@ -155,8 +155,8 @@ def toml_data(path: str | Path) -> dict[str, Any]:
     raise _refused(path, f"a key of more than {DEEPEST} parts", "the keys of a scene")
 
 
-def _refused(path: str | Path, found: str, allowed: str) -> SceneError:
-    return SceneError([Mistake("", found, allowed, str(path))])
+def _refused(path: str | Path, found: str, allowed: str, key: str = "") -> SceneError:
+    return SceneError([Mistake(key, found, allowed, str(path))])
 
 
 def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str, float | str] | None = None) -> Scene:
@@ -183,9 +183,27 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
         >>> scene_from(data).beams["beam1"].thickness
         0.003
     """
-    reading = Reading(dict(parameters or {}), Path(file).parent)
-    scene = _record(Scene, {"parameters": {}, **data}, file, reading)  # the reading needs parameters, be there none
-    scene._origin = Origin(reading.units, reading.settings, partial(scene_from, data, file=file))
+    settings, found = dict(parameters or {}), list[Mistake]()
+    draft = Draft({"parameters": {}, **data})  # the reading needs parameters, be there none
+    while len(found) <= MOST:
+        left_out = frozenset(draft.left_out)
+        reading = Reading(settings, Path(file).parent, left_out=left_out)
+        kind = Scene if all(key.startswith(_FIRST) for key in left_out) else PartialScene
+        scene, mistakes = _validated(kind, draft.data, file, reading)
+        if scene is not None:
+            scene._origin = Origin(left_out=left_out)
+            mistakes = list(islice(unknown_names(scene, MECHANICAL), _AT_ONCE))
+            found += () if mistakes else first_of(map(draft.of_file, mistakes_in(scene)))
+        first = [each for each in mistakes if each.key.startswith(_FIRST)]
+        mistakes = [draft.of_file(each) for each in first or mistakes]
+        found += (each for each in mistakes if each.found)
+        for mistake in mistakes:
+            draft.leave_out(mistake.key)
+        if left_out == draft.left_out:
+            break
+    if scene is None or found:
+        raise SceneError([replace(each, file=file) for each in first_of(found)])
+    scene._origin = Origin(reading.units, settings, partial(scene_from, data, file=file))
     return scene
 
 
@@ -197,24 +215,24 @@ def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
     """
     reading = Reading()
     register(reading, {})
-    return _record(OffsetQuestion, data, file, reading)
+    question, found = _validated(OffsetQuestion, data, file, reading)
+    if question is None:
+        raise SceneError([replace(each, file=file) for each in first_of(found)])
+    return question
 
 
-def _record(kind: type[Asked], data: dict[str, Any], file: str, reading: Reading) -> Asked:
-    """A question of a ``kind`` from plain data."""
-    if "file" in data:
-        keys = (key for key in kind.model_fields if key != "file")
-        raise SceneError([replace(unknown_name("file", "file", "key here", keys), file=file)])
+def _validated(
+    kind: type[Asked], data: Mapping[str, Any], file: str, reading: Reading
+) -> tuple[Asked | None, list[Mistake]]:
+    """A question of a ``kind`` from plain data, or None with the mistakes of its records."""
+    if "file" in data:  # a record has the name of the file, and a file has not
+        return None, [unknown_name("file", "file", "key here", (key for key in kind.model_fields if key != "file"))]
     try:
-        record = kind.model_validate({**_tuples(data), "file": file}, context=reading)
-        found = mistakes_in(record)
+        return kind.model_validate({**_tuples(data), "file": file}, context=reading), []
     except ValidationError as error:
-        found = first_of((each for details in error.errors() for each in details["ctx"]["error"].mistakes), file)
+        return None, mistakes_of(error)
     except RecursionError:
-        found = [Mistake("", "tables nested too deeply", "a scene")]
-    if found:
-        raise SceneError([replace(each, file=file) for each in found])
-    return record
+        return None, [Mistake("", "tables nested too deeply", "a scene")]
 
 
 def _tuples(value: Any) -> Any:  # noqa: ANN401 - whatever TOML holds

@@ -30,8 +30,15 @@ def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
         if isinstance(contact, SplineContact | EllipseContact) or (
             isinstance(contact, CircleContact) and contact.side == "inside"
         ):
-            allowed = "a circle from outside, a line, a half-plane or a function"
-            yield "edge", Mistake(f"contacts.{name}", f"{contact.kind!r}, {contact.side}", allowed, scene.file)
+            yield (
+                "edge",
+                Mistake(
+                    f"contacts.{name}",
+                    f"{contact.kind!r}, {contact.side}",
+                    "a circle from outside, a line, a half-plane or a function",
+                    scene.file,
+                ),
+            )
         if isinstance(contact, BeamContact) and (overlap := overlap_at_rest(scene, contact)):
             found = f"beams that overlap at the start by {overlap:.3g} m"
             yield "overlap at rest", Mistake(f"contacts.{name}", found, "beams that touch or are apart", scene.file)

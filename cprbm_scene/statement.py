@@ -9,12 +9,12 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
-from itertools import product
-from typing import Annotated, Literal, TypeVar
+from itertools import chain
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
 from cprbm_scene.beam_records import (
     Beam,
@@ -68,8 +68,8 @@ from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.parameters import Parameter, Tolerance, register
-from cprbm_scene.question_records import CRITICAL, STRESSES, UNITS, Claim, Probe, Quantity, Stage
-from cprbm_scene.units import Name, Named, Of, Point, PositiveShare, Reading, Record, Text, Title, Units
+from cprbm_scene.question_records import CRITICAL, STRESSES, Claim, Probe, Quantity, Stage
+from cprbm_scene.units import Name, Named, NamedByWords, Of, Point, PositiveShare, Reading, Record, Text, Title, Units
 
 __all__ = [
     "CRITICAL",
@@ -133,16 +133,23 @@ __all__ = [
 ]
 
 Curve = NeutralLine
-T = TypeVar("T")
+MECHANISM = frozenset(
+    ("beams", "bodies", "points", "loads", "drives", "contacts", "stops", "pins", "assembly", "stages", "units")
+)
+"""Tables of a file that decide how the mechanism moves."""
 
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Units of a scene's file, set parameters, and a reading with other parameters: no part of the question."""
+    """Units of a scene's file, set parameters, and a reading with other parameters: no part of the question.
+
+    ``left_out`` are keys of parts with mistakes that a scene lacks while the reader checks the other parts.
+    """
 
     units: Units = field(default=Units(), compare=False)
     settings: Mapping[str, float | str] = field(default_factory=dict, compare=False)
     again: Callable[..., Scene] | None = field(default=None, compare=False)
+    left_out: frozenset[str] = field(default=frozenset(), compare=False)
 
 
 class Scene(Record):
@@ -162,7 +169,7 @@ class Scene(Record):
     """Units of the numbers in the file."""
     theory: Literal["bending", "stretch", "shear"] = "shear"
     """Beam theory of the CPRBM and the finite elements: bending alone, with stretch, or with stretch and shear."""
-    parameters: Named[Parameter] = Field(default_factory=frozendict)
+    parameters: NamedByWords[Parameter] = Field(default_factory=frozendict)
     """Named numbers for expressions."""
     materials: Named[Material]
     """Materials by name."""
@@ -206,7 +213,7 @@ class Scene(Record):
 
     @field_validator("units", "parameters", "loads", "drives", "stages", "probes")
     @classmethod
-    def _register(cls, value: T, info: ValidationInfo) -> T | Units | Mapping[str, Parameter]:
+    def _register(cls, value: Any, info: ValidationInfo) -> object:  # noqa: ANN401 - of several fields
         """The value itself, with units stored for later fields; SI units in place of the file's units."""
         reading = info.context
         if not isinstance(reading, Reading):
@@ -217,32 +224,24 @@ class Scene(Record):
                 return Units()
             case "parameters", Mapping() as parameters:
                 return register(reading, parameters)
-            case "stages", tuple(stages):
-                known = ((stage.name, reading.stepped.get(stage.steps)) for stage in stages)
-                reading.stages.update({name: unit for name, unit in known if unit is not None})
-            case "probes", tuple(probes):
-                reading.probes.update({probe.name: UNITS.get(probe.quantity) for probe in probes})
-            case _, Mapping() as acting:
-                reading.stepped.update({name: each.unit for name, each in acting.items()})
+        parts = value if isinstance(value, Mapping) else {each.name: each for each in value}
+        reading.parts[str(info.field_name)] = parts
         return value
 
-    @model_validator(mode="after")
-    def _completed(self) -> Scene:
-        """The scene with a free body for each named free end, and with a point for each fixed body without points."""
+    def completed(self) -> Mapping[str, object]:
+        """Beams and bodies with a free body for each named free end, and a point of each fixed body without points."""
         beams, bodies = dict(self.beams), dict(self.bodies)
-        for name, side in product(self.beams, ("start", "end")):
-            end, place = getattr(beams[name], side), getattr(beams[name].curve, side)
-            body = f"{end.point}-body"
-            if isinstance(end, FreeEnd) and end.point is not None and body not in bodies:
-                bodies[body] = FreeBody(motion="free", points=frozendict({end.point: place}))
+        for name, (side, end, place) in ((name, end) for name, beam in self.beams.items() for end in beam.ends):
+            if isinstance(end, FreeEnd) and end.point is not None and f"{end.point}-body" not in bodies:
+                bodies[f"{end.point}-body"] = FreeBody(motion="free", points=frozendict({end.point: place}))
                 beams[name] = beams[name].model_copy(update={side: WeldedEnd(joint="weld", point=end.point)})
         for name, each in self.bodies.items():
             if not each.points:
                 edges = (e for e in self.contacts.values() if isinstance(e, RigidContact) and e.body == name)
-                place = next((measures(edge)[0][0] for edge in edges), next(iter(beams.values())).curve.start)
+                curves = (beam.curve.start for beam in beams.values())
+                place = next(chain((measures(edge)[0][0] for edge in edges), curves), (0.0, 0.0))
                 bodies[name] = FixedBody(motion="fixed", points=frozendict({f"{name}-point": place}))
-        self.__dict__.update(beams=frozendict(beams), bodies=frozendict(bodies))
-        return self
+        return {"beams": frozendict(beams), "bodies": frozendict(bodies)}
 
     def with_parameters(self, **values: float) -> Scene:
         """The scene with other values of its parameters, checked as a file is checked.
@@ -276,6 +275,19 @@ class Scene(Record):
     def display_units(self) -> Units:
         """Units of the scene's file, for tables and figures; ``model_fields_set`` lists the stated ones."""
         return self._origin.units
+
+    def left_out(self, *tables: str) -> list[str]:
+        """Names of the parts of ``tables`` with mistakes that the reader left out."""
+        keys = (key.partition(".") for key in sorted(self._origin.left_out))
+        return [name for table, _, name in keys if table in tables]
+
+    def lacks(self, name: str, *tables: str) -> bool:
+        """True if the reader left out a part of this name, or parts of unknown names, of the ``tables``."""
+        return not {name, ""}.isdisjoint(self.left_out(*tables))
+
+    def whole(self, tables: Collection[str] = MECHANISM) -> bool:
+        """False if the reader left out parts of the ``tables``."""
+        return not any(key.partition(".")[0] in tables for key in self._origin.left_out)
 
     def limit(self, probe: Probe) -> float:
         """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""

@@ -19,12 +19,12 @@ number and then converts the number by the :class:`Reading` in pydantic's contex
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple, Self, TypeVar
+from typing import Annotated, Any, Literal, NamedTuple, NoReturn, Self, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -50,8 +50,10 @@ from cprbm_scene.mistakes import Mistake, SceneError, in_words
 T = TypeVar("T")
 
 _LETTERS = "A-Za-z_À-ÖØ-öø-ɏΑ-Ωα-ω"
-Name = Annotated[str, StringConstraints(pattern=f"^[{_LETTERS}][{_LETTERS}0-9-]*$", max_length=64)]
-"""Latin and Greek letters, digits, '_' and '-': names are parts of file names, of HTML identifiers and of options."""
+Word = Annotated[str, StringConstraints(pattern=f"^[{_LETTERS}][{_LETTERS}0-9-]*$", max_length=64)]
+"""Latin and Greek letters, digits, '_' and '-': the name of a parameter in an expression."""
+Name = Annotated[str, StringConstraints(pattern=f"^[{_LETTERS}][{_LETTERS}0-9-]*( [{_LETTERS}0-9-]+)*$", max_length=64)]
+"""Words with a single space between them: names are parts of keys, of file names and of options."""
 Text = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x08\x0b-\x1f\x7f-\x9f]*$")]
 """Text without control characters, but for tabs and line ends."""
 Title = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
@@ -59,6 +61,7 @@ Title = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 
 
 Named = Annotated[Mapping[Name, T], AfterValidator(frozendict)]
+NamedByWords = Annotated[Mapping[Word, T], AfterValidator(frozendict)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,11 +81,20 @@ class Record(BaseModel):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _in_words(cls, data: object, handler: ModelWrapValidatorHandler[Self]) -> Self:
+    def _checked(cls, data: object, handler: ModelWrapValidatorHandler[Self]) -> Self:
         try:
-            return handler(data)
+            record = handler(data)
         except ValidationError as error:
             raise SceneError(list(in_words(error, data, cls.model_fields))) from None
+        if record is not data:
+            record.__dict__.update(record.completed())
+            if mistakes := list(record.rules()):
+                raise SceneError(mistakes)
+        return record
+
+    def completed(self) -> Mapping[str, object]:
+        """Fields that follow from other fields, in place of their values in the file; none by default."""
+        return {}
 
     def rules(self) -> Iterator[Mistake]:
         """Mistakes between the record's own fields, with keys below the record's own; none by default."""
@@ -126,17 +138,25 @@ class Units(Record):
     """Unit of moduli and of stresses in claims."""
 
 
+def silent(*_: object) -> NoReturn:
+    """Raise a mistake without words, the consequence of another mistake: the record is left out of the scene."""
+    raise mistake("", "")
+
+
 @dataclass(slots=True)
 class Reading:
-    """State while a file is read: the ``settings`` of parameters, the ``folder`` of the file, and units read so far."""
+    """State while a file is read: ``settings`` of parameters, the file's ``folder``, its units, and parts read so far.
+
+    ``parts`` are loads, drives, stages and probes by the names of their fields and by their own names.  Expressions are
+    silent mistakes until the parameters are read.
+    """
 
     settings: Mapping[str, float | str] = field(default_factory=dict)
     folder: Path = Path()
     units: Units = field(default_factory=Units)
-    stepped: dict[str, Unit] = field(default_factory=dict)
-    stages: dict[str, Unit] = field(default_factory=dict)
-    probes: dict[str, Unit | None] = field(default_factory=dict)
-    evaluate: Callable[[str, Unit | None], float] | None = None
+    parts: dict[str, Mapping[str, Any]] = field(default_factory=dict)
+    left_out: Collection[str] = ()
+    evaluate: Callable[[str, Unit | None], float] = silent
 
     def in_si(self, value: Any, unit: Unit | None) -> Any:  # noqa: ANN401 - whatever TOML holds
         """A number or an expression in SI, infinite if it is too large; another value, or one without unit, unchanged.
@@ -145,8 +165,6 @@ class Reading:
             SceneError: the expression has no value, or another unit.
         """
         if isinstance(value, str) and value.startswith("="):
-            if self.evaluate is None:
-                raise PydanticCustomError("repeats", "parameters without mistakes")
             return self.evaluate(value, unit)
         if unit is None or isinstance(value, bool) or not isinstance(value, int | float):
             return value

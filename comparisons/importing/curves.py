@@ -84,7 +84,8 @@ def _spline(p: Array, s: Array, directions: Array | None, allowed: float) -> Fit
     for count in 2 ** np.arange(2, math.log2(MOST)).astype(int) + 1:
         chosen = np.unique(np.abs(s[:, None] - np.linspace(0.0, s[-1], count)).argmin(axis=0))
         points = tuple(_point(place, s[-1]) for place in p[chosen])
-        spline = Spline(kind="spline", points=points, start_direction=first, end_direction=last)
+        # few points may leave no smooth curve, and a curve with a mistake is still one to edit
+        spline = Spline.model_construct(kind="spline", points=points, start_direction=first, end_direction=last)
         deviation = _distance(p, shape_of(spline).point(np.linspace(0.0, 1.0, _FINE)))
         if deviation <= allowed:
             return Fit(spline, deviation)

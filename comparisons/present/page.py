@@ -195,6 +195,7 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
         autoescape=True, undefined=jinja2.StrictUndefined, loader=jinja2.PackageLoader("comparisons", "pages")
     )
     environment.filters |= {
+        "anchor": lambda name: name.replace(" ", "+"),  # an identifier has no spaces, and a name no plus
         "cells": html_cells,
         "embedded": _embedded,
         # a name may break behind points and underscores; the type of an escaped text marks the escape

@@ -26,7 +26,7 @@ from comparisons.display_units import file_unit
 from comparisons.quantities import COMPONENTS, unit_of
 from comparisons.sweeps.outcome import Outcome
 from cprbm_scene import Mistake, Scene, SceneError
-from cprbm_scene.mistakes import first_of
+from cprbm_scene.mistakes import first_of, mistakes_of
 from cprbm_scene.reading import toml_data
 from cprbm_scene.statement import Record
 
@@ -150,20 +150,9 @@ def read_demands(path: Path) -> Demands:
     if isinstance(data.get("limits"), list):
         data["limits"] = tuple(data["limits"])
     try:
-        demands = Demands.model_validate(data)
+        return Demands.model_validate(data)
     except ValidationError as error:
-        mistakes = first_of(each for details in error.errors() for each in details["ctx"]["error"].mistakes)
-    else:
-        records: dict[str, Goal | Limit] = {f"limits[{place}]": each for place, each in enumerate(demands.limits)}
-        records |= {} if demands.goal is None else {"goal": demands.goal}
-        mistakes = [
-            replace(mistake, key=f"{key}.{mistake.key}".rstrip("."))
-            for key, record in records.items()
-            for mistake in record.rules()
-        ]
-    if mistakes:
-        raise SceneError([replace(mistake, file=str(path)) for mistake in mistakes])
-    return demands
+        raise SceneError([replace(each, file=str(path)) for each in first_of(mistakes_of(error))]) from None
 
 
 def bounds_of(scene: Scene, demands: Demands, file: str) -> tuple[Bound, ...]:

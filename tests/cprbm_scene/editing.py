@@ -75,7 +75,8 @@ def two_lines(gap, *, thick=True, second=None):
 def beam_on(curve, thickness):
     """A beam along a curve, without joints."""
     free = FreeEnd(joint="free")
-    return Beam(curve=curve, thickness=thickness or 1e-9, width=0.01, material="m", start=free, end=free)
+    thickness = thickness or 1e-4 * shape_of(curve).length
+    return Beam(curve=curve, thickness=thickness, width=0.01, material="m", start=free, end=free)
 
 
 def line_distance(first, second, near=0.0):

@@ -71,7 +71,7 @@ SECTIONS["references of the hinge"] = (
         ("beams/beam1/thickness", -0.002, "greater than 0"),
         ("beams/beam1/thickness", 0.0, "greater than 0"),
         ("beams/beam1/thickness", INF, "finite"),
-        ("beams/my beam", {}, "letters"),
+        ("beams/my  beam", {}, "letters"),
         ("stages/0/stations", [], "at least 1"),
         ("may_cross", ["beam1"], "may_cross[0]", "a list"),
         ("probes/0/points", 2.5, "a whole number"),

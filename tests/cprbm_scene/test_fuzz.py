@@ -192,7 +192,7 @@ def test_a_planted_fault_is_seen(monkeypatch):
         raise KeyError("planted")
 
     assert followed(FILE)[1] == ""
-    monkeypatch.setattr(reading, "_CHECKS", (faulty,))
+    monkeypatch.setattr(reading, "_BY_NAME", (faulty,))
     assert followed(FILE)[1] == "KeyError: 'planted'"
 
 

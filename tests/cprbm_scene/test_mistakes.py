@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from tests.cprbm_scene.editing import edited, mistakes, two_lines
+from tests.cprbm_scene.editing import REMOVED, edited, mistakes, two_lines
 from tests.cprbm_scene.mistakes_table import SECTIONS
 from tests.cprbm_scene.scenes import LINES
 
@@ -53,6 +53,51 @@ def test_several_mistakes_are_reported_at_once():
 def test_several_wrong_ties_are_reported_at_once():
     found = mistakes((f"{BEAM}/material", "gold"), ("loads/M/body", "AC"), ("claims/1/station", 9.0))
     assert set(found) == {"beams.beam1.material", "loads.M.body", "claims[1].station"}
+
+
+ONE_ROUND = [
+    # values, places and names: a record with a wrong value takes part in no check of places
+    ({"beams/lower/width": -1.0, "beams/upper/curve/start": [0.0, 0.02], "probes/0/of": "K"},
+     {"beams.lower.width", "beams.upper.start", "probes[0].of"}),
+    # a beam of a wrong body has no place, and the mechanism no support: names alone are checked
+    ({"bodies/ground/motion": "welded", "beams/upper/start/point": "Z", "bodies/block/points/Q": [0.2, 0.0]},
+     {"bodies.ground.motion", "beams.upper.start.point"}),
+    ({"materials": REMOVED, "loads/F/body": "block", "stages/0/steps": "G", "contacts/touch/between": ["lower", "k"]},
+     {"materials", "loads.F.body", "stages[0].steps", "contacts.touch.between[1]"}),
+    # numbers in lists are those of the file
+    ({"stages/0/stations": [], "stages/1": {"name": "more", "steps": "K", "stations": [1.0]}, "claims": [
+        {"probe": "Q.displacement", "station": 7.0, "bound": 0.1},
+        {"probe": "Q.displacement", "stage": "load", "station": 7.0, "bound": 0.1},
+        {"probe": "Q.rotation", "stage": "lode", "bound": 0.1}]},
+     {"stages[0].stations", "stages[1].steps", "claims[2].probe", "claims[2].stage"}),
+    ({"probes/0/quantity": "speed", "probes/1": {"of": "P", "quantity": "rotation"},
+      "claims": [{"probe": "Q.speed", "bound": 0.1}]}, {"probes[0].quantity", "probes[1]"}),
+    # with a mistake in the units names can be checked, places cannot
+    ({"units": {"length": "km"}, "beams/upper/start/point": "Z", "bodies/block/points/Q": [0.2, 0.0]},
+     {"units.length", "beams.upper.start.point"}),
+    ({"parameters": {"a": {"value": "= b"}, "b": {"value": "= a"}, "c": {"value": 1.0, "unit": "ell"},
+                     "d": {"value": "= 2*c"}, "e": {"value": 3.0, "unit": "mm", "range": [1.0, 2.0]}},
+      "beams/lower/thickness": "= d/1000", "beams/upper/thickness": "= f", "bodies/block/points/Q": [0.2, 0.0]},
+     {"parameters.b.value", "parameters.c.unit", "parameters.e.value", "beams.upper.thickness"}),
+    # an assembly with a mistake may bring an end to its point
+    ({"assembly": {"moments": {"lower": "1"}}, "beams/lower/end": {"joint": "pin", "point": "Q"},
+      "bodies/block/points/Q": [0.1, 0.05], "probes/0/points": 7}, {"assembly.moments.lower", "probes[0].points"}),
+    # a free end of a beam with a mistake is a point
+    ({"beams/upper/end/point": "T", "beams/upper/width": 0.0, "probes/1": {"of": "T", "quantity": "displacement"},
+      "probes/2": {"of": "T-body", "quantity": "rotation"}, "probes/3": {"of": "S", "quantity": "rotation"}},
+     {"beams.upper.width", "probes[3].of"}),
+]  # fmt: skip
+"""Edits of two beams, and the keys of all mistakes."""
+
+
+@pytest.mark.parametrize(("edits", "keys"), ONE_ROUND)
+def test_all_mistakes_come_in_one_round(edits, keys):
+    assert set(mistakes(*edits.items(), base=TWO)) == keys
+
+
+def test_a_name_near_that_of_a_wrong_record_has_a_hint():
+    edits = ("materials/steel/poisson_ratio", 2.0), ("beams/lower/material", "stel")
+    assert "is 'steel' meant" in mistakes(*edits, base=TWO)["beams.lower.material"]
 
 
 def test_a_thickness_near_the_radius():
