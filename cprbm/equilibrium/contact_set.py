@@ -209,8 +209,7 @@ def _step(geometry: Geometry, linear: Linear, settling: Settling) -> tuple[float
     try:
         if geometry.law is None:
             return newton_step(*linear, curves, places, closed, room)
-        terms = contact_terms(geometry, z, places, closed)
-        return step_with_columns(*linear, curves, places, closed, room, *terms)
+        return step_with_columns(*linear, curves, places, closed, room, *contact_terms(geometry, z, places, closed))
     except np.linalg.LinAlgError as singular:
         raise NotConvergedError("the system is singular") from singular
 
