@@ -89,7 +89,7 @@ def touched_equilibrium(system: System, start: State, iterations: int, springs: 
         if revised is None:
             new = _come_near(geometry, solved)
             every = partial(_of_all_pairs, geometry, solved.state.z, solved.contacts)
-            if passed_through(geometry, before, old, solved.state.z, every, contacts.counters):
+            if passed_through(geometry, before, old, solved.state.z, every, contacts):
                 raise NotConvergedError("a beam passed through itself or over a point")
             if new is None:
                 return solved

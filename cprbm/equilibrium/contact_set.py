@@ -115,21 +115,22 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
 
 
 def passed_through(
-    geometry: Geometry, before: Array, old: Places, after: Array, places: Callable[[], Places], counters: Ints
+    geometry: Geometry, before: Array, old: Places, after: Array, places: Callable[[], Places], contacts: Contacts
 ) -> bool:
     """True if a beam went through itself or over a circle, a corner or an end: the vector to a place turned round.
 
     ``places`` returns the places after the step.
-    The gaps of a beam to itself and to a point have no sign: only the way between two states shows a passage.
+    The gaps of a beam to itself and to a point have no sign: only the way between two states shows a passage.  Beams of
+    pairs that are kept open overlap until the closing is located.
     """
-    if len(geometry.points) and sweeps_any_point(before, after, geometry.arrays, geometry.points, counters):
+    points, arrays = geometry.points, geometry.arrays
+    if len(points) and not contacts.kept_open and sweeps_any_point(before, after, arrays, points, contacts.counters):
         return True
     unsigned = (old.curve == old.other) & ~old.moves
     if not unsigned.any():
         return False
     new = places()
-    first, second = separations(before, geometry.arrays, old), separations(after, geometry.arrays, new)
-    number = matched(geometry.arrays, old, new)
+    first, second, number = separations(before, arrays, old), separations(after, arrays, new), matched(arrays, old, new)
     seen = np.flatnonzero(unsigned & (number >= 0) & (np.hypot(*first.T) < REACH))
     return bool(np.any(np.einsum("ij,ij->i", first[seen], second[number[seen]]) < 0.0))
 
