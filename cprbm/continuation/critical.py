@@ -43,8 +43,8 @@ from cprbm_scene.answer import Array
 FOLDING = 0.5
 """Part of τ along φ from which the branch turns back: a fold has all of it, a bifurcation nothing."""
 
-STILL = 1e-6
-"""Turn of a link over the way, rad, below which the branch does not move: a fold moves ever faster."""
+STILL = 1e-8
+"""Turn of a link over the way, rad, times κ, below which no load acts along the mode: round-off is less."""
 
 NEAR = 50.0
 """Times as far as the bracket is wide: farther away no zero of κ explains the end of the branch."""
@@ -176,7 +176,7 @@ def _along(solved: Solved, mode: Mode, change: Array) -> float:
     """Part of the branch's tangent along the mode, from 0 to 1."""
     system = solved.system
     tau, phi = tangent(solved, change)[system.angles], mode.turns
-    if float(np.abs(tau).max()) < STILL or not np.any(phi):
+    if float(np.abs(tau).max()) * mode.curvature < STILL or not np.any(phi):
         return 0.0
     sizes = np.sqrt((system.metric @ tau**2) * (system.metric @ phi**2))
     return float(abs(system.metric @ (tau * phi)) / sizes)

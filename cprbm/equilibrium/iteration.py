@@ -52,11 +52,10 @@ def change_set(
 
 @compiled
 def follow_leaders(places: Places, closed: Flags) -> None:  # pragma: no cover
-    """Places with a shared force follow the places that have the force; open places lose their force."""
+    """Places with a shared force follow the places that have the force; open places have no force."""
     for k in range(closed.size):
         closed[k] = closed[k + places.shares[k]]
-        if not closed[k]:
-            places.force[k] = 0.0
+        places.force[k] = places.force[k + places.shares[k]] if closed[k] else 0.0
 
 
 @compiled
