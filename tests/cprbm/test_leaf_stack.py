@@ -8,9 +8,9 @@ from cprbm_scene import scene_from
 LEAVES = (200.0, 160.0, 120.0, 80.0)
 
 
-def leaves(overlap):
+def leaves(overlap, lengths=LEAVES, stations=(0.1, 1.0)):
     """Leaves side by side, clamped together and loaded at the tip of the longest; the second overlaps the first."""
-    heights = [float(k) - overlap * (k == 1) for k in range(len(LEAVES))]
+    heights = [float(k) - overlap * (k == 1) for k in range(len(lengths))]
     free, tip = {"joint": "free"}, {"joint": "weld", "point": "T"}
     return scene_from(
         {
@@ -31,11 +31,11 @@ def leaves(overlap):
                     "start": {"joint": "weld", "point": f"A{k}"},
                     "end": free if k else tip,
                 }
-                for k, (y, length) in enumerate(zip(heights, LEAVES, strict=True))
+                for k, (y, length) in enumerate(zip(heights, lengths, strict=True))
             },
             "contacts": {f"c{k}": {"kind": "beam-beam", "between": [f"leaf{k}", f"leaf{k + 1}"]} for k in range(3)},
             "loads": {"F": {"kind": "force", "point": "T", "direction": [0.0, 1.0]}},
-            "stages": [{"name": "load", "steps": "F", "stations": [0.1, 1.0]}],
+            "stages": [{"name": "load", "steps": "F", "stations": list(stations)}],
             "probes": [
                 {"of": "T", "quantity": "displacement"},
                 *({"of": f"c{k}", "quantity": "force"} for k in range(3)),
@@ -60,3 +60,12 @@ def test_leaves_that_overlap_settle(links):
     answer = cprbm.answer(leaves(9e-4), cprbm.Settings(links=links))
     assert answer.completed, answer.sentence
     assert answer.stations[-1].values["T.displacement"][1] == pytest.approx(2.4132e-3, rel=0.01)
+
+
+def test_joints_with_a_shared_force_keep_the_force_of_their_leader():
+    # reference: 80 links; a joint beside a clamp kept a pull of its own at 40 links, and the run ended at 14.46 N
+    lengths, stations = (200.0, 150.0, 100.0, 50.0), (5.0, 15.0)
+    coarse, fine = (cprbm.answer(leaves(0.0, lengths, stations), cprbm.Settings(links=n)) for n in (40, 80))
+    assert coarse.completed, coarse.sentence
+    tips = [answer.stations[-1].values["T.displacement"][1] for answer in (coarse, fine)]
+    assert tips[0] == pytest.approx(tips[1], rel=1e-4)

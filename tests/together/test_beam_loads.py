@@ -16,7 +16,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.quantities import load_unit
 from comparisons.verdict.words import Reason
-from cprbm_scene import Ending, scene_from
+from cprbm_scene import Ending, Loss, scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, cantilever_data
 from tests.elastica_reference.scenes import case
 from tests.references.loaded import loaded
@@ -224,3 +224,15 @@ def test_a_free_column_under_its_own_weight_buckles_where_greenhill_says(solve):
     for q, stands in ((7.75, True), (7.95, False)):
         answer = solve(scene_from(acting([spread(-q, 0.0)])), 40)
         assert (answer.ending is Ending.COMPLETED) is stands, q
+
+
+@pytest.mark.parametrize("links", [20, 40, 80])
+def test_a_column_close_to_its_load_has_a_bifurcation_and_no_fold(links):
+    """From a station at 0.998 of the load (Greenhill): round-off leans the column there, and no jump may follow."""
+    data = acting([spread(-7.8373, 0.0)])
+    whole = data["stages"][0]["stations"][0]
+    data["stages"][0]["stations"] = [0.998 * whole, 1.14 * whole]
+    answer = cprbm_answer(scene_from(data), links)
+    assert answer.ending is Ending.BRANCH_ENDS
+    assert [point.loss for point in answer.critical] == [Loss.BIFURCATION]
+    assert answer.critical[0].value == pytest.approx(whole, rel=1e-4)
