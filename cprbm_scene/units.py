@@ -88,7 +88,7 @@ class Record(BaseModel):
             raise SceneError(list(in_words(error, data, cls.model_fields))) from None
         if record is not data:
             record.__dict__.update(record.completed())
-            # a program may build records that no file may describe
+            # rules limit files; programs build records beyond the rules
             if isinstance(info.context, Reading) and (mistakes := list(record.rules())):
                 raise SceneError(mistakes)
         return record

@@ -40,6 +40,9 @@ LOCATED = 0.5
 ALONG = 1e-6
 """Part of a step along the tangent for the slope of a gap."""
 
+RELEASED = 1e-9
+"""Force of an opening contact, over the force at the begin of the step, that counts as none."""
+
 LET_GO = 0.1
 """Force of an opening contact, over the force at the begin of the step: a larger force jumps to zero."""
 
@@ -201,16 +204,19 @@ def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> lis
 
     def force(share: float) -> float:
         solved = solve(share, frozenset())
-        if pair in pressing(solved):
-            return Pressed(pair).force(solved)
-        gap = _gap(solved, pair)
-        return -gap if gap > CLOSED else 0.0  # closer than a closing is located
+        return Pressed(pair).force(solved) if pair in pressing(solved) else -_gap(solved, pair)
 
-    before = force(0.0)
-    if not before > 0.0 > force(1.0):
+    begin, end = force(0.0), force(1.0)
+    if not begin > 0.0 > end:
         return []
-    share = located(force)
-    if force(share) > LET_GO * before:
+
+    def event(share: float) -> float:
+        # force and gap of equal size at both ends; an open state at the opening has another tangent
+        value = force(share)
+        return (value if value > RELEASED * begin else 0.0) if value > 0.0 else value * begin / -end
+
+    share = located(event)
+    if force(share) > LET_GO * begin:
         raise NotConvergedError("a contact lets go under force")
     return [ContactChange(share, frozenset([pair]), closes=False, first=pair)]
 
