@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from difflib import get_close_matches
 from typing import Any
 
 from cprbm_scene.frozendict import frozendict
@@ -37,8 +38,10 @@ class Draft:
     def __init__(self, data: Mapping[str, Any]) -> None:
         self._lists = {key for key, value in data.items() if isinstance(value, list | tuple)}
         # parts of a list are known by their numbers in the file, as texts
-        lists = {key: {str(i): part for i, part in enumerate(data[key])} for key in self._lists}
-        self._parts: dict[str, Any] = {**data, **lists}
+        self._parts: dict[str, Any] = {
+            **data,
+            **{key: {str(i): part for i, part in enumerate(data[key])} for key in self._lists},
+        }
         self.left_out: set[str] = set()
 
     @property
@@ -60,6 +63,7 @@ class Draft:
             self.left_out.update(_names(table, part, parts[part]))
         elif f"{table}.{part}" not in self.left_out:
             self._parts.pop(table, None)
+            table = next(iter(get_close_matches(table, Scene.model_fields, n=1)), table)
             # bodies have points, and free ends of beams are points of bodies
             self.left_out.update({table, *{"bodies": ["points"], "beams": ["points", "bodies"]}.get(table, [])})
 

@@ -15,8 +15,8 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-_LISTED = 200
-"""Largest number of names in a message."""
+LISTED = 200
+"""Largest number of names, or of stations of a stage, in a message."""
 
 _MEANT = {
     "gravity": ("distributed", "a load of kind 'distributed'"),
@@ -102,9 +102,8 @@ def hint(word: str, known: Iterable[str]) -> str:
 
 def unknown_name(key: str, name: str, what: str, known: Iterable[str]) -> Mistake:
     """The mistake of a name of a ``what`` (such as ``beam``) outside the ``known`` names."""
-    names = list(islice(known, _LISTED + 1))
-    listed = ", ".join(repr(each) for each in names[:_LISTED]) or "there is none"
-    listed += ", ..." if len(names) > _LISTED else ""
+    names = list(islice(dict.fromkeys(known), LISTED + 1))
+    listed = ", ".join([*map(repr, names[:LISTED]), *("..." for _ in names[LISTED:])]) or "there is none"
     return Mistake(key, f"{name!r}, which names no {what}{hint(name, names)}", f"the name of a {what}: {listed}")
 
 
@@ -115,7 +114,9 @@ def written_place(place: Sequence[float] | NDArray[np.float64]) -> str:
 
 _MEASURED = re.compile(r"\s*[-+]?[\d.]+(?:e[-+]?\d+)?\s*[^\d\s]{1,8}\s*", re.ASCII | re.IGNORECASE)
 _UNITS = """units = { length = "mm" }"""
-_NUMBERS = f"; numbers have no units of their own, and the file states its once, as {_UNITS}"
+_NUMBERS = (
+    f"; numbers have no units of their own: a parameter has the key 'unit', the file the key 'units', as {_UNITS}"
+)
 _LONGEST = 80
 """Longest value found that a message shows in full."""
 
@@ -147,12 +148,13 @@ _ALLOWED = {
 def in_words(error: ValidationError, data: object, fields: Mapping[str, FieldInfo]) -> Iterator[Mistake]:
     """Mistakes of a record with ``fields``, read from ``data``, with keys below the record's own.
 
-    Items with mistakes of their own need no further mistake.
+    Items with mistakes of their own need no further mistake, and a misspelled key stands for the missing key.
     """
+    meant = [hint(str(each["loc"][-1]), fields) for each in error.errors() if each["type"] == "extra_forbidden"]
     for details in error.errors():
         kind, given, context = details["type"], details.get("input"), details.get("ctx", {})
         short = kind == "too_short" and isinstance(given, tuple) and len(given) >= context["min_length"]
-        if not short:
+        if not short and not (kind == "missing" and f" (is {details['loc'][-1]!r} meant?)" in meant):
             key = _key(details["loc"], data, own=kind in ("missing", "extra_forbidden"))
             inner = context.get("error")
             own = inner.mistakes if isinstance(inner, SceneError) else [_mistake(details, fields)]

@@ -10,7 +10,7 @@ import numpy as np
 from cprbm_scene.curve_records import shape_of
 from cprbm_scene.curves import SAMPLES
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, broken, unknown_name
+from cprbm_scene.mistakes import LISTED, Mistake, broken, unknown_name
 from cprbm_scene.statement import (
     CRITICAL,
     STRESSES,
@@ -131,12 +131,11 @@ _KINDS: Mapping[str, tuple[str, ...]] = frozendict(
 
 def unknown_names(scene: Scene, kinds: Collection[str] = tuple(_KINDS)) -> Iterator[Mistake]:
     """References to parts of some kinds without a definition; without words if the reader left the part out."""
-    tables = {
+    tables = {table: list(getattr(scene, table)) for table in ("materials", "bodies", "beams", "loads", "drives")} | {
         "points": point_names(scene),
         "stages": [stage.name for stage in scene.stages],
         "edges": [name for name, contact in scene.contacts.items() if isinstance(contact, RigidContact)],
     }
-    tables |= {table: list(getattr(scene, table)) for table in ("materials", "bodies", "beams", "loads", "drives")}
     known = {kind: [name for table in _KINDS[kind] for name in tables[table]] for kind in kinds}
     return (
         Mistake(place, "", "")
@@ -180,9 +179,6 @@ _OF: Mapping[Quantity, str] = frozendict(
     }
 )
 """Parts of the scene with a quantity."""
-
-_LISTED = 200
-"""Stations of a stage in a message."""
 
 _BEARERS = ("bodies", "points", "beams", "contacts", "stops")
 _OF_JOINTS: Container[Quantity] = ("reaction", "reaction_moment", "moment")
@@ -236,7 +232,7 @@ def wrong_claims(scene: Scene) -> Iterator[Mistake]:
     for i, claim in enumerate(scene.claims):
         key, probe, critical = f"claims[{i}]", probes.get(claim.probe), claim.probe == CRITICAL
         unasked = claim.stage in ascending and probe is not None and not probe.asked_in(claim.stage)
-        stations = (value for stage in scene.stages if claim.in_stage(stage.name) for value in stage.stations[:_LISTED])
+        stations = (value for stage in scene.stages if claim.in_stage(stage.name) for value in stage.stations[:LISTED])
         yield from broken(
             not (probe or critical or scene.lacks(claim.probe, "probes"))
             and unknown_name(f"{key}.probe", claim.probe, "probe", [*probes, CRITICAL]),

@@ -11,7 +11,7 @@ import ast
 import math
 import operator
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Annotated, NamedTuple, get_args
@@ -19,7 +19,7 @@ from typing import Annotated, NamedTuple, get_args
 from pydantic import Field, ValidationInfo, ValidatorFunctionWrapHandler, WithJsonSchema, WrapValidator
 
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import SceneError, unknown_name
+from cprbm_scene.mistakes import Mistake, SceneError, broken, shown, unknown_name
 from cprbm_scene.units import ANGLE, NUMBER, OR_EXPRESSION, SIZES, Reading, Record, Unit, Units, mistake, silent
 
 LONGEST = 300
@@ -201,6 +201,14 @@ class Parameter(Record):
     tolerance: Tolerance | None = None
     """Scatter of the value."""
 
+    def rules(self) -> Iterator[Mistake]:
+        """The mistake of a range with exchanged ends."""
+        return broken(
+            self.range
+            and self.range[0] > self.range[1]
+            and Mistake("range", shown(self.range), "the least value, then the largest")
+        )
+
 
 def register(reading: Reading, parameters: Mapping[str, Parameter]) -> Mapping[str, Parameter]:
     """The parameters in SI with the reading's settings; the reading evaluates expressions from now on.
@@ -241,6 +249,8 @@ class _Resolved:
     def evaluate(self, text: str, unit: Unit | None, key: str = "") -> float:
         """Number of an expression in SI, for a key with a ``unit``; None without a check of the unit."""
         number, own = self._expression(text, key)
+        if not {"units", "units.length"}.isdisjoint(self._reading.left_out):
+            silent()  # the unit of the file's lengths is unknown
         if own is None or unit is None:
             return number if unit is None else unit.in_si(number, self._reading.units)
         if own.dimension != unit.dimension:
@@ -292,7 +302,11 @@ class _Resolved:
         setting = self._reading.settings.get(name)
         if isinstance(given.value, str):
             if given.unit or setting is not None:
-                raise mistake(f"{given.value!r}, an expression", "a number with a unit, or an expression alone", name)
+                raise mistake(
+                    f"{given.value!r}, an expression",
+                    "a number with a unit, or an expression alone; an expression takes no other value",
+                    name,
+                )
             return self._expression(given.value, f"{name}.value")
         size, unit = _unit_of(given.unit, f"{name}.unit")
         number = given.value if setting is None else setting

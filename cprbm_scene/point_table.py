@@ -44,8 +44,11 @@ def read_points(path: Path, unit: str) -> tuple[tuple[float, float], ...]:
         raise mistake(f"{str(path)!r}, which cannot be read ({reason})", "a table of points in UTF-8") from None
     if len(text) > LONGEST:
         raise mistake(f"{path.name!r}, a longer file", f"at most {LONGEST // 1_000_000} MB of points")
-    lines = [(row, line) for row, line in enumerate(text.splitlines(), start=1) if line.strip(" \t,;#")]
-    lines = [(row, line) for row, line in lines if not line.lstrip().startswith("#")] or [(1, "")]
+    lines = [
+        (row, line)
+        for row, line in enumerate(text.splitlines(), start=1)
+        if line.strip(" \t,;#") and not line.lstrip().startswith("#")
+    ] or [(1, "")]
     first, header = lines[0]
     mark = next((mark for mark in ";\t" if mark in header), ",")
     names = [_COLUMN.fullmatch(name.strip("\"' ")) for name in header.split(mark)]
@@ -55,8 +58,10 @@ def read_points(path: Path, unit: str) -> tuple[tuple[float, float], ...]:
     if set(columns) != {"x", "y"}:
         raise mistake(f"{header[:80]!r} in {path.name}, row {first}", _HEADER)
     cells = ((row, next(csv.reader([line], delimiter=mark))) for row, line in lines[1:])
-    places = (tuple(_number(path, row, line, name, *columns[name], unit) for name in "xy") for row, line in cells)
-    return tuple((x, y) for x, y in places)
+    return tuple(
+        (_number(path, row, line, "x", *columns["x"], unit), _number(path, row, line, "y", *columns["y"], unit))
+        for row, line in cells
+    )
 
 
 def _number(path: Path, row: int, cells: list[str], name: str, column: int, own: str, unit: str) -> float:

@@ -19,8 +19,15 @@ def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
         yield "theory", Mistake("theory", repr(scene.theory), "'bending'", scene.file)
     for name, drive in scene.drives.items():
         if not scene.holds(drive, scene.stages[0].name):
-            found = f"a drive that is free before the stage {drive.begins!r}"
-            yield "from", Mistake(f"drives.{name}.from", found, "drives that hold from the start", scene.file)
+            yield (
+                "from",
+                Mistake(
+                    f"drives.{name}.from",
+                    f"a drive that is free before the stage {drive.begins!r}",
+                    "drives that hold from the start",
+                    scene.file,
+                ),
+            )
     for i, stage in enumerate(scene.stages):
         if stage.together:
             yield "together", Mistake(f"stages[{i}].steps", f"{list(stage.together)}", "one name", scene.file)
@@ -40,8 +47,15 @@ def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
                 ),
             )
         if isinstance(contact, BeamContact) and (overlap := overlap_at_rest(scene, contact)):
-            found = f"beams that overlap at the start by {overlap:.3g} m"
-            yield "overlap at rest", Mistake(f"contacts.{name}", found, "beams that touch or are apart", scene.file)
+            yield (
+                "overlap at rest",
+                Mistake(
+                    f"contacts.{name}",
+                    f"beams that overlap at the start by {overlap:.3g} m",
+                    "beams that touch or are apart",
+                    scene.file,
+                ),
+            )
 
 
 def refuse(scene: Scene, solver: str, *met: Requirement) -> None:

@@ -77,7 +77,7 @@ def exit_code(command: Callable[[], int | None]) -> int:
             raise
     except KeyboardInterrupt as stop:
         number = signal.Signals(*(stop.args or (signal.SIGINT,)))
-        found = f"{_SIGNALS[number.name]}; finished results stand.", 128 + number
+        found = f"{_SIGNALS[number.name]}. {_KEPT}; repeat the command to go on.", 128 + number
     text, code = found
     if text:
         say(text)

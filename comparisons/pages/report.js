@@ -11,7 +11,13 @@ for (const box of document.querySelectorAll("[data-stepper]")) {
     said.textContent = label;
     chosen.setAttribute("aria-valuetext", label);
     paths.forEach((path, i) => path.setAttribute("d", shapes[i]));
-    names.forEach((name, i) => name.setAttribute("transform", `translate(${places[i]})`));
+    // a name that the right edge would cut stands on the left side of the point
+    names.forEach((name, i) => {
+      const cut = Number.parseFloat(places[i]) + 12 + name.getComputedTextLength() > name.ownerSVGElement.viewBox.baseVal.width;
+      name.setAttribute("transform", `translate(${places[i]})`);
+      name.setAttribute("text-anchor", cut ? "end" : "start");
+      name.setAttribute("x", cut ? -12 : 12);
+    });
     cells.forEach((cell, i) => {
       cell.textContent = texts[i];
       if (words[i]) cell.className = `words ${texts[i]}`;

@@ -273,7 +273,7 @@ def test_an_interrupt_from_the_keyboard_ends_every_process_with_a_sentence(tmp_p
     os.killpg(process.pid, signal.SIGINT)
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert said == "cprbm: Interrupted; finished results stand.\n"
+    assert said == "cprbm: Interrupted. Finished results stand; repeat the command to go on.\n"
 
 
 @pytest.mark.parametrize("installed", [True, False])

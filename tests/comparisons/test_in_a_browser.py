@@ -56,6 +56,17 @@ def test_the_slider_moves_the_mechanism_and_its_values(tab):
     assert tab.run(seen) == last
 
 
+def test_a_long_name_at_the_right_edge_stands_within_the_picture(tab, page):
+    """The names are the names of the hinge's points, made longer."""
+    tab.run("""document.querySelectorAll("[data-stands]").forEach((name) => name.textContent += " upper right eye")""")
+    tab.run("document.querySelector('[data-stepper] input').dispatchEvent(new Event('input'))")
+    beyond = """[...document.querySelectorAll("[data-stands]")].map((name) => {
+        const [text, all] = [name, name.ownerSVGElement].map((each) => each.getBoundingClientRect());
+        return Math.max(text.right - all.right, all.left - text.left); })"""
+    assert max(tab.run(beyond)) <= 0.0
+    tab.open(page)
+
+
 def test_a_table_is_sorted_by_its_headings_with_the_keyboard(tab):
     first = "[...document.querySelectorAll('article table')].find((each) => each.textContent.includes('round-off'))"
     column = f"[...{first}.tBodies[0].rows].map((row) => row.cells[1].textContent)"

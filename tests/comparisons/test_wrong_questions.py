@@ -80,7 +80,7 @@ FILES = [
         'thickness = "1.1 mm"',
         "found '1.1 mm'",
         "a number, or a table",
-        "states its once, as units",
+        "the key 'units', as units",
     ),
     ("radius = 0.006", 'radius = "6mm"', "found '6mm'; allowed: a number; numbers have no units", "units = { length"),
     ("radius = 0.006", 'radius = "six"', "found 'six'; allowed: a number\n"),
@@ -164,12 +164,12 @@ def test_wrong_scenes(text, part, folder, capsys):
 
 
 def test_several_mistakes_have_a_line_each(folder, capsys):
-    """The misspelt key, the key that is missing by it, and the width of either beam."""
+    """The misspelt key, which alone stands for the missing key, and the width of both beams."""
     text = HINGE.replace("poisson_ratio", "poison_ratio").replace("width = 0.008", "width = -1.0")
     Path("wrong.toml").write_text(text, "utf-8")
     first, *lines = _said(["solve", "wrong.toml"], capsys).splitlines()
     assert first == "cprbm: The question is wrong."
-    assert len(lines) == 4
+    assert len(lines) == 3
     assert all(line.startswith("  wrong.toml: ") for line in lines)
     for part in ("poison_ratio", "beams.beam1.width: found -1.0", "beams.beam2.width: found -1.0"):
         assert sum(part in line for line in lines) == 1

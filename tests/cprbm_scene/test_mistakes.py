@@ -86,6 +86,15 @@ ONE_ROUND = [
     ({"beams/upper/end/point": "T", "beams/upper/width": 0.0, "probes/1": {"of": "T", "quantity": "displacement"},
       "probes/2": {"of": "T-body", "quantity": "rotation"}, "probes/3": {"of": "S", "quantity": "rotation"}},
      {"beams.upper.width", "probes[3].of"}),
+    # a misspelled key is no missing key
+    ({"beams/lower/width": REMOVED, "beams/lower/widht": 0.01, "stages/0/name": REMOVED, "stages/0/nme": "load"},
+     {"beams.lower.widht", "stages[0].nme"}),
+    # the names of a misspelled table are unknown
+    ({"body": TWO["bodies"], "bodies": REMOVED, "probes/0/points": 7}, {"body", "probes[0].points"}),
+    ({"contact": TWO["contacts"], "contacts": REMOVED, "probes/0": {"of": "touch", "quantity": "force"}}, {"contact"}),
+    # parameters have units of their own: beside lengths in wrong units they have no size
+    ({"units": {"length": "mmm"}, "parameters": {"t": {"value": 0.2, "unit": "um"}},
+      "beams/lower/thickness": "= t", "beams/upper/thickness": "= u"}, {"units.length", "beams.upper.thickness"}),
 ]  # fmt: skip
 """Edits of two beams, and the keys of all mistakes."""
 
@@ -98,6 +107,11 @@ def test_all_mistakes_come_in_one_round(edits, keys):
 def test_a_name_near_that_of_a_wrong_record_has_a_hint():
     edits = ("materials/steel/poisson_ratio", 2.0), ("beams/lower/material", "stel")
     assert "is 'steel' meant" in mistakes(*edits, base=TWO)["beams.lower.material"]
+
+
+def test_a_message_lists_a_repeated_name_once():
+    edits = ("bodies/block/points/O", [0.1, 0.0]), ("beams/upper/start/point", "Z")
+    assert mistakes(*edits, base=TWO)["beams.upper.start.point"].count("'O'") == 1
 
 
 def test_a_thickness_near_the_radius():

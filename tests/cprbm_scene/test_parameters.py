@@ -114,6 +114,8 @@ def test_an_expression_without_a_fitting_value_is_named_by_its_key():
         ([("parameters/half/value", "= ha")], "parameters.half.value", "'ha', which names no parameter"),
         ([("parameters/t/unit", "miles")], "parameters.t.unit", "'miles', which is no unit"),
         ([("parameters/t/value", 2.5)], "parameters.t.value", "2.5 mm; a number from 1.6 to 2.4 mm"),
+        ([("parameters/t/range", [2.4, 1.6])], "parameters.t.range", "the least value, then the largest"),
+        ([("parameters/t/value", "2mm")], "parameters.t.value", "a parameter has the key 'unit'"),
         ([("parameters/t/value", "two")], "parameters.t.value", "'two'; a number"),
         ([("parameters/t/tolerance/normal", 0.0)], "parameters.t.tolerance.normal", "greater than 0"),
         ([("parameters/t/size", 1.0)], "parameters.t.size", "names no key here"),
@@ -143,7 +145,7 @@ def test_a_setting_replaces_a_value(setting, thickness):
         ({"t": "2deg"}, "parameters.t: found '2deg'; allowed: a number in mm"),
         ({"t": "thin"}, "parameters.t: found 'thin'; allowed: a number with a unit"),
         ({"t": math.nan}, "parameters.t: found nan; allowed: a finite number"),
-        ({"half": "1mm"}, "parameters.half: found '= t/2', an expression"),
+        ({"half": "1mm"}, "parameters.half: found '= t/2', an expression; .*; an expression takes no other value"),
     ],
 )
 def test_a_wrong_setting_is_refused(settings, message):

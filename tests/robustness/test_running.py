@@ -444,7 +444,7 @@ def test_an_interrupt_leaves_what_is_finished_and_says_so(tmp_path):
     os.killpg(process.pid, signal.SIGINT)
     out, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert said == "cprbm: Interrupted; finished results stand.\n"
+    assert said == "cprbm: Interrupted. Finished results stand; repeat the command to go on.\n"
     assert "scenes:" in out
     (file,) = (tmp_path / "out").glob("*.jsonl")
     assert Kept(file).read()[0]
