@@ -28,7 +28,7 @@ from comparisons.sweeps.outcome import Outcome
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.mistakes import first_of, mistakes_of
 from cprbm_scene.reading import toml_data
-from cprbm_scene.statement import Record
+from cprbm_scene.units import Reading, Record
 
 
 class Goal(Record):
@@ -150,7 +150,7 @@ def read_demands(path: Path) -> Demands:
     if isinstance(data.get("limits"), list):
         data["limits"] = tuple(data["limits"])
     try:
-        return Demands.model_validate(data)
+        return Demands.model_validate(data, context=Reading())  # the rules hold for what is read
     except ValidationError as error:
         raise SceneError([replace(each, file=str(path)) for each in first_of(mistakes_of(error))]) from None
 
