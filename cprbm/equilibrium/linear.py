@@ -1,7 +1,8 @@
 """The linear system of a Newton iteration: chains, rows and closed places, compiled.
 
-A call assembles the gradient and the Hessian and eliminates the chains.  LAPACK factors the border,
-:mod:`cprbm.equilibrium.factors`; a second call restores the chains' part of the solution.
+The kernels assemble the gradient and the Hessian, eliminate the chains, and restore the chains' part of the solution.
+A Newton step solves the border by LU factors, :mod:`cprbm.equilibrium.iteration`; a state that is tested for a minimum
+has symmetric factors of the border with the inertia, :mod:`cprbm.equilibrium.factors`.
 """
 
 from __future__ import annotations
