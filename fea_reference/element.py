@@ -18,12 +18,21 @@ c        slip, γ by −Δ: the shear force is −(1, 1)·K Δ / L, so that c = 
 
 The element's contribution to the Hellinger–Reissner functional is
 
-    Π_e = ½ Δᵀ K Δ + N [ (l − l⁰) + ½ ∫ (w'² − w⁰'²) ds ] − ½ c_N L N²,
+    Π_e = ½ Δᵀ K Δ + N [ (l − l⁰) + ½ ∫ (w'² − w⁰'² − (1 − 2 GA c_N) γ²) ds ] − ½ c_N L N²,
 
 with the membrane strain averaged over the element (a shallow arch on its chord), so that a curved element is
 neither locked nor shortened by its own curvature.  The parabola's middle value makes the energy of bending
 and shear stationary, with the element's mean compliances: without shear w is the cubic of Hermite, whatever EI does,
 and (½/L) ∫ w'² ds = (2ϑ₁² − ϑ₁ϑ₂ + 2ϑ₂²)/30.
+
+The term in γ² makes the limit of fine elements Reissner's beam (ZAMP 23, 1972), with strains along and across the
+section.  Let the line have the stretch λ and lean from the section's normal by γ.  Then the strains are λ cos γ − 1 and
+λ sin γ, and to second order
+
+    ½ EA (λ cos γ − 1)² + ½ GA (λ sin γ)² ≈ ½ EA (λ − 1 − ½ γ²)² + ½ GA γ² + GA (λ − 1) γ²,
+
+where λ − 1 is N c_N up to a term in γ².  Without the term, N acts along the line (Engesser's beam), and displacements
+differ by N/GA of the share of shear.
 Corotational kinematics: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1,
 ch. 7.
 """
@@ -45,7 +54,7 @@ class Elements:
     """What n elements keep of their undeformed shape: element last in every array.
 
     ``length`` L, ``chord`` l⁰, ``compliance`` c_N (n,); ``slip`` c, ``rotation`` ϑ⁰, ``slope`` ∫ w⁰' ∂w'/∂Δ ds (2, n);
-    ``bending`` K, ``shortening`` ∫ ∂w'/∂Δ ∂w'/∂Δ ds (2, 2, n).
+    ``bending`` K, ``shortening`` ∫ (∂w'/∂Δ ∂w'/∂Δ − (1 − 2 GA c_N) ∂γ/∂Δ ∂γ/∂Δ) ds (2, 2, n).
     """
 
     length: Array
@@ -101,9 +110,10 @@ def reference(
     turning = flexibility[0, 0] - flexibility[0, 1] - flexibility[1, 0] + flexibility[1, 1]
     stiff, rigid = (_section_rotation(D, m, one / turning) for one in (shear, 0.0 * shear))
     K = _inverse(flexibility + shear / L**2)
-    W = G - m[:, None] * m[None, :] / L  # ∫ w' w' ds
-    slope = np.einsum("kn,akn,abn,bjn->jn", rotation, rigid, W, stiff)
-    shortening = np.einsum("ain,abn,bjn->ijn", stiff, W, stiff)
+    sheared = m[:, None] * m[None, :] / L  # ∫ γ γ ds
+    stretch = np.divide(axial, shear, out=np.zeros_like(L), where=shear > 0.0)  # GA c_N
+    slope = np.einsum("kn,akn,abn,bjn->jn", rotation, rigid, G - sheared, stiff)
+    shortening = np.einsum("ain,abn,bjn->ijn", stiff, G - 2.0 * (1.0 - stretch) * sheared, stiff)
     slip = shear / L**2 * K.sum(axis=0)
     return Elements(L, np.hypot(*chord.T), axial / L, slip, rotation, slope, K, shortening)
 
