@@ -110,10 +110,9 @@ def reference(
     turning = flexibility[0, 0] - flexibility[0, 1] - flexibility[1, 0] + flexibility[1, 1]
     stiff, rigid = (_section_rotation(D, m, one / turning) for one in (shear, 0.0 * shear))
     K = _inverse(flexibility + shear / L**2)
-    sheared = m[:, None] * m[None, :] / L  # ∫ γ γ ds
     stretch = np.divide(axial, shear, out=np.zeros_like(L), where=shear > 0.0)  # GA c_N
-    slope = np.einsum("kn,akn,abn,bjn->jn", rotation, rigid, G - sheared, stiff)
-    shortening = np.einsum("ain,abn,bjn->ijn", stiff, G - 2.0 * (1.0 - stretch) * sheared, stiff)
+    slope = np.einsum("kn,akn,abn,bjn->jn", rotation, rigid, G, stiff)  # ∫ w⁰' ds = 0
+    shortening = np.einsum("ain,abn,bjn->ijn", stiff, G - 2.0 * (1.0 - stretch) * m[:, None] * m / L, stiff)
     slip = shear / L**2 * K.sum(axis=0)
     return Elements(L, np.hypot(*chord.T), axial / L, slip, rotation, slope, K, shortening)
 
