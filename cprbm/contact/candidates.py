@@ -25,7 +25,7 @@ import numpy as np
 
 from cprbm.chain import Mechanism
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
-from cprbm.contact.fixed import FREE, Ends, Sites, movable, places_at_feet
+from cprbm.contact.fixed import FREE, Ends, Sites, places_at_feet
 from cprbm.contact.gap import Places, gap_frame
 from cprbm.contact.pairs import Pair, contact_pairs
 from cprbm.contact.settling import settle
@@ -121,6 +121,12 @@ class Geometry:
         return np.array(found, dtype=np.int64).reshape(-1, 4)
 
     @cached_property
+    def has_faces(self) -> Flags:
+        """Whether the second curves of pairs are rigid with several pieces (pairs,): a place may have several feet."""
+        second = self.columns[:, 1]
+        return np.asarray(self.ends.rigid[second] & (self.arrays.last[second] > self.arrays.first[second]))
+
+    @cached_property
     def has_corners(self) -> bool:
         """True if corners of rigid curves are places."""
         return bool(on_edge(self.arrays, self.possible).any())
@@ -179,11 +185,6 @@ def half_thicknesses(arrays: CurveArrays, places: Places) -> Array:
     """Half thickness at the places plus half thickness at the feet."""
     at_place = arrays.thickness[places.piece] + places.xi * arrays.thickening[places.piece]
     return np.asarray(at_place + arrays.thickness[places.foot] + places.eta * arrays.thickening[places.foot])
-
-
-def may_move(geometry: Geometry, places: Places) -> Flags:
-    """Whether the places may move along their curves."""
-    return movable(geometry.arrays, geometry.ends, places)
 
 
 def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:

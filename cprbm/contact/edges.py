@@ -21,10 +21,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm.contact.candidates import Geometry, may_move, on_edge, taken
+from cprbm.contact.candidates import Geometry, on_edge, taken
 from cprbm.contact.closest import curve_point
 from cprbm.contact.corners import Corner
 from cprbm.contact.curve import STENCIL
+from cprbm.contact.fixed import movable
 from cprbm.contact.gap import Places, gap_frame
 from cprbm.contact.settling import FINDING, find_feet, near_pairs, separations, settle
 from cprbm_scene.answer import Array, Ints
@@ -111,7 +112,7 @@ def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Arr
     apart = arrays.arc[trial.piece] + trial.xi * arrays.span[trial.piece]
     apart -= arrays.arc[places.foot[k]] + places.eta[k] * arrays.span[places.foot[k]]
     near = abs(apart[0]) < BESIDE * arrays.span[trial.piece[0]]
-    goes = near and curvature[0] > 0.0 and not trial.at_point[0] and may_move(geometry, trial)[0]
+    goes = near and curvature[0] > 0.0 and not trial.at_point[0] and movable(geometry.arrays, geometry.ends, trial)[0]
     return trial if goes else None
 
 

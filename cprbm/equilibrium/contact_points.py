@@ -20,6 +20,8 @@ import numpy as np
 
 from cprbm.contact import (
     FINDING,
+    REACH,
+    TOUCHING,
     Contacts,
     Geometry,
     Places,
@@ -28,7 +30,9 @@ from cprbm.contact import (
     is_left,
     joined,
     left_corner,
-    may_move,
+    matched,
+    movable,
+    near_pairs,
     on_edge,
     settle,
     taken,
@@ -37,7 +41,6 @@ from cprbm.equilibrium.contact_set import (
     NotConvergedError,
     Touched,
     arc_of,
-    near_contacts,
     passed_through,
     solve_set,
     with_fixed_places,
@@ -172,20 +175,22 @@ def _leaving_corners(geometry: Geometry, solved: Touched) -> tuple[Places, Flags
 
 
 def _come_near(geometry: Geometry, solved: Touched) -> Contacts | None:
-    """Contacts with the places of pairs without places at the start that overlap at the end; None without any."""
+    """Contacts with the feet of a new search where such a foot overlaps at the end; None without any.
+
+    New are the feet of pairs without places at the start, and on a rigid curve of several pieces: a foot that moves
+    along one face does not see another face come near.
+    """
     z, contacts = solved.state.z, solved.contacts
-    late = near_contacts(geometry, z, contacts)
-    late[contacts.places.pair] = False
+    late = near_pairs(z, geometry.arrays, geometry.columns, np.full(len(geometry.pairs), REACH), contacts.counters)
+    late[list(contacts.kept_open)] = False
+    late[contacts.places.pair] &= geometry.has_faces[contacts.places.pair]
     if not late.any():
         return None
     new = with_fixed_places(geometry, z, contacts)
-    late = ~np.isin(new.places.pair, contacts.places.pair)
-    return new if late.any() and new.gaps(geometry, z)[late].min() < -OVERLAP else None
-
-
-def _same(places: Places, k: int) -> Flags:
-    """Places of the same pair on the same curve."""
-    return np.asarray((places.pair == places.pair[k]) & (places.curve == places.curve[k]))
+    known = matched(geometry.arrays, new.places, contacts.places)
+    least = np.append(solved.gaps - TOUCHING, 0.0)[known]  # the last of a place that is new
+    late = late[new.places.pair] & ((known >= 0) | ~new.closed)
+    return new if np.any(late & (new.gaps(geometry, z) < np.minimum(least, -OVERLAP))) else None
 
 
 def _flattest(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
@@ -204,7 +209,8 @@ def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
     for k in np.flatnonzero(gone).tolist():
         given_up |= {(int(places.pair[k]), int(places.piece[k]) + e) for e in range(-ISOLATED, ISOLATED + 1)}
         share = 1.0 - np.abs(arcs - arcs[k]) / span[k]
-        beside = _same(places, k) & ~places.moves & (share > 0.0) & contacts.closed[k]
+        same = (places.pair == places.pair[k]) & (places.curve == places.curve[k])
+        beside = same & ~places.moves & (share > 0.0) & contacts.closed[k]
         closed |= beside
         places.force[beside] += share[beside] * places.force[k]
     return replace(contacts, places=taken(places, ~gone), closed=closed[~gone], given_up=frozenset(given_up))
@@ -219,8 +225,8 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
         return None
     replaced = np.zeros(len(contacts.closed), dtype=bool)
     created = taken(places, replaced)
-    arcs, span = arc_of(geometry, places), geometry.arrays.span[places.piece]
-    depth = beside_points(geometry.arrays, places, contacts.closed)[1]
+    arcs, span = arc_of(geometry, places), curves.span[places.piece]
+    depth = beside_points(curves, places, contacts.closed)[1]
     for first, last in runs.tolist():
         # the joints of a run are neighbours
         run = np.array([first, last] if last > first else [first])
@@ -230,10 +236,11 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
         run = np.flatnonzero(np.isin(np.arange(len(arcs)) + places.shares, run))
         trial, gap, curvature = as_point(z, curves, places, best, places.force[run].sum(), counters)
         overlaps = contacts.closed[best] or gap < -OVERLAP - depth[best]
-        if not overlaps or curvature <= 0.0 or not may_move(geometry, trial)[0]:
+        if not overlaps or curvature <= 0.0 or not movable(curves, geometry.ends, trial)[0]:
             continue
         at = arc_of(geometry, trial)[0]
-        others = _same(places, best) & contacts.closed & ~np.isin(np.arange(len(arcs)), run)
+        others = contacts.closed & (places.pair == places.pair[best]) & (places.curve == places.curve[best])
+        others[run] = False
         around = np.concatenate([arcs[others], arc_of(geometry, created)[created.pair == places.pair[best]]])
         lonely = not np.any(np.abs(around - at) < ISOLATED * span[best])
         if lonely and np.any(np.abs(arcs[run] - at) < span[best]):

@@ -25,7 +25,6 @@ from cprbm.contact import (
     copied,
     joined,
     matched,
-    near_pairs,
     on_edge,
     separations,
     settle_near,
@@ -94,14 +93,6 @@ class Touched:
     def contacts(self) -> Contacts:
         """Places and closed set of the state."""
         return self.state.contacts
-
-
-def near_contacts(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
-    """Pairs that are near each other, without those that are kept open."""
-    reach = np.full(len(geometry.pairs), REACH)
-    near = near_pairs(z, geometry.arrays, geometry.columns, reach, contacts.counters)
-    near[list(contacts.kept_open)] = False
-    return near
 
 
 def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Contacts:

@@ -101,3 +101,36 @@ def test_from_a_face_to_a_corner_nothing_jumps(thick):
     # what the drive does is what the energy gains: the trapezium rule's error is of the size of force's change
     done = -0.5 * h * (force[:-1] + force[1:])
     assert np.diff(energy) == pytest.approx(done, abs=0.1 * h * np.max(np.abs(np.diff(force))))
+
+
+@pytest.mark.parametrize("turned_over", [False, True])
+def test_a_round_tip_meets_the_ramp_behind_a_concave_corner(turned_over):
+    # geometry: the tip's circle of the half thickness touches the ramp; the flat before the ramp stays below the tip
+    corner, ramp = (1.0, -0.02), math.radians(30.0)
+    closing = corner[0] - 1.0 + (-corner[1] * math.cos(ramp) - 0.5 * T) / math.sin(ramp)
+    points = ((0.9, corner[1]), corner, (corner[0] + math.cos(ramp), corner[1] + math.sin(ramp)))
+    edge = {"kind": "beam-line", "body": "nose", "points": points, "side": "left"}
+    if turned_over:
+        edge |= {"points": tuple(points[::-1]), "side": "right"}
+    scene = scene_of(
+        {"kind": "line", "start": (0.0, 0.0), "end": (1.0, 0.0)},
+        {"joint": "weld", "point": "root"},
+        {"joint": "free"},
+        edge,
+        bodies={
+            "ground": {"motion": "fixed", "points": {"root": (0.0, 0.0)}},
+            "nose": {"motion": "slides", "along": (1.0, 0.0), "points": {"tip": corner}},
+        },
+        drives={"in": {"kind": "displacement", "point": "tip", "direction": (-1.0, 0.0)}},
+        stages=(("in", (0.99 * closing, 1.05 * closing, 1.2 * closing)),),
+        probes=(("edge", "force"),),
+    )
+    for links in (20, 43):
+        answer = cprbm.answer(scene, cprbm.Settings(links=links))
+        assert answer.completed, answer.sentence
+        (event,) = answer.events
+        assert event.value == pytest.approx(closing, rel=1e-9)
+        # small deflections: the tip rises by what the ramp moves beyond the closing
+        for station, beyond in zip(answer.stations, (0.0, 0.05, 0.2), strict=True):
+            rise = beyond * closing * math.tan(ramp)
+            assert station.values["edge.force"][0] * math.cos(ramp) == pytest.approx(3.0 * rise, rel=0.01, abs=1e-9)
