@@ -62,7 +62,7 @@ _KEPT = 20  # stretches
 _FARTHER = 30.0  # times the arc between them: places that are farther apart are on no one branch
 _BETWEEN = 1.0  # elements: between places that are farther apart along the beam there is no contact
 _ALONG = 0.5  # cosine between branch and φ at a fold
-_TURNING = 0.1  # of dλ/ds at the beginning: what is left of it at a fold
+_TURNING = 0.1  # of dλ/ds at the beginning: the most that is left of it at a fold
 _APPROACHED = 1e-8  # of the span: from where a contact's force is zero
 _SHARE = 0.9  # of the way there, at a time
 _SLIPPING = 0.1  # of the span: from how far an end is followed to where it slips off another
@@ -525,10 +525,10 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
                 left.direction,
             )
     mass = lumped_mass(march.model)
-    along = float(before.mode.direction @ (mass * before.way))
-    size = float(np.sqrt(before.way @ (mass * before.way)))
-    # τ goes to zero with μ, or not at all
-    fold = abs(before.rate) < _TURNING * abs(first.rate) and abs(along) > _ALONG * size
+    along, size = float(before.mode.direction @ (mass * before.way)), float(np.sqrt(before.way @ (mass * before.way)))
+    # at a fold τ vanishes like μ; at a bifurcation round-off over μ makes τ small too, but not like the root of μ
+    least = min(_TURNING, np.sqrt(before.curvature / first.curvature)) * abs(first.rate)
+    fold = abs(before.rate) < least and abs(along) > _ALONG * size
     direction = before.mode.direction * (-1.0 if fold and along < 0.0 else 1.0)
     loss = Loss.FOLD if fold else Loss.BIFURCATION
     zero = before.curvature if before.curvature < -behind.curvature else behind.curvature

@@ -157,6 +157,38 @@ def test_pinned_column(solve, within):
     assert -found["E.displacement"][0] == pytest.approx(exact.shortening * LENGTH, rel=6.0 * within)
 
 
+@pytest.mark.parametrize("elements", [80, 91, 160])
+def test_a_frame_that_sways_bifurcates(elements):
+    """Both guided columns of a frame carry π² EI/L² (Euler); round-off near the load makes no fold of it.
+
+    The stretch before the load shortens the columns by π² t²/12L² = 4e-5, and so does the shear.
+    """
+    column = {"thickness": 0.001, "width": 0.01, "material": "steel"}
+    data = {
+        "name": "frame",
+        "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
+        "bodies": {
+            "ground": {"motion": "fixed", "points": {"A": [0.0, 0.0], "B": [0.08, 0.0]}},
+            "top": {"motion": "free", "points": {"C": [0.0, 0.15], "D": [0.08, 0.15], "M": [0.04, 0.15]}},
+        },
+        "beams": {
+            name: column
+            | {"curve": {"kind": "line", "start": [x, 0.0], "end": [x, 0.15]}}
+            | {"start": {"joint": "weld", "point": foot}, "end": {"joint": "weld", "point": head}}
+            for name, x, foot, head in (("left", 0.0, "A", "C"), ("right", 0.08, "B", "D"))
+        },
+        "loads": {"P": {"kind": "force", "point": "M", "direction": [0.0, -1.0]}},
+        "stages": [{"name": "press", "steps": "P", "stations": [70.0, 130.0, 160.0]}],
+        "probes": [{"of": "M", "quantity": "displacement"}],
+    }
+    euler = 2.0 * np.pi**2 * 2e11 * 0.01 * 0.001**3 / 12.0 / 0.15**2
+    for answer in (
+        fea_reference.answer(scene_from(data), fea_reference.Settings(elements=elements, kinematics="shear")),
+        cprbm.answer(scene_from(data), cprbm.Settings(links=elements)),
+    ):
+        ends(answer, Loss.BIFURCATION, euler, 5e-4)
+
+
 # --------------------------------------------------------------------------------------------------- a turn
 
 
