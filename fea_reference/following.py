@@ -63,6 +63,7 @@ _FARTHER = 30.0  # times the arc between them: places that are farther apart are
 _BETWEEN = 1.0  # elements: between places that are farther apart along the beam there is no contact
 _ALONG = 0.5  # cosine between branch and φ at a fold
 _TURNING = 0.1  # of dλ/ds at the beginning: the most that is left of it at a fold
+_CLEAR, _NEAR = 1e-5, 1e-2  # of μ at the beginning: above round-off, and near enough for what is left of dλ/ds
 _APPROACHED = 1e-8  # of the span: from where a contact's force is zero
 _SHARE = 0.9  # of the way there, at a time
 _SLIPPING = 0.1  # of the span: from how far an end is followed to where it slips off another
@@ -480,8 +481,7 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
 
     None where no places are found between them at which it goes to zero: they are on no one branch.
     """
-    low, high = (0.0, here), (length, there)
-    weights = [1.0, 1.0]
+    low, high, weights, clear = (0.0, here), (length, there), [1.0, 1.0], None
     for _ in range(_ROOTS):
         (s, before), (t, behind) = low, high
         if abs(behind.value - before.value) <= _FINE * branch.span and t - s <= _SHORT * length:
@@ -498,6 +498,7 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
             if min(before.curvature, -behind.curvature) > _HELD * first.curvature:
                 return None
             break
+        clear = middle if _CLEAR < abs(middle.curvature) / first.curvature < _NEAR else clear
         if middle.curvature > 0.0:
             low, weights = (s + share * (t - s), middle), [1.0, 0.5 * weights[1]]
         else:
@@ -513,23 +514,12 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
         if held > _HELD * first.curvature and _gone(march, branch, first, begun, one, held):
             # a zone of several leaves the others
             left = softest(march.model, stiffened(march.model, before.system, one, 0.0))
-            return Lost(
-                value,
-                uncertainty,
-                Loss.CONTACT,
-                one.pair.name,
-                held,
-                left.curvature,
-                energy,
-                before.system,
-                left.direction,
-            )
+            lets_go = Loss.CONTACT, one.pair.name, held, left.curvature
+            return Lost(value, uncertainty, *lets_go, energy, before.system, left.direction)
     mass = lumped_mass(march.model)
     along, size = float(before.mode.direction @ (mass * before.way)), float(np.sqrt(before.way @ (mass * before.way)))
-    # at a fold τ vanishes like μ; at a bifurcation round-off over μ makes τ small too, but not like the root of μ
-    least = min(_TURNING, np.sqrt(before.curvature / first.curvature)) * abs(first.rate)
-    fold = abs(before.rate) < least and abs(along) > _ALONG * size
-    direction = before.mode.direction * (-1.0 if fold and along < 0.0 else 1.0)
-    loss = Loss.FOLD if fold else Loss.BIFURCATION
+    # τ goes to zero with μ, or not at all; round-off over the last μ makes τ small at a bifurcation too
+    fold = abs((clear or before).rate) < _TURNING * abs(first.rate) and abs(along) > _ALONG * size
+    loss, side = Loss.FOLD if fold else Loss.BIFURCATION, -1.0 if fold and along < 0.0 else 1.0
     zero = before.curvature if before.curvature < -behind.curvature else behind.curvature
-    return Lost(value, uncertainty, loss, "", zero, zero, energy, before.system, direction)
+    return Lost(value, uncertainty, loss, "", zero, zero, energy, before.system, side * before.mode.direction)
