@@ -9,14 +9,13 @@ from comparisons import sentences as said
 from comparisons.audit import Audit, audit
 from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.tolerances.result import Tolerance
+from comparisons.verdict import SEVERITY, Reason, Word, worst_of
 from comparisons.verdict.completeness import complete_part, ends_at_critical
 from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows
 from comparisons.verdict.judge import Judged, judge_case, judge_rows
 from comparisons.verdict.rows import Row, build_rows
-from comparisons.verdict.runs import SOLVERS, Runs
-from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.runs import SOLVERS, Runs, RunsTable
 from comparisons.verdict.station_events import Place, station_events
-from comparisons.verdict.words import SEVERITY, Reason, Word, worst_of
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 

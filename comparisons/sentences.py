@@ -9,15 +9,14 @@ from functools import partial
 
 from comparisons.display_units import at_station, distance_text, with_unit
 from comparisons.formats import number, percent
+from comparisons.verdict import Reason, Word
 from comparisons.verdict.calibration import error_ratios, tally, true_errors
 from comparisons.verdict.completeness import problems
 from comparisons.verdict.events import ClosingRow, CriticalRow, mechanism
 from comparisons.verdict.judge import Judged
 from comparisons.verdict.rows import Row
-from comparisons.verdict.runs import SOLVERS, Runs
-from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.runs import SOLVERS, Runs, RunsTable
 from comparisons.verdict.station_events import MIRRORED, PASSED, passed_by
-from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Answer, Scene
 
 NAMES = {"cprbm": "the CPRBM", "fea": "the finite elements"}

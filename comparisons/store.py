@@ -19,7 +19,7 @@ from typing import Any
 
 from comparisons.answer_file import DAMAGES, packed, read_answers
 from comparisons.choices import Choices
-from comparisons.crew import Crew, Decided, Job, Solver, crew_of
+from comparisons.executor import Crew, Decided, Job, Solver, crew_of
 from comparisons.pairing import Solvers, load_solvers
 from comparisons.provenance import program
 from comparisons.writing import clear_partial, write

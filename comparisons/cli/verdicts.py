@@ -23,8 +23,8 @@ from comparisons.store import Run, run_into
 from comparisons.studies import convergence
 from comparisons.studies.report import Parts, Report
 from comparisons.tolerances.search import runs_within
+from comparisons.verdict import Word
 from comparisons.verdict.runs import Runs
-from comparisons.verdict.words import Word
 from comparisons.writing import write
 from cprbm_scene import OffsetQuestion, Question
 

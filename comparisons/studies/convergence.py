@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from comparisons.choices import Choices
-from comparisons.crew import Crew
 from comparisons.display_units import at_station
+from comparisons.executor import Crew
 from comparisons.pairing import Solvers, exact_or_why
 from comparisons.present.canvas import GREY, LINES, canvas, common_legend, finished, logarithmic
 from comparisons.present.columns import Figure, Section

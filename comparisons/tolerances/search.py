@@ -24,7 +24,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from comparisons.choices import Choices
-from comparisons.crew import Crew
+from comparisons.executor import Crew
 from comparisons.pairing import Solvers, exact_or_why, in_other_theory, paired, with_solid
 from comparisons.reactions import perturbed_scene
 from comparisons.sentences import problem_sentences

@@ -4,7 +4,7 @@
 symbol  meaning
 ======  ==========================================================================================
 λ_c     load of an event in the CPRBM, λ_f in the finite elements, λ_o in the CPRBM in the other theory
-U       stated uncertainty of λ_c − λ_f (:mod:`comparisons.verdict.bounds`)
+U       stated uncertainty of λ_c − λ_f (:mod:`comparisons.verdict.runs`)
 θ       step of theory |λ_o − λ_c|; infinite where the CPRBM has no such critical point in the other theory
 T       tolerance of an event on the load axis (:func:`comparisons.stations.event_tolerance`)
 W       ``verdict_limit`` of the scene times the span of the stage
@@ -32,11 +32,9 @@ import numpy as np
 
 from comparisons.quantities import load_unit
 from comparisons.stations import event_tolerance, span_of
-from comparisons.verdict.bounds import Bounds, bounds_of
+from comparisons.verdict import Reason, Word
 from comparisons.verdict.completeness import ends_at_critical
-from comparisons.verdict.runs import SOLVERS
-from comparisons.verdict.runs_table import RunsTable, solver_of
-from comparisons.verdict.words import Reason, Word
+from comparisons.verdict.runs import SOLVERS, Bounds, RunsTable, solver_of
 from cprbm_scene import Critical, Stage
 from cprbm_scene.frozendict import frozendict
 
@@ -261,4 +259,4 @@ def closing_rows(table: RunsTable) -> tuple[ClosingRow, ...]:
 def _on_load_axis(table: RunsTable, loads: Mapping[str, float], round_off: float) -> Bounds | None:
     """Stated uncertainties of an event's loads."""
     values = {name: np.array([load]) for name, load in loads.items()}
-    return bounds_of(table.runs, values, lambda difference: float(np.abs(difference).max()), round_off)
+    return table.runs.bounds(values, lambda difference: float(np.abs(difference).max()), round_off)

@@ -25,10 +25,8 @@ import numpy as np
 
 from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, norm, unit_of
 from comparisons.stations import find_station
-from comparisons.verdict.bounds import Bounds, bounds_of
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
-from comparisons.verdict.runs import Runs
-from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.runs import Bounds, Runs, RunsTable
 from comparisons.verdict.scales import denominator, probe_scales
 from comparisons.verdict.station_events import NO_EVENTS, Place, StationEvents, station_events
 from comparisons.verdict.uncertainty import largest
@@ -224,7 +222,7 @@ def _measured(
     masked = {name: value[counts] for name, value in values.items()}
     return replace(
         row,
-        bounds=bounds_of(runs, masked, lambda difference: norm(probe.quantity, difference), floor, known),
+        bounds=runs.bounds(masked, lambda difference: norm(probe.quantity, difference), floor, known),
         true_errors=_true_errors(row, exact, size),
     )
 

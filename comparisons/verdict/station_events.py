@@ -26,8 +26,7 @@ from comparisons.stations import begins_at, event_tolerance
 from comparisons.verdict.completeness import Where
 from comparisons.verdict.events import disagree_within_a_solver
 from comparisons.verdict.point_forces import active_contacts
-from comparisons.verdict.runs import SOLVERS
-from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.runs import SOLVERS, RunsTable
 from comparisons.verdict.scales import deflection
 from cprbm_scene import Answer, Loss, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Shape

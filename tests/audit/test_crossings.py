@@ -8,7 +8,7 @@ import pytest
 import comparisons
 from comparisons.audit import audit
 from comparisons.choices import Choices
-from comparisons.verdict.words import Word
+from comparisons.verdict import Word
 from cprbm_scene import Answer, Ending, Shape, StationAnswer, read, scene_from
 from cprbm_scene.answer import BeamState
 from tests.verdict.made_up import CERTIFICATE

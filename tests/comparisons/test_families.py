@@ -9,7 +9,7 @@ import pytest
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.cli.main import run
-from comparisons.crew import ALONE
+from comparisons.executor import ALONE
 from comparisons.pairing import Solvers
 from comparisons.plain import text_of
 from comparisons.studies import convergence

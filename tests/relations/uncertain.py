@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.crew import Solver
+from comparisons.executor import Solver
 from comparisons.quantities import arc_lengths, norm
 from comparisons.stations import station_of
 from comparisons.verdict.point_forces import away_from_point_forces
