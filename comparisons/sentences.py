@@ -7,8 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
-from comparisons.display_units import at_station, distance_text, with_unit
-from comparisons.formats import number, percent
+from comparisons.formats import at_station, distance_text, number, percent, with_unit
 from comparisons.verdict import Reason, Word
 from comparisons.verdict.calibration import error_ratios, tally, true_errors
 from comparisons.verdict.completeness import problems

@@ -26,8 +26,8 @@ from itertools import groupby
 
 import numpy as np
 
+from comparisons.audit.laws import floors, moment_errors
 from comparisons.audit.state import Finding, StationState, about, gauss, unit
-from comparisons.audit.statics import floors, moment_errors
 from comparisons.quantities import arc_lengths
 from cprbm_scene.answer import Answer, Array
 from cprbm_scene.statement import DisplacementDrive, PinnedEnd, Probe, Scene, SelfContact

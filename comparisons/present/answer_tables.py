@@ -6,8 +6,17 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from comparisons.case import BranchVerdict, Comparison
-from comparisons.display_units import display_units, distance_text, load_column, load_text, with_unit
-from comparisons.formats import component_names, components, number, percent
+from comparisons.formats import (
+    component_names,
+    components,
+    display_units,
+    distance_text,
+    load_column,
+    load_text,
+    number,
+    percent,
+    with_unit,
+)
 from comparisons.present.columns import Column, Table, columns_of, table_of
 from comparisons.quantities import load_unit, norm, unit_of
 from comparisons.tolerances.result import Tolerance

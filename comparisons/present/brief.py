@@ -9,8 +9,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from comparisons.case import Comparison, Verdict
-from comparisons.display_units import at_station
-from comparisons.formats import component_names, components, number, percent
+from comparisons.formats import at_station, component_names, components, number, percent
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.present import offset
 from comparisons.present.columns import NOTHING, Column, Table, follow, table_of

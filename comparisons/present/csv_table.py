@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, TypedDict
 
 from comparisons.case import Comparison
-from comparisons.display_units import file_unit
+from comparisons.formats import file_unit
 from comparisons.plain import Plain
 from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
 from cprbm_scene import Answer, Probe, Scene, StationAnswer

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from comparisons.choices import Count
-from comparisons.claims import claim_of
-from comparisons.display_units import at_station
-from comparisons.formats import number, percent
+from comparisons.formats import at_station, number, percent
+from comparisons.opinions import claim_of
 from comparisons.plain import Plain, plain
 from comparisons.present.canvas import canvas, finished
 from comparisons.present.columns import NOTHING, Column, Figure, Table, table_of

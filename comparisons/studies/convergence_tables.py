@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from statistics import median
 from typing import TYPE_CHECKING, NamedTuple
 
-from comparisons.display_units import at_station, display_unit, distance_text, with_unit
-from comparisons.formats import number, percent, vector
+from comparisons.formats import at_station, display_unit, distance_text, number, percent, vector, with_unit
 from comparisons.plain import Plain, plain
 from comparisons.present import json_document
 from comparisons.present.columns import Column, Table, table_of, without_empty

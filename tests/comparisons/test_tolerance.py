@@ -14,8 +14,8 @@ from comparisons.choices import Choices
 from comparisons.cli.main import commands, run
 from comparisons.cli.options import tolerance
 from comparisons.executor import ALONE
+from comparisons.opinions import solid_limit
 from comparisons.pairing import Solvers, solid_answer, solvers_of
-from comparisons.third import solid_limit
 from comparisons.tolerances.limits import limits_of
 from comparisons.tolerances.search import LARGEST, runs_within, solve_within
 from comparisons.verdict import Word

@@ -12,8 +12,8 @@ import pytest
 
 from comparisons.answer_file import packed, unpacked
 from comparisons.choices import Choices
-from comparisons.claims import standings
 from comparisons.executor import ALONE
+from comparisons.opinions import standings
 from comparisons.pairing import Solvers
 from comparisons.plain import text_of
 from comparisons.present import json_document

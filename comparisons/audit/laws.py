@@ -1,4 +1,4 @@
-"""Statics of an answer: sums of forces, action and reaction, free-body cuts, and the section law.
+"""Laws of one station: closed joints, sums of forces, free-body cuts, and the section law.
 
 ======  ===============================================================================
 symbol  meaning
@@ -17,6 +17,8 @@ Between two places Δφ = ∫ M/(E·I) ds, with an error of up to h |ΔM|/(E·I)
 /(8 E·I) of a kink of M, and of the variation of E·I.  γ = Q/(GA_s) holds in the middle of all places that bear shear:
 beside held ends and forces γ is not uniform over the section.  The law is coarse on purpose: without a copy of any
 element the audit finds gross errors of the section alone.
+
+Ends stand at their points, welded ends at their angles; guides, pivots, pins, drives and drawn shapes hold to CLOSED.
 """
 
 from __future__ import annotations
@@ -25,9 +27,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from comparisons.audit.state import BESIDE, Finding, StationState, about
+from comparisons.audit.state import BESIDE, Finding, StationState, about, unit
 from cprbm_scene.answer import Array
-from cprbm_scene.statement import PinnedEnd, TurningBody
+from cprbm_scene.statement import DisplacementDrive, FreeEnd, PinnedEnd, SlidingBody, TurningBody, WeldedEnd
 
 CLOSED = 1e-7
 """Largest sum of forces or moments in equilibrium, over the largest force or moment."""
@@ -125,3 +127,41 @@ def floors(state: StationState, name: str = "") -> tuple[float, float]:
     closed, moment = CLOSED * force, CLOSED * moment + rounding
     levered = state.lever(name) + state.ripple(name) if name in state.beams else 0.0
     return closed + moment / state.longest, moment + levered
+
+
+JOINED = 1e-8
+"""Largest error of a joint, over the longest beam, or rad."""
+
+
+def joints(state: StationState) -> Iterator[Finding]:
+    """Errors of joints, guides, drives and drawn shapes beyond JOINED."""
+    for joint, off in _errors(state):
+        yield abs(off) - JOINED * state.longest, f"{joint} is {abs(off):.2g} m off"
+
+
+def _errors(state: StationState) -> Iterator[tuple[str, float]]:
+    """Joints and their errors, m; an angle counts with the longest beam as the arm."""
+    scene, arm = state.scene, state.longest
+    for name, beam in state.beams.items():
+        shape = state.station.shapes[name]
+        drawn = np.interp(beam.state.s, shape.s, shape.x + 1j * shape.y)
+        yield f"the shape of {name}", float(np.abs(drawn - beam.places).max())
+        for end, i in ((beam.beam.start, 0), (beam.beam.end, -1)):
+            if not isinstance(end, FreeEnd):
+                ahead = np.angle(np.exp(1j * (beam.turned[i] - state.rotation(scene.body_of(end.point)))))
+                off = abs(beam.places[i] - state.point(end.point)) + arm * abs(ahead) * isinstance(end, WeldedEnd)
+                yield f"the end of {name} at {end.point}", off
+    for name, body in scene.bodies.items():
+        if isinstance(body, SlidingBody):
+            aside = abs((state.moved(body.pin or next(iter(body.points))) * np.conj(unit(body.along))).imag)
+            yield f"the slide of {name}", aside + (arm * abs(state.rotation(name)) if body.pin is None else 0.0)
+        elif isinstance(body, TurningBody):
+            yield f"the pivot {body.about}", abs(state.moved(body.about))
+    for name, pin in scene.pins.items():
+        yield f"the pin {name}", abs(state.point(pin.points[0]) - state.point(pin.points[1]))
+    for name, drive in scene.drives.items():
+        if isinstance(drive, DisplacementDrive):
+            moved = (state.moved(drive.point) * np.conj(unit(drive.direction))).real
+            yield f"the drive {name}", moved - state.values[name]
+        else:
+            yield f"the drive {name}", arm * (state.rotation(drive.body) - state.values[name])
