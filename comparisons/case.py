@@ -11,11 +11,10 @@ from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.tolerances.result import Tolerance
 from comparisons.verdict import SEVERITY, Reason, Word, worst_of
 from comparisons.verdict.completeness import complete_part, ends_at_critical
-from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows
+from comparisons.verdict.events import CriticalRow, Place, closing_rows, critical_rows, station_events
 from comparisons.verdict.judge import Judged, judge_case, judge_rows
 from comparisons.verdict.rows import Row, build_rows
 from comparisons.verdict.runs import SOLVERS, Runs, RunsTable
-from comparisons.verdict.station_events import Place, station_events
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -116,8 +115,7 @@ def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
     """
     exact, other = (None if each is None else complete_part(scene, each) for each in (runs.exact, runs.other))
     table = RunsTable(scene, replace(runs, exact=exact, other=other))
-    criticals, closings = critical_rows(table), closing_rows(table)
-    rows = build_rows(table, station_events(table))
+    criticals, rows = critical_rows(table), build_rows(table, station_events(table))
     judged = judge_rows(table, rows)
     audits = {
         answer.solver: look(scene, replace(answer, stations=tuple(table.stations[name].values())))
@@ -127,7 +125,7 @@ def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
     completed = not lacking or (
         all(map(ends_at_critical, table.pair)) and bool(criticals) and criticals[-1].word is Word.AGREE
     )
-    verdict = _verdict(table, rows, judged, criticals, closings, audits, completed=completed)
+    verdict = _verdict(table, rows, judged, criticals, audits, completed=completed)
     found = () if lacking else _reactions(table)
     return Comparison(scene, runs, rows, verdict, criticals, found, audits=audits)
 
@@ -137,7 +135,6 @@ def _verdict(
     rows: Sequence[Row],
     judged: Sequence[Judged],
     criticals: Sequence[CriticalRow],
-    closings: Sequence[ClosingRow],
     audits: Mapping[str, Audit],
     *,
     completed: bool,
@@ -146,7 +143,7 @@ def _verdict(
     scene, of_rows = table.scene, judge_case(rows, judged)
     crossings = next((found.crossings for found in audits.values() if found.crossings), ())
     findings: list[Finding] = [
-        *((Word.DIFFER, Reason.EVENTS, said.closing_sentence(scene, row)) for row in closings),
+        *((Word.DIFFER, Reason.EVENTS, said.closing_sentence(scene, row)) for row in closing_rows(table)),
         *((*row.judged, said.critical_sentence(scene, row)) for row in criticals),
         *(
             (Word.UNDECIDED, Reason.AUDIT, said.audit_sentence(name, found.complaints))

@@ -11,11 +11,10 @@ from comparisons.formats import at_station, distance_text, number, percent, with
 from comparisons.verdict import Reason, Word
 from comparisons.verdict.calibration import error_ratios, tally, true_errors
 from comparisons.verdict.completeness import problems
-from comparisons.verdict.events import ClosingRow, CriticalRow, mechanism
+from comparisons.verdict.events import MIRRORED, PASSED, ClosingRow, CriticalRow, mechanism, passed_by
 from comparisons.verdict.judge import Judged
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs import SOLVERS, Runs, RunsTable
-from comparisons.verdict.station_events import MIRRORED, PASSED, passed_by
 from cprbm_scene import Answer, Scene
 
 NAMES = {"cprbm": "the CPRBM", "fea": "the finite elements"}

@@ -14,9 +14,9 @@ from comparisons.present.columns import Column, Table, columns_of, table_of
 from comparisons.quantities import norm
 from comparisons.verdict import Reason, Word
 from comparisons.verdict.calibration import EXACT_FACTOR, error_ratios, tally, true_errors
+from comparisons.verdict.events import Place
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs import SOLVERS
-from comparisons.verdict.station_events import Place
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES, Quantity

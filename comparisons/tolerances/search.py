@@ -31,9 +31,9 @@ from comparisons.sentences import problem_sentences
 from comparisons.store import AnswerMemory
 from comparisons.tolerances.limits import Limits, limits_of
 from comparisons.tolerances.result import SolverName, Tolerance, WorstRow
+from comparisons.verdict.events import Place
 from comparisons.verdict.rows import Row, rows_of
 from comparisons.verdict.runs import Runs
-from comparisons.verdict.station_events import Place
 from cprbm_scene import Answer, Scene, SceneError
 from cprbm_scene.frozendict import frozendict
 

@@ -28,10 +28,10 @@ import numpy as np
 from comparisons.verdict import Reason, Word
 from comparisons.verdict.calibration import true_errors
 from comparisons.verdict.completeness import ABSENT_WHILE_OPEN
+from comparisons.verdict.events import MIRRORED, PASSED, Place
 from comparisons.verdict.point_forces import resultant
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs import SOLVERS, RunsTable
-from comparisons.verdict.station_events import MIRRORED, PASSED, Place
 from cprbm_scene import Scene
 
 Judged = tuple[Word | None, Reason | None]

@@ -25,10 +25,10 @@ import numpy as np
 
 from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, norm, unit_of
 from comparisons.stations import find_station
+from comparisons.verdict.events import NO_EVENTS, Place, StationEvents, station_events
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
 from comparisons.verdict.runs import Bounds, Runs, RunsTable
 from comparisons.verdict.scales import denominator, probe_scales
-from comparisons.verdict.station_events import NO_EVENTS, Place, StationEvents, station_events
 from comparisons.verdict.uncertainty import largest
 from cprbm_scene import Answer, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array, Flags

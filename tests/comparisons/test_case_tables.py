@@ -15,7 +15,7 @@ from comparisons.pairing import Solvers, paired
 from comparisons.present.answer_tables import answer_tables, branch_table
 from comparisons.present.case_tables import case_sections
 from comparisons.present.row_tables import paper_table
-from comparisons.verdict.station_events import NO_EVENTS
+from comparisons.verdict.events import NO_EVENTS
 from cprbm_scene import Ending
 from cprbm_scene.frozendict import frozendict
 from tests.tables import tables_of

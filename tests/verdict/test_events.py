@@ -13,9 +13,8 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.stations import begins_at, event_tolerance, span_of
 from comparisons.verdict import Word
-from comparisons.verdict.events import critical_rows
+from comparisons.verdict.events import Place, critical_rows
 from comparisons.verdict.runs import Runs, RunsTable
-from comparisons.verdict.station_events import Place
 from cprbm_scene import Answer, Critical, Ending, Loss, Stage
 from cprbm_scene.frozendict import frozendict
 from tests.verdict.comparing import altered, compared, counted, ending, only, opened, said_of, word_of
