@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from comparisons import sentences as said
 from comparisons.audit import Audit, audit
 from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
+from comparisons.stations import complete_part, ends_at_critical
 from comparisons.tolerances.result import Tolerance
 from comparisons.verdict import SEVERITY, Reason, Word, worst_of
-from comparisons.verdict.completeness import complete_part, ends_at_critical
 from comparisons.verdict.events import CriticalRow, Place, closing_rows, critical_rows, station_events
 from comparisons.verdict.judge import Judged, judge_case, judge_rows
 from comparisons.verdict.rows import Row, build_rows

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
 from comparisons.formats import at_station, distance_text, number, percent, with_unit
+from comparisons.stations import problems
 from comparisons.verdict import Reason, Word
 from comparisons.verdict.calibration import error_ratios, tally, true_errors
-from comparisons.verdict.completeness import problems
 from comparisons.verdict.events import MIRRORED, PASSED, ClosingRow, CriticalRow, mechanism, passed_by
 from comparisons.verdict.judge import Judged
 from comparisons.verdict.rows import Row

@@ -18,11 +18,10 @@ from comparisons.formats import (
     with_unit,
 )
 from comparisons.present.columns import Column, Table, columns_of, table_of
-from comparisons.quantities import load_unit, norm, unit_of
+from comparisons.quantities import load_unit, norm, probe_scales, unit_of
 from comparisons.tolerances.result import Tolerance
 from comparisons.verdict.events import CriticalRow, Place, mechanism, released
 from comparisons.verdict.rows import ROUND_OFF
-from comparisons.verdict.scales import probe_scales
 from cprbm_scene import Answer, Critical, Event, Scene, Stage
 
 CRITICAL_TITLE = "Critical values: where a branch ends"

@@ -7,14 +7,14 @@ from typing import Any
 from comparisons.audit import Audit
 from comparisons.case import Comparison
 from comparisons.opinions import Third, claim_met, claim_of, claimed_difference, contact_model, thirds_of
-from comparisons.plain import Plain, plain
 from comparisons.present.columns import follow
 from comparisons.quantities import arc_lengths, unit_of
 from comparisons.reactions import WorkEnergyReaction
+from comparisons.stations import CERTIFICATE_NUMBERS
 from comparisons.tolerances.result import Tolerance
-from comparisons.verdict.completeness import CERTIFICATE_NUMBERS
 from comparisons.verdict.events import CriticalRow, released
 from comparisons.verdict.rows import Row
+from comparisons.writing import Plain, plain
 from cprbm_scene import Answer, Critical, Probe, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES

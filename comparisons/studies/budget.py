@@ -57,13 +57,12 @@ from comparisons.choices import Choices, check
 from comparisons.geometry import bentness_on, length
 from comparisons.opinions import solid_limit
 from comparisons.pairing import in_paper
-from comparisons.quantities import direction, norm
+from comparisons.quantities import direction, norm, probe_scales
 from comparisons.sentences import problem_sentences
 from comparisons.stations import station_of
 from comparisons.store import AnswerMemory
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import Row, bare_row
-from comparisons.verdict.scales import probe_scales
 from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Answer, Probe, Scene, Stage
 from cprbm_scene.answer import Array, Flags

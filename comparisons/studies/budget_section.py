@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from comparisons.choices import Count
 from comparisons.formats import at_station, number, percent
 from comparisons.opinions import claim_of
-from comparisons.plain import Plain, plain
 from comparisons.present.canvas import canvas, finished
 from comparisons.present.columns import NOTHING, Column, Figure, Table, table_of
 from comparisons.studies.budget import PARTS, Account, Budget
+from comparisons.writing import Plain, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

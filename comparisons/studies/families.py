@@ -18,13 +18,11 @@ from typing import Literal
 import numpy as np
 
 from comparisons.choices import Kinematics
-from comparisons.quantities import COMPONENTS, OPEN_AT_ZERO, arc_lengths, load_unit, unit_of
-from comparisons.stations import span_of, station_of
-from comparisons.verdict.completeness import ends_at_critical
+from comparisons.quantities import COMPONENTS, OPEN_AT_ZERO, arc_lengths, load_unit, probe_scales, unit_of
+from comparisons.stations import ends_at_critical, span_of, station_of
 from comparisons.verdict.events import mechanism
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import ROUND_OFF
-from comparisons.verdict.scales import probe_scales
 from comparisons.verdict.uncertainty import OWN, STANDARD, Limit, limit, observed, orders
 from cprbm_scene import Answer, Critical, Probe, Scene, Stage
 from cprbm_scene.answer import Array

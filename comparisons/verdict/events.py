@@ -41,13 +41,11 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
-from comparisons.quantities import load_unit
-from comparisons.stations import begins_at, event_tolerance, span_of
+from comparisons.quantities import deflection, load_unit
+from comparisons.stations import Where, begins_at, ends_at_critical, event_tolerance, span_of
 from comparisons.verdict import Reason, Word
-from comparisons.verdict.completeness import Where, ends_at_critical
 from comparisons.verdict.point_forces import active_contacts
 from comparisons.verdict.runs import SOLVERS, Bounds, RunsTable, solver_of
-from comparisons.verdict.scales import deflection
 from cprbm_scene import Answer, Critical, Loss, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Shape
 from cprbm_scene.frozendict import frozendict

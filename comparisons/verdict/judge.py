@@ -25,9 +25,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from comparisons.stations import ABSENT_WHILE_OPEN
 from comparisons.verdict import Reason, Word
 from comparisons.verdict.calibration import true_errors
-from comparisons.verdict.completeness import ABSENT_WHILE_OPEN
 from comparisons.verdict.events import MIRRORED, PASSED, Place
 from comparisons.verdict.point_forces import resultant
 from comparisons.verdict.rows import ROUND_OFF, Row

@@ -24,7 +24,7 @@ from functools import cached_property
 from typing import Literal, TypeAlias
 
 from comparisons.choices import Kinematics
-from comparisons.verdict.completeness import Where, complete_stations, ends_at_critical, problems, stations_of
+from comparisons.stations import Where, complete_stations, ends_at_critical, problems, stations_of
 from comparisons.verdict.uncertainty import Error, error
 from cprbm_scene import Answer, Scene, StationAnswer
 from cprbm_scene.answer import Array
