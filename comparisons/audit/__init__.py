@@ -7,8 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from comparisons.audit.contacts import contacts, crossings
-from comparisons.audit.laws import cuts, joints, section_law, sums
-from comparisons.audit.probes import path, probes
+from comparisons.audit.laws import cuts, joints, path, probes, section_law, sums
 from comparisons.audit.state import states_of
 from cprbm_scene import Answer, Scene
 
