@@ -46,7 +46,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from comparisons.geometry import length, points
+from comparisons.geometry import length, longest, points
 from cprbm_scene import Answer, Beam, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array, Shape
 from cprbm_scene.statement import STRESSES, DistributedLoad, Quantity
@@ -183,7 +183,7 @@ def family_values(
     def probes(*kinds: Quantity) -> float:
         return max((largest[probe.name] for probe in scene.probes if probe.quantity in kinds), default=0.0)
 
-    lever, step = _lever(scene), _stepped(scene, stage)
+    lever, step = longest(scene), _stepped(scene, stage)
     moved = max(probes("displacement"), step["displacement"], _largest_deflection(scene, stage, answers))
     turned = max(probes("rotation"), step["rotation"])
     balance = max(probes("reaction_moment"), step["moment"])
@@ -204,7 +204,7 @@ def family_values(
 
 def natural_value(scene: Scene, quantity: Quantity, stage: Stage, *, contact: str) -> float:
     """Value of a quantity where the stiffest beam is bent by a radian along the longest, in the quantity's unit."""
-    lever = _lever(scene)
+    lever = longest(scene)
     stiffness = float(max(_bending_stiffness(scene, beam).max() for beam in scene.beams.values())) / lever
     by_kind = {
         "displacement": lever,
@@ -256,7 +256,7 @@ def _stepped(scene: Scene, stage: Stage) -> dict[str, float]:
         most *= (load.along[1] - load.along[0]) * length(scene.beams[load.beam].curve)
     kind = {"beam_force": "force", "distributed": "force", "beam_moment": "moment"}.get(load.kind, load.kind)
     found[kind] = most
-    lever = _lever(scene)
+    lever = longest(scene)
     softest = min(_bending_stiffness(scene, beam).min() for beam in scene.beams.values())
     found["resistance"] = max(found["rotation"], found["displacement"] / lever) * float(softest) / lever
     return found
@@ -277,10 +277,6 @@ def deflection(beam: Beam, shape: Shape) -> float:
     some = np.linspace(0, len(shape.s) - 1, _PLACES).astype(int)
     rest = points(beam.curve, shape.s[some])
     return float(np.max(np.hypot(shape.x[some] - rest[:, 0], shape.y[some] - rest[:, 1])))
-
-
-def _lever(scene: Scene) -> float:
-    return max(length(beam.curve) for beam in scene.beams.values())
 
 
 def _modulus(scene: Scene, beam: Beam) -> float:

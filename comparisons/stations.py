@@ -105,6 +105,11 @@ def stations_of(scene: Scene) -> tuple[Where, ...]:
     return tuple((stage.name, value) for stage in scene.stages for value in stage.stations)
 
 
+def last_station(scene: Scene) -> Where:
+    """The last station of the last stage."""
+    return scene.stages[-1].name, scene.stages[-1].stations[-1]
+
+
 def complete_stations(scene: Scene, answer: Answer) -> Mapping[Where, StationAnswer]:
     """Stations of an answer without a problem."""
     known = ((where, find_station(answer, *where)) for where in stations_of(scene))
@@ -122,18 +127,13 @@ def ends_at_critical(answer: Answer) -> bool:
     return answer.ending is Ending.BRANCH_ENDS and len(answer.critical) == last + 1
 
 
-def _station_name(stage: str, value: float) -> str:
-    """Name of a station with the load or drive in SI units."""
-    return f"{stage} {value:g}"
-
-
-def problems(scene: Scene, answer: Answer, name: Callable[[str, float], str] = _station_name) -> tuple[str, ...]:
+def problems(scene: Scene, answer: Answer, name: Callable[[str, float], str] = "{} {:g}".format) -> tuple[str, ...]:
     """Problems of an answer in sentences; empty if the answer is complete.
 
     Args:
         scene: the question.
         answer: the answer.
-        name: name of a station by stage and value.
+        name: name of a station by stage and value; by itself with the value in SI units.
     """
     found: list[str] = []
     if not answer.completed:

@@ -59,7 +59,7 @@ from comparisons.opinions import solid_limit
 from comparisons.pairing import in_paper
 from comparisons.quantities import direction, norm, probe_scales
 from comparisons.sentences import problem_sentences
-from comparisons.stations import station_of
+from comparisons.stations import last_station, station_of
 from comparisons.store import AnswerMemory
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import Row, bare_row
@@ -137,8 +137,7 @@ class Account:
     @property
     def last(self) -> tuple[Budget, ...]:
         """Budgets of the last station of the last stage."""
-        stage = self.scene.stages[-1]
-        return tuple(each for each in self.budgets if each.row.where == (stage.name, stage.stations[-1]))
+        return tuple(each for each in self.budgets if each.row.where == last_station(self.scene))
 
 
 _Runs = Mapping[str, Sequence[Answer]]

@@ -22,7 +22,7 @@ from comparisons.pairing import OffsetConstruction, Solvers, exact_or_why
 from comparisons.present.canvas import GREY, LINES, canvas, common_legend, finished, logarithmic
 from comparisons.present.columns import Column, Figure, Section, Table, table_of
 from comparisons.sentences import problem_sentences
-from comparisons.stations import at_shown
+from comparisons.stations import at_shown, last_station
 from comparisons.store import AnswerMemory
 from comparisons.studies import budget_section as budgets
 from comparisons.studies import convergence_tables as tables
@@ -75,8 +75,7 @@ class Convergence:
     @property
     def last(self) -> tuple[Family, ...]:
         """Families at the last station."""
-        stage = self.scene.stages[-1]
-        where = stage.name, stage.stations[-1]
+        where = last_station(self.scene)
         return tuple(family for family in self.families if (family.stage, family.station) == where)
 
 
@@ -158,9 +157,8 @@ def convergence_figures(found: Convergence) -> tuple[Figure, ...]:
             _triangle(axes, found.sizes, series.order)
         panels[0].set_ylabel("distance from the limit / the probe's largest value")
         common_legend(drawing, "right center", 1, 8.5)
-        stage = found.scene.stages[-1]
         caption = (
-            f"Distance from the limit at {at_station(found.scene, stage.name, stage.stations[-1])}; above it the "
+            f"Distance from the limit at {at_station(found.scene, *last_station(found.scene))}; above it the "
             "limit's uncertainty, hollow where the uncertainty is larger."
         )
         exact = any(family.exact is not None for family in last)
