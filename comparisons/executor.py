@@ -39,6 +39,17 @@ COLLECTED = (50_000, 20, 100)
 _THREADS = Path("/proc/self/task")
 """On Linux a folder with an entry for every thread of this process."""
 
+_LOG = logging.getLogger(__name__)
+
+Solver = Callable[[Scene, Choices], Answer]
+
+Job = tuple[Solver, Scene, Choices]
+
+Decided = Callable[[Answer, Answer], bool]
+"""Whether the answers to the first two jobs make the other jobs useless."""
+
+_Result = Answer | tuple[Mistake, ...]
+
 
 class TimeLimitError(RuntimeError):
     """A call was ended at its time limit."""
@@ -224,16 +235,6 @@ def _interrupts_ignored() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
-
-
-_LOG = logging.getLogger(__name__)
-
-Solver = Callable[[Scene, Choices], Answer]
-Job = tuple[Solver, Scene, Choices]
-Decided = Callable[[Answer, Answer], bool]
-"""Whether the answers to the first two jobs make the other jobs useless."""
-
-_Result = Answer | tuple[Mistake, ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,19 @@ from cprbm_scene.units import ANGLE, FORCE, LENGTH, LINE_LOAD, MOMENT, STRESS
 
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"))
 
+_POWERS = {
+    "m": (LENGTH, "{length}"),
+    "N": (FORCE, "{force}"),
+    "rad": (ANGLE, "{angle}"),
+    "Pa": (STRESS, "{stress}"),
+    "N·m": (MOMENT, "{force}·{length}"),
+    "J": (MOMENT, "{force}·{length}"),
+    "N/m": (LINE_LOAD, "{force}/{length}"),
+}
+"""Powers of the file's units by SI unit, and the name of the product."""
+
+DEGREE = math.radians(1.0)
+
 
 def number(value: float | None, digits: int = 3) -> str:
     """A number to ``digits`` significant digits; a dash without a finite value."""
@@ -73,20 +86,6 @@ def vector(values: Array, factor: float, floor: float = 0.0) -> str:
 
 def _component(value: float, factor: float, floor: float) -> str:
     return number(0.0 if abs(value) < floor else value / factor, 5)
-
-
-_POWERS = {
-    "m": (LENGTH, "{length}"),
-    "N": (FORCE, "{force}"),
-    "rad": (ANGLE, "{angle}"),
-    "Pa": (STRESS, "{stress}"),
-    "N·m": (MOMENT, "{force}·{length}"),
-    "J": (MOMENT, "{force}·{length}"),
-    "N/m": (LINE_LOAD, "{force}/{length}"),
-}
-"""Powers of the file's units by SI unit, and the name of the product."""
-
-DEGREE = math.radians(1.0)
 
 
 def display_unit(scene: Scene, unit: str, size: float) -> tuple[float, str]:

@@ -89,6 +89,28 @@ LOAD_UNITS = {
     "rotation": "rad",
 }
 
+FAMILY_SHARE = 1e-3
+"""Least scale of a probe, a share of its family's largest value."""
+
+STAGE_SHARE = 0.25
+"""Least scale of a probe in a stage, a share of its largest value in all stages."""
+
+NATURAL_SHARE = 1e-4
+"""Least scale of a probe, a share of its natural value."""
+
+_PLACES = 9
+
+_OWN_NORM = frozenset({"displacement", "rotation", "potential_energy", "closing_load"})
+
+_FAMILIES = {
+    "reaction": "force",
+    "reaction_moment": "moment",
+    "bending_stress": "stress",
+    "combined_stress": "stress",
+}
+
+_PLACES_OF_CONTACT = frozenset({"centre", "ends"})
+
 
 def norm(quantity: Quantity, values: Array) -> float:
     """Euclidean norm of ``values`` (k,); of a stress along a beam the largest magnitude; 0 without values."""
@@ -125,26 +147,6 @@ def direction(quantity: Quantity, difference: Array) -> Array:
         along[worst] = np.sign(difference[worst])
         return along
     return np.asarray(difference / np.linalg.norm(difference))
-
-
-FAMILY_SHARE = 1e-3
-"""Least scale of a probe, a share of its family's largest value."""
-
-STAGE_SHARE = 0.25
-"""Least scale of a probe in a stage, a share of its largest value in all stages."""
-
-NATURAL_SHARE = 1e-4
-"""Least scale of a probe, a share of its natural value."""
-
-_PLACES = 9
-_OWN_NORM = frozenset({"displacement", "rotation", "potential_energy", "closing_load"})
-_FAMILIES = {
-    "reaction": "force",
-    "reaction_moment": "moment",
-    "bending_stress": "stress",
-    "combined_stress": "stress",
-}
-_PLACES_OF_CONTACT = frozenset({"centre", "ends"})
 
 
 def probe_scales(scene: Scene, answers: Sequence[Answer]) -> dict[tuple[str, str], float]:

@@ -25,6 +25,25 @@ SPAN_TOLERANCE = 0.01
 _SAME = 1e-12
 """Relative distance of two values of one station: round-off of units."""
 
+ABSENT_WHILE_OPEN = frozenset({"centre", "ends", "closing_load"})
+"""Quantities of a contact without a value while the contact is open."""
+
+Where = tuple[str, float]
+"""Stage and station."""
+
+_ROUND_OFF = 1e-9  # of a stage's span: round-off of a critical load beside a station
+
+CERTIFICATE_NUMBERS = (
+    "residual",
+    "residual_floor",
+    "violation",
+    "penetration",
+    "complementarity",
+    "force_balance",
+    "moment_balance",
+)
+"""Fields of a certificate that are finite and small in a complete station."""
+
 
 def begins_at(scene: Scene, stage: Stage) -> float:
     """Value of the load or drive at the begin of a stage: the last value in the stages before, or 0."""
@@ -77,27 +96,6 @@ def station_of(answer: Answer, stage: str, value: float) -> StationAnswer:
     if station is None:
         raise KeyError(f"{answer.solver} has no station {stage} {value:g}")
     return station
-
-
-ABSENT_WHILE_OPEN = frozenset({"centre", "ends", "closing_load"})
-"""Quantities of a contact without a value while the contact is open."""
-
-Where = tuple[str, float]
-"""Stage and station."""
-
-_ROUND_OFF = 1e-9  # of a stage's span: round-off of a critical load beside a station
-
-
-CERTIFICATE_NUMBERS = (
-    "residual",
-    "residual_floor",
-    "violation",
-    "penetration",
-    "complementarity",
-    "force_balance",
-    "moment_balance",
-)
-"""Fields of a certificate that are finite and small in a complete station."""
 
 
 def stations_of(scene: Scene) -> tuple[Where, ...]:

@@ -17,6 +17,8 @@ import numpy as np
 
 Plain = dict[str, Any]
 
+_PARTIAL = ".partial"
+
 
 def text_of(data: Mapping[str, Any], indent: int | None = 1) -> str:
     """``data`` as JSON with a line end; without an ``indent`` in a single line.
@@ -46,9 +48,6 @@ def plain(value: object) -> Any:  # noqa: ANN401 - all types of JSON
             return float(value) if math.isfinite(value) else None
         case _:
             return str(value)
-
-
-_PARTIAL = ".partial"
 
 
 def write(path: Path, content: str | bytes) -> None:

@@ -72,6 +72,26 @@ BEARING, ENOUGH = 0.3, 4
 """Share of a beam's largest shear force, and more than the load on an element, from which a place bears shear; least
 number of places with a median."""
 
+JOINED = 1e-8
+"""Largest error of a joint, over the longest beam, or rad."""
+
+SAME, STRESS = 1e-6, 0.02
+"""Error of a probe that is read or summed, over the summed parts; error of a stress between two cuts, over the largest
+stress of the beam."""
+
+ENERGY, EVEN = 5e-3, 1.2
+"""Error of the energy over strain energy and work, and over the energy that an even curvature leaves out: of 198
+answers to random scenes at N = 40 one misses more than 2.2e-3 of strain energy and work."""
+
+FITTED = 2e-3
+"""Difference of energies, over the energies, between meshes that are fitted from station to station."""
+
+CONTINUOUS = 0.01
+"""Energy gained beyond a critical point, over the energy: a continuous bifurcation releases none."""
+
+ENERGY_ROUND_OFF = 1e-9
+"""Energy that round-off explains, over the natural energy E·I/L."""
+
 
 def sums(state: StationState) -> Iterator[Finding]:
     """Forces of beams, bodies, contacts and joints that do not cancel, and moments of pinned ends."""
@@ -153,10 +173,6 @@ def floors(state: StationState, name: str = "") -> tuple[float, float]:
     return closed + moment / state.longest, moment + levered
 
 
-JOINED = 1e-8
-"""Largest error of a joint, over the longest beam, or rad."""
-
-
 def joints(state: StationState) -> Iterator[Finding]:
     """Errors of joints, guides, drives and drawn shapes beyond JOINED."""
     for joint, off in _errors(state):
@@ -189,24 +205,6 @@ def _errors(state: StationState) -> Iterator[tuple[str, float]]:
             yield f"the drive {name}", moved - state.values[name]
         else:
             yield f"the drive {name}", arm * (state.rotation(drive.body) - state.values[name])
-
-
-SAME, STRESS = 1e-6, 0.02
-"""Error of a probe that is read or summed, over the summed parts; error of a stress between two cuts, over the largest
-stress of the beam."""
-
-ENERGY, EVEN = 5e-3, 1.2
-"""Error of the energy over strain energy and work, and over the energy that an even curvature leaves out: of 198
-answers to random scenes at N = 40 one misses more than 2.2e-3 of strain energy and work."""
-
-FITTED = 2e-3
-"""Difference of energies, over the energies, between meshes that are fitted from station to station."""
-
-CONTINUOUS = 0.01
-"""Energy gained beyond a critical point, over the energy: a continuous bifurcation releases none."""
-
-ENERGY_ROUND_OFF = 1e-9
-"""Energy that round-off explains, over the natural energy E·I/L."""
 
 
 def probes(state: StationState) -> Iterator[Finding]:

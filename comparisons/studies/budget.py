@@ -82,6 +82,14 @@ LINEAR = 0.5
 LEAST = 1e-9
 """Fraction below which the parts together are tolerances of the iterations."""
 
+_Runs = Mapping[str, Sequence[Answer]]
+"""Answers by name: ``cprbm`` as chosen, ``cprbm auto`` at LEVELS, ``fea`` at TIGHTNESS, ``fea finer`` and
+``solid`` at ELEMENTS."""
+
+_SERIES_BELOW = 0.1  # h where the terms left out and the digits that a − 1 loses are both below 1e-13
+
+_TERMS = 9
+
 
 @dataclass(frozen=True, slots=True)
 class Budget:
@@ -138,11 +146,6 @@ class Account:
     def last(self) -> tuple[Budget, ...]:
         """Budgets of the last station of the last stage."""
         return tuple(each for each in self.budgets if each.row.where == last_station(self.scene))
-
-
-_Runs = Mapping[str, Sequence[Answer]]
-"""Answers by name: ``cprbm`` as chosen, ``cprbm auto`` at LEVELS, ``fea`` at TIGHTNESS, ``fea finer`` and
-``solid`` at ELEMENTS."""
 
 
 def account_of(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
@@ -268,10 +271,6 @@ def _solid_part(
         return None, 0.0
     value, uncertainty = limited[0].value[counts], limited[0].uncertainty[counts]
     return float(np.dot(beams - value, along)), float(np.dot(uncertainty, np.abs(along)))
-
-
-_SERIES_BELOW = 0.1  # h where the terms left out and the digits that a − 1 loses are both below 1e-13
-_TERMS = 9
 
 
 def inner_edge_factor(bentness: Array) -> Array:

@@ -61,6 +61,9 @@ MIRROR_DISTANCE = 0.05
 State = Mapping[str, int]
 """Parts of a run's state at a station, a contact's 1 where the contact is active."""
 
+CONTINUES = 1e-3
+"""Least fall of the energy in a jump, a share of the energy: a path that continues on another branch loses none."""
+
 
 @dataclass(frozen=True, slots=True)
 class CriticalRow:
@@ -158,10 +161,6 @@ def released(critical: Critical) -> float | None:
         return None
     fall = critical.energy - critical.after
     return fall if fall > CONTINUES * abs(critical.energy) else None
-
-
-CONTINUES = 1e-3
-"""Least fall of the energy in a jump, a share of the energy: a path that continues on another branch loses none."""
 
 
 def disagree_within_a_solver(states: Mapping[str, object]) -> bool:
