@@ -156,7 +156,8 @@ def _verdict(
         findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table, table.problems)))
     if rows or completed:
         findings.append((*of_rows, said.headline(table, rows, judged, of_rows)))
-    findings.sort(key=_rank)
+    reasons_in_order = [None, *Reason]  # DIFFER comes first, then UNDECIDED, and of these the reasons
+    findings.sort(key=lambda finding: (SEVERITY.index(finding[0]), reasons_in_order.index(finding[1])))
     word, reason, _ = findings[0]
     others = [name for name in table.problems if not ends_at_critical(table.answers[name])]
     sentences = (
@@ -171,12 +172,6 @@ def _verdict(
     reasons = tuple(why for _, why in judged)
     shown = tuple(sentence for sentence in sentences if sentence)
     return Verdict(word, shown, words, completed, _branch_verdicts(rows, words), reason, reasons)
-
-
-def _rank(finding: Finding) -> tuple[int, int]:
-    """Place of a finding among all: DIFFER first, then UNDECIDED, and of these the reasons in their order."""
-    word, reason, _ = finding
-    return SEVERITY.index(word), 0 if reason is None else list(Reason).index(reason)
 
 
 def _branch_verdicts(rows: Sequence[Row], words: Sequence[Word | None]) -> tuple[BranchVerdict, ...]:

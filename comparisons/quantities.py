@@ -185,11 +185,17 @@ def family_values(
     def probes(*kinds: Quantity) -> float:
         return max((largest[probe.name] for probe in scene.probes if probe.quantity in kinds), default=0.0)
 
-    lever, step = longest(scene), _stepped(scene, stage)
-    moved = max(probes("displacement"), step["displacement"], _largest_deflection(scene, stage, answers))
+    kind, most = _stepped(scene, stage)
+    step = dict.fromkeys(("displacement", "rotation", "force", "moment"), 0.0) | {kind: most}
+    lever, softest = longest(scene), min(_bending_stiffness(scene, beam).min() for beam in scene.beams.values())
+    resistance = max(step["rotation"], step["displacement"] / lever) * float(softest) / lever
+    shapes = (item for station in _stations(stage, answers) for item in station.shapes.items())
+    deflections = (deflection(scene.beams[name], shape) for name, shape in shapes)
+    finite = (each for each in deflections if np.isfinite(each))  # other shapes do not count
+    moved = max(probes("displacement"), step["displacement"], *finite)
     turned = max(probes("rotation"), step["rotation"])
     balance = max(probes("reaction_moment"), step["moment"])
-    moment = max(balance, probes("moment"), step["resistance"])
+    moment = max(balance, probes("moment"), resistance)
     force = max(probes("force", "reaction"), step["force"])
     return {
         "displacement": max(moved, lever * turned),
@@ -250,28 +256,12 @@ def _stations(stage: Stage, answers: Sequence[Answer]) -> list[StationAnswer]:
     return [station for answer in answers for station in answer.stations if station.stage == stage.name]
 
 
-def _stepped(scene: Scene, stage: Stage) -> dict[str, float]:
-    """Largest value of the stepped load or drive by kind, and the resistance of a drive; 0 for all other kinds."""
-    found = dict.fromkeys(("displacement", "rotation", "force", "moment", "resistance"), 0.0)
+def _stepped(scene: Scene, stage: Stage) -> tuple[str, float]:
+    """Kind of the stepped load or drive, as a displacement, rotation, force or moment, and the largest value."""
     load, most = scene.stepped(stage), max(abs(station) for station in stage.stations)
     if isinstance(load, DistributedLoad):
         most *= (load.along[1] - load.along[0]) * length(scene.beams[load.beam].curve)
-    kind = {"beam_force": "force", "distributed": "force", "beam_moment": "moment"}.get(load.kind, load.kind)
-    found[kind] = most
-    lever = longest(scene)
-    softest = min(_bending_stiffness(scene, beam).min() for beam in scene.beams.values())
-    found["resistance"] = max(found["rotation"], found["displacement"] / lever) * float(softest) / lever
-    return found
-
-
-def _largest_deflection(scene: Scene, stage: Stage, answers: Sequence[Answer]) -> float:
-    """Largest deflection of all beams at the stage's stations, m; shapes that are not finite do not count."""
-    deflections = [
-        deflection(scene.beams[name], shape)
-        for station in _stations(stage, answers)
-        for name, shape in station.shapes.items()
-    ]
-    return max((each for each in deflections if np.isfinite(each)), default=0.0)
+    return {"beam_force": "force", "distributed": "force", "beam_moment": "moment"}.get(load.kind, load.kind), most
 
 
 def deflection(beam: Beam, shape: Shape) -> float:

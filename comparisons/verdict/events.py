@@ -170,7 +170,8 @@ def disagree_within_a_solver(states: Mapping[str, object]) -> bool:
 
 def critical_rows(table: RunsTable) -> tuple[CriticalRow, ...]:
     """All critical points of the two compared runs, in the order of stages."""
-    found, followed = [], {**table.following, **{name: table.answers[name] for name in SOLVERS}}
+    found = list[CriticalRow]()
+    followed: dict[str, Answer] = {**table.following, "cprbm": table.pair[0], "fea": table.pair[1]}
     for stage in table.scene.stages:
         own = {
             name: tuple(one for one in answer.critical if one.stage == stage.name) for name, answer in followed.items()
