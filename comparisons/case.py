@@ -11,7 +11,7 @@ from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.stations import complete_part, ends_at_critical
 from comparisons.tolerances.result import Tolerance
 from comparisons.verdict import SEVERITY, Reason, Word, worst_of
-from comparisons.verdict.events import CriticalRow, Place, closing_rows, critical_rows, station_events
+from comparisons.verdict.events import CriticalRow, Place, critical_rows, far_closings, station_events
 from comparisons.verdict.judge import Judged, judge_case, judge_rows
 from comparisons.verdict.rows import Row, build_rows
 from comparisons.verdict.runs import SOLVERS, Runs, RunsTable
@@ -143,7 +143,7 @@ def _verdict(
     scene, of_rows = table.scene, judge_case(rows, judged)
     crossings = next((found.crossings for found in audits.values() if found.crossings), ())
     findings: list[Finding] = [
-        *((Word.DIFFER, Reason.EVENTS, said.closing_sentence(scene, row)) for row in closing_rows(table)),
+        *((Word.DIFFER, Reason.EVENTS, said.closing_sentence(scene, closing)) for closing in far_closings(table)),
         *((*row.judged, said.critical_sentence(scene, row)) for row in criticals),
         *(
             (Word.UNDECIDED, Reason.AUDIT, said.audit_sentence(name, found.complaints))

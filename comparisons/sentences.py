@@ -8,10 +8,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
 from comparisons.formats import at_station, distance_text, number, percent, with_unit
-from comparisons.stations import problems
+from comparisons.quantities import load_unit
+from comparisons.stations import event_tolerance, problems
 from comparisons.verdict import Reason, Word
 from comparisons.verdict.calibration import error_ratios, tally, true_errors
-from comparisons.verdict.events import MIRRORED, PASSED, ClosingRow, CriticalRow, mechanism, passed_by
+from comparisons.verdict.events import MIRRORED, PASSED, Closing, CriticalRow, mechanism, passed_by
 from comparisons.verdict.judge import Judged
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs import SOLVERS, Runs, RunsTable
@@ -138,14 +139,16 @@ def critical_sentence(scene: Scene, row: CriticalRow) -> str:
     return f"The branch ends in {row.stage} at {parts}: {row.word.value}."
 
 
-def closing_sentence(scene: Scene, row: ClosingRow) -> str:
+def closing_sentence(scene: Scene, closing: Closing) -> str:
     """Loads at which a contact closes in both solvers."""
+    stage, contact, pair, bounds = closing
+    unit = load_unit(scene, stage)
     loads = " and ".join(
-        f"{with_unit(scene, value, row.unit, 5)} in {name}"
-        for value, name in zip((row.cprbm, row.fea), NAMES.values(), strict=True)
+        f"{with_unit(scene, value, unit, 5)} in {name}" for value, name in zip(pair, NAMES.values(), strict=True)
     )
-    stated, allowed = (distance_text(scene, size, row.unit) for size in (row.stated, row.allowed))
-    return f"{row.contact} closes in {row.stage} at {loads}, against a stated {stated}, {allowed} allowed: DIFFER."
+    sizes = bounds.total, event_tolerance(scene, stage)
+    stated, allowed = (distance_text(scene, size, unit) for size in sizes)
+    return f"{contact} closes in {stage.name} at {loads}, against a stated {stated}, {allowed} allowed: DIFFER."
 
 
 def passed_sentences(table: RunsTable, rows: Sequence[Row], judged: Sequence[Judged]) -> Iterator[str]:

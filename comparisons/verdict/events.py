@@ -65,6 +65,10 @@ CONTINUES = 1e-3
 """Least fall of the energy in a jump, a share of the energy: a path that continues on another branch loses none."""
 
 
+Closing = tuple[Stage, str, tuple[float, float], Bounds]
+"""Closing of a contact at loads farther apart than max(T, U): stage, contact, the solvers' loads, and U."""
+
+
 @dataclass(frozen=True, slots=True)
 class CriticalRow:
     """One critical point; loads in ``unit``.
@@ -127,24 +131,6 @@ class CriticalRow:
         """Load of the CPRBM's critical point, or of the finite elements' where the CPRBM has none."""
         found = self.cprbm or self.fea
         return math.nan if found is None else found.value
-
-
-@dataclass(frozen=True, slots=True)
-class ClosingRow:
-    """Closing of a contact at loads farther apart than max(T, U).
-
-    Attributes:
-        stage, contact: names; unit: SI unit of the loads; cprbm, fea: the solvers' loads.
-        stated: U; allowed: T.
-    """
-
-    stage: str
-    contact: str
-    unit: str
-    cprbm: float
-    fea: float
-    stated: float
-    allowed: float
 
 
 def mechanism(critical: Critical) -> str:
@@ -251,7 +237,7 @@ def _ended_before(table: RunsTable, cprbm: Critical | None, fea: Critical | None
     return len(table.stations[without]) <= before
 
 
-def closing_rows(table: RunsTable) -> Iterator[ClosingRow]:
+def far_closings(table: RunsTable) -> Iterator[Closing]:
     """Closings of contacts at loads that differ by more than the runs excuse."""
     loads: dict[tuple[str, str, int], dict[str, float]] = {}
     for name, answer in table.following.items():
@@ -263,11 +249,10 @@ def closing_rows(table: RunsTable) -> Iterator[ClosingRow]:
     stages = {stage.name: stage for stage in table.scene.stages}
     for (stage, contact, _), here in loads.items():
         if {*SOLVERS} <= here.keys() == table.following.keys():
-            bounds, allowed = _on_load_axis(table, here, 0.0), event_tolerance(table.scene, stages[stage])
-            cprbm, fea = (here[name] for name in SOLVERS)
-            if bounds is not None and abs(cprbm - fea) > max(allowed, bounds.total):
-                unit = load_unit(table.scene, stages[stage])
-                yield ClosingRow(stage, contact, unit, cprbm, fea, bounds.total, allowed)
+            bounds, pair = _on_load_axis(table, here, 0.0), (here["cprbm"], here["fea"])
+            allowed = event_tolerance(table.scene, stages[stage])
+            if bounds is not None and abs(pair[0] - pair[1]) > max(allowed, bounds.total):
+                yield stages[stage], contact, pair, bounds
 
 
 def _on_load_axis(table: RunsTable, loads: Mapping[str, float], round_off: float) -> Bounds | None:
