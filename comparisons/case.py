@@ -144,7 +144,7 @@ def _verdict(
     crossings = next((found.crossings for found in audits.values() if found.crossings), ())
     findings: list[Finding] = [
         *((Word.DIFFER, Reason.EVENTS, said.closing_sentence(scene, closing)) for closing in far_closings(table)),
-        *((*row.judged, said.critical_sentence(scene, row)) for row in criticals),
+        *((*row.judged, said.critical_sentence(table, row)) for row in criticals),
         *(
             (Word.UNDECIDED, Reason.AUDIT, said.audit_sentence(name, found.complaints))
             for name, found in audits.items()
@@ -152,14 +152,15 @@ def _verdict(
         ),
         *((Word.UNDECIDED, Reason.UNDECLARED_CONTACT, sentence) for sentence in crossings),
     ]
-    if table.problems and not completed:
+    others = [name for name in table.problems if not ends_at_critical(table.answers[name])]
+    explained = not others and any(row.word is not Word.AGREE for row in criticals)
+    if table.problems and not completed and not explained:
         findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table, table.problems)))
     if rows or completed:
         findings.append((*of_rows, said.headline(table, rows, judged, of_rows)))
     reasons_in_order = [None, *Reason]  # DIFFER comes first, then UNDECIDED, and of these the reasons
     findings.sort(key=lambda finding: (SEVERITY.index(finding[0]), reasons_in_order.index(finding[1])))
     word, reason, _ = findings[0]
-    others = [name for name in table.problems if not ends_at_critical(table.answers[name])]
     sentences = (
         *(sentence for *_, sentence in findings),
         said.ended_sentence(table, others) if completed and others else "",

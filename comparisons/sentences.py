@@ -12,7 +12,15 @@ from comparisons.quantities import load_unit
 from comparisons.stations import event_tolerance, problems
 from comparisons.verdict import Reason, Word
 from comparisons.verdict.calibration import error_ratios, tally, true_errors
-from comparisons.verdict.events import MIRRORED, PASSED, Closing, CriticalRow, mechanism, passed_by
+from comparisons.verdict.events import (
+    MIRRORED,
+    PASSED,
+    Closing,
+    CriticalRow,
+    disagree_within_a_solver,
+    mechanism,
+    passed_by,
+)
 from comparisons.verdict.judge import Judged
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs import SOLVERS, Runs, RunsTable
@@ -113,14 +121,16 @@ def audit_sentence(solver: str, complaints: Sequence[str]) -> str:
     return f"The audit of {solver}'s answer fails: {_first(complaints)}."
 
 
-def critical_sentence(scene: Scene, row: CriticalRow) -> str:
+def critical_sentence(table: RunsTable, row: CriticalRow) -> str:
     """Loads and mechanisms of a critical point in both solvers, and its word."""
-    parts = " and ".join(
-        f"nowhere in {name}"
-        if one is None
-        else f"{with_unit(scene, one.value, row.unit, 5)} ({mechanism(one)}) in {name}"
-        for name, one in zip(NAMES.values(), (row.cprbm, row.fea), strict=True)
-    )
+    scene, places = table.scene, []
+    for (solver, name), one in zip(NAMES.items(), (row.cprbm, row.fea), strict=True):
+        others = [each.end for each in table.answers[solver].gone_over if each.end.stage == row.stage]
+        points = others if one is None else [one]
+        texts = " and ".join(f"{with_unit(scene, each.value, row.unit, 5)} ({mechanism(each)})" for each in points)
+        beside = f", which passed {texts} and went on," if texts else ""
+        places.append(f"nowhere in {name}{beside}" if one is None else f"{texts} in {name}")
+    parts = " and ".join(places)
     if row.bounds is not None:
         sizes = (row.difference, row.bounds.total, row.allowed)
         apart, stated, allowed = (distance_text(scene, size, row.unit) for size in sizes)
@@ -131,8 +141,12 @@ def critical_sentence(scene: Scene, row: CriticalRow) -> str:
             parts += "; the CPRBM has no such point in the other theory"
     elif row.ended_before:
         parts += ", and the run without it ended before that load"
-    elif not row.steady:
-        parts += ", and runs of one solver disagree; refine both: `-n` and `--elements` twice as large"
+    if disagree_within_a_solver(row.mechanisms) and not (row.bounds is None and row.ended_before):
+        names: dict[str, list[str]] = {}
+        for run, found in row.mechanisms.items():
+            names.setdefault(found or "no such point", []).append(run)
+        listed = "; ".join(f"{found} in {', '.join(runs)}" for found, runs in names.items())
+        parts += f", and runs of one solver disagree ({listed}); refine both: `-n` and `--elements` twice as large"
     if row.turned:
         most = number(max(row.turned.values()), 3)
         parts += f". {', '.join(row.turned)} passed it and went on along a state turned by {most} rad"

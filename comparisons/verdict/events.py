@@ -77,7 +77,7 @@ class CriticalRow:
         stage: name of the stage; place: number of the critical point in the stage, from 0; unit: SI unit of the loads.
         cprbm, fea: the solvers' critical points; None where a solver has none.
         span: of the stage; allowed: T; largest: max(T, W) in ``bending``, otherwise infinite.
-        steady: whether all runs of each solver have it by one mechanism, or none has.
+        mechanisms: mechanism by name of the run; None of a run without the critical point.
         ended_before: whether a run without the critical point ended early before the load.
         difference: |λ_c − λ_f|; NaN where a run lacks it.
         theory: θ; NaN where it is not known.
@@ -93,7 +93,7 @@ class CriticalRow:
     span: float
     allowed: float
     largest: float
-    steady: bool
+    mechanisms: Mapping[str, str | None]
     ended_before: bool = False
     difference: float = math.nan
     theory: float = math.nan
@@ -103,7 +103,7 @@ class CriticalRow:
     @property
     def judged(self) -> tuple[Word, Reason | None]:
         """Word and reason of the critical point."""
-        if not self.steady:
+        if disagree_within_a_solver(self.mechanisms):
             return Word.UNDECIDED, Reason.BRANCH
         if self.ended_before:
             return Word.UNDECIDED, Reason.RUN_ENDED
@@ -185,7 +185,7 @@ def _with_passed_points(
                 nearest = min(alike, key=lambda one: abs(one.end.value - known.value))
                 points[name], turned[name] = nearest.end, nearest.turned
         found = replace(_critical_row(table, stage, row.place, points), turned=frozendict(turned))
-        if turned and found.steady and found.word is not Word.DIFFER:
+        if turned and not disagree_within_a_solver(found.mechanisms) and found.word is not Word.DIFFER:
             return found
     return row
 
@@ -202,7 +202,7 @@ def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str,
         span=span,
         allowed=allowed,
         largest=max(allowed, table.scene.verdict_limit * span) if table.runs.theory == "bending" else math.inf,
-        steady=not disagree_within_a_solver(mechanisms),
+        mechanisms=mechanisms,
         ended_before=_ended_before(table, here["cprbm"], here["fea"]),
     )
     present = {name: one for name, one in here.items() if one is not None}
