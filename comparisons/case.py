@@ -153,7 +153,9 @@ def _verdict(
         *((Word.UNDECIDED, Reason.UNDECLARED_CONTACT, sentence) for sentence in crossings),
     ]
     others = [name for name in table.problems if not ends_at_critical(table.answers[name])]
-    explained = not others and any(row.word is not Word.AGREE for row in criticals)
+    explained = (
+        not others and all(map(ends_at_critical, table.pair)) and bool(criticals)
+    )  # by the row of the last point
     if table.problems and not completed and not explained:
         findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table, table.problems)))
     if rows or completed:
