@@ -8,15 +8,13 @@ from dataclasses import dataclass, replace
 from comparisons import sentences as said
 from comparisons.audit import Audit, audit
 from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
+from comparisons.stations import complete_part, ends_at_critical
 from comparisons.tolerances.result import Tolerance
-from comparisons.verdict.completeness import complete_part, ends_at_critical
-from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows
+from comparisons.verdict import SEVERITY, Reason, Word, worst_of
+from comparisons.verdict.events import CriticalRow, Place, critical_rows, far_closings, station_events
 from comparisons.verdict.judge import Judged, judge_case, judge_rows
 from comparisons.verdict.rows import Row, build_rows
-from comparisons.verdict.runs import SOLVERS, Runs
-from comparisons.verdict.runs_table import RunsTable
-from comparisons.verdict.station_events import Place, station_events
-from comparisons.verdict.words import SEVERITY, Reason, Word, worst_of
+from comparisons.verdict.runs import SOLVERS, Runs, RunsTable
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -117,8 +115,7 @@ def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
     """
     exact, other = (None if each is None else complete_part(scene, each) for each in (runs.exact, runs.other))
     table = RunsTable(scene, replace(runs, exact=exact, other=other))
-    criticals, closings = critical_rows(table), closing_rows(table)
-    rows = build_rows(table, station_events(table))
+    criticals, rows = critical_rows(table), build_rows(table, station_events(table))
     judged = judge_rows(table, rows)
     audits = {
         answer.solver: look(scene, replace(answer, stations=tuple(table.stations[name].values())))
@@ -128,7 +125,7 @@ def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
     completed = not lacking or (
         all(map(ends_at_critical, table.pair)) and bool(criticals) and criticals[-1].word is Word.AGREE
     )
-    verdict = _verdict(table, rows, judged, criticals, closings, audits, completed=completed)
+    verdict = _verdict(table, rows, judged, criticals, audits, completed=completed)
     found = () if lacking else _reactions(table)
     return Comparison(scene, runs, rows, verdict, criticals, found, audits=audits)
 
@@ -138,7 +135,6 @@ def _verdict(
     rows: Sequence[Row],
     judged: Sequence[Judged],
     criticals: Sequence[CriticalRow],
-    closings: Sequence[ClosingRow],
     audits: Mapping[str, Audit],
     *,
     completed: bool,
@@ -147,8 +143,8 @@ def _verdict(
     scene, of_rows = table.scene, judge_case(rows, judged)
     crossings = next((found.crossings for found in audits.values() if found.crossings), ())
     findings: list[Finding] = [
-        *((Word.DIFFER, Reason.EVENTS, said.closing_sentence(scene, row)) for row in closings),
-        *((*row.judged, said.critical_sentence(scene, row)) for row in criticals),
+        *((Word.DIFFER, Reason.EVENTS, said.closing_sentence(scene, closing)) for closing in far_closings(table)),
+        *((*row.judged, said.critical_sentence(table, row)) for row in criticals),
         *(
             (Word.UNDECIDED, Reason.AUDIT, said.audit_sentence(name, found.complaints))
             for name, found in audits.items()
@@ -156,13 +152,17 @@ def _verdict(
         ),
         *((Word.UNDECIDED, Reason.UNDECLARED_CONTACT, sentence) for sentence in crossings),
     ]
-    if table.problems and not completed:
+    others = [name for name in table.problems if not ends_at_critical(table.answers[name])]
+    explained = (
+        not others and all(map(ends_at_critical, table.pair)) and bool(criticals)
+    )  # by the row of the last point
+    if table.problems and not completed and not explained:
         findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table, table.problems)))
     if rows or completed:
         findings.append((*of_rows, said.headline(table, rows, judged, of_rows)))
-    findings.sort(key=_rank)
+    reasons_in_order = [None, *Reason]  # DIFFER comes first, then UNDECIDED, and of these the reasons
+    findings.sort(key=lambda finding: (SEVERITY.index(finding[0]), reasons_in_order.index(finding[1])))
     word, reason, _ = findings[0]
-    others = [name for name in table.problems if not ends_at_critical(table.answers[name])]
     sentences = (
         *(sentence for *_, sentence in findings),
         said.ended_sentence(table, others) if completed and others else "",
@@ -175,12 +175,6 @@ def _verdict(
     reasons = tuple(why for _, why in judged)
     shown = tuple(sentence for sentence in sentences if sentence)
     return Verdict(word, shown, words, completed, _branch_verdicts(rows, words), reason, reasons)
-
-
-def _rank(finding: Finding) -> tuple[int, int]:
-    """Place of a finding among all: DIFFER first, then UNDECIDED, and of these the reasons in their order."""
-    word, reason, _ = finding
-    return SEVERITY.index(word), 0 if reason is None else list(Reason).index(reason)
 
 
 def _branch_verdicts(rows: Sequence[Row], words: Sequence[Word | None]) -> tuple[BranchVerdict, ...]:

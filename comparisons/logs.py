@@ -10,7 +10,7 @@ PACKAGES = ("cprbm", "fea_reference", "elastica_reference", "comparisons")
 """Packages with log records; a logger below has the level of its package."""
 
 SOLVERS = PACKAGES[:3]
-RUNS = "comparisons.crew"
+RUNS = "comparisons.executor"
 """Logger of the finished runs of a comparison."""
 
 

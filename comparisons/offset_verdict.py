@@ -24,8 +24,8 @@ from comparisons.case import Verdict
 from comparisons.formats import percent
 from comparisons.geometry import ordinates
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
+from comparisons.verdict import Word, worst_of
 from comparisons.verdict.uncertainty import SAFETY
-from comparisons.verdict.words import Word, worst_of
 from cprbm_scene import OffsetClaim, OffsetQuestion
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict

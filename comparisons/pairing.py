@@ -35,7 +35,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from pydantic import ValidationError
 
 from comparisons.choices import Choices, check
-from comparisons.crew import ALONE, Crew, Job, Solver
+from comparisons.executor import ALONE, Crew, Job, Solver
 from comparisons.reactions import perturbed_scene
 from comparisons.verdict.runs import Runs, other_theory
 from cprbm_scene import Answer, Ending, Mistake, RigidContact, Scene, SceneError, Spacing

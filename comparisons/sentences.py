@@ -7,17 +7,23 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
-from comparisons.display_units import at_station, distance_text, with_unit
-from comparisons.formats import number, percent
+from comparisons.formats import at_station, distance_text, number, percent, with_unit
+from comparisons.quantities import load_unit
+from comparisons.stations import event_tolerance, problems
+from comparisons.verdict import Reason, Word
 from comparisons.verdict.calibration import error_ratios, tally, true_errors
-from comparisons.verdict.completeness import problems
-from comparisons.verdict.events import ClosingRow, CriticalRow, mechanism
+from comparisons.verdict.events import (
+    MIRRORED,
+    PASSED,
+    Closing,
+    CriticalRow,
+    disagree_within_a_solver,
+    mechanism,
+    passed_by,
+)
 from comparisons.verdict.judge import Judged
 from comparisons.verdict.rows import Row
-from comparisons.verdict.runs import SOLVERS, Runs
-from comparisons.verdict.runs_table import RunsTable
-from comparisons.verdict.station_events import MIRRORED, PASSED, passed_by
-from comparisons.verdict.words import Reason, Word
+from comparisons.verdict.runs import SOLVERS, Runs, RunsTable
 from cprbm_scene import Answer, Scene
 
 NAMES = {"cprbm": "the CPRBM", "fea": "the finite elements"}
@@ -115,14 +121,16 @@ def audit_sentence(solver: str, complaints: Sequence[str]) -> str:
     return f"The audit of {solver}'s answer fails: {_first(complaints)}."
 
 
-def critical_sentence(scene: Scene, row: CriticalRow) -> str:
+def critical_sentence(table: RunsTable, row: CriticalRow) -> str:
     """Loads and mechanisms of a critical point in both solvers, and its word."""
-    parts = " and ".join(
-        f"nowhere in {name}"
-        if one is None
-        else f"{with_unit(scene, one.value, row.unit, 5)} ({mechanism(one)}) in {name}"
-        for name, one in zip(NAMES.values(), (row.cprbm, row.fea), strict=True)
-    )
+    scene, places = table.scene, []
+    for (solver, name), one in zip(NAMES.items(), (row.cprbm, row.fea), strict=True):
+        others = [each.end for each in table.answers[solver].gone_over if each.end.stage == row.stage]
+        points = others if one is None else [one]
+        texts = " and ".join(f"{with_unit(scene, each.value, row.unit, 5)} ({mechanism(each)})" for each in points)
+        beside = f", which passed {texts} and went on," if texts else ""
+        places.append(f"nowhere in {name}{beside}" if one is None else f"{texts} in {name}")
+    parts = " and ".join(places)
     if row.bounds is not None:
         sizes = (row.difference, row.bounds.total, row.allowed)
         apart, stated, allowed = (distance_text(scene, size, row.unit) for size in sizes)
@@ -133,22 +141,28 @@ def critical_sentence(scene: Scene, row: CriticalRow) -> str:
             parts += "; the CPRBM has no such point in the other theory"
     elif row.ended_before:
         parts += ", and the run without it ended before that load"
-    elif not row.steady:
-        parts += ", and runs of one solver disagree; refine both: `-n` and `--elements` twice as large"
+    if disagree_within_a_solver(row.mechanisms) and not (row.bounds is None and row.ended_before):
+        names: dict[str, list[str]] = {}
+        for run, found in row.mechanisms.items():
+            names.setdefault(found or "no such point", []).append(run)
+        listed = "; ".join(f"{found} in {', '.join(runs)}" for found, runs in names.items())
+        parts += f", and runs of one solver disagree ({listed}); refine both: `-n` and `--elements` twice as large"
     if row.turned:
         most = number(max(row.turned.values()), 3)
         parts += f". {', '.join(row.turned)} passed it and went on along a state turned by {most} rad"
     return f"The branch ends in {row.stage} at {parts}: {row.word.value}."
 
 
-def closing_sentence(scene: Scene, row: ClosingRow) -> str:
+def closing_sentence(scene: Scene, closing: Closing) -> str:
     """Loads at which a contact closes in both solvers."""
+    stage, contact, pair, bounds = closing
+    unit = load_unit(scene, stage)
     loads = " and ".join(
-        f"{with_unit(scene, value, row.unit, 5)} in {name}"
-        for value, name in zip((row.cprbm, row.fea), NAMES.values(), strict=True)
+        f"{with_unit(scene, value, unit, 5)} in {name}" for value, name in zip(pair, NAMES.values(), strict=True)
     )
-    stated, allowed = (distance_text(scene, size, row.unit) for size in (row.stated, row.allowed))
-    return f"{row.contact} closes in {row.stage} at {loads}, against a stated {stated}, {allowed} allowed: DIFFER."
+    sizes = bounds.total, event_tolerance(scene, stage)
+    stated, allowed = (distance_text(scene, size, unit) for size in sizes)
+    return f"{contact} closes in {stage.name} at {loads}, against a stated {stated}, {allowed} allowed: DIFFER."
 
 
 def passed_sentences(table: RunsTable, rows: Sequence[Row], judged: Sequence[Judged]) -> Iterator[str]:

@@ -19,7 +19,7 @@ from typing import Any
 
 from comparisons.answer_file import DAMAGES, packed, read_answers
 from comparisons.choices import Choices
-from comparisons.crew import Crew, Decided, Job, Solver, crew_of
+from comparisons.executor import Crew, Decided, Job, Solver, crew_of
 from comparisons.pairing import Solvers, load_solvers
 from comparisons.provenance import program
 from comparisons.writing import clear_partial, write
@@ -193,7 +193,10 @@ class AnswerMemory(Crew):
         known = [(solver, scene, relevant(self._name(solver), choices)) for solver, scene, choices in jobs]
         new = {short: job for short, job in zip(known, jobs, strict=True) if short not in self.known}
         if new:
-            self.say("; ".join(dict.fromkeys(self._description(job) for job in new.values())))
+            names = (
+                f"{scene.name}: {_DESCRIPTION[self._name(own)].format(choices)}" for own, scene, choices in new.values()
+            )
+            self.say("; ".join(dict.fromkeys(names)))
             # not super(), which a class with slots does not know
             self.known.update(zip(new, Crew.begin(self, list(new.values()))(), strict=True))
         return [self.known[short] for short in known]
@@ -210,7 +213,3 @@ class AnswerMemory(Crew):
 
     def _name(self, solver: Solver) -> str:
         return next((name for name in _CHOSEN if getattr(self.solvers, name) == solver), "fea")
-
-    def _description(self, job: Job) -> str:
-        solver, scene, choices = job
-        return f"{scene.name}: {_DESCRIPTION[self._name(solver)].format(choices)}"

@@ -190,7 +190,7 @@ class Scene(Record):
     assembly: Assembly | None = None
     """Motion of beams to their points before the first stage."""
     may_cross: Annotated[tuple[tuple[Name, Name], ...], Of("beam or contact with a rigid edge")] = ()
-    """Pairs that may pass through each other: two beams, or a beam and a contact with a rigid edge."""
+    """Pairs that may pass through each other: two beams, a beam and a contact with a rigid edge, or a beam twice."""
     stages: Annotated[tuple[Stage, ...], Field(min_length=1)]
     """Stages of the loading, in order."""
     probes: Annotated[tuple[Probe, ...], Field(min_length=1)]
@@ -203,10 +203,12 @@ class Scene(Record):
     _origin: Origin = PrivateAttr(default=Origin())
 
     def rules(self) -> Iterator[Mistake]:
-        """Pairs of the same name."""
+        """Pairs of the same edge."""
         return broken(
             *(
-                one == other and Mistake(f"may_cross[{i}]", f"{one!r} twice", "two different names")
+                one == other
+                and one not in self.beams
+                and Mistake(f"may_cross[{i}]", f"{one!r} twice", "two different names, or a beam twice")
                 for i, (one, other) in enumerate(self.may_cross)
             )
         )

@@ -27,8 +27,7 @@ from pictures import thumbnail
 import cprbm
 import fea_reference
 from comparisons import cases
-from comparisons.display_units import axis_unit, display_unit
-from comparisons.formats import number
+from comparisons.formats import axis_unit, display_unit, number
 from comparisons.offset_verdict import compared_offset
 from comparisons.present import figures
 from comparisons.present.columns import Figure

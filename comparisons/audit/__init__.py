@@ -7,10 +7,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from comparisons.audit.contacts import contacts, crossings
-from comparisons.audit.joints import joints
-from comparisons.audit.probes import path, probes
+from comparisons.audit.laws import cuts, joints, path, probes, section_law, sums
 from comparisons.audit.state import states_of
-from comparisons.audit.statics import cuts, section_law, sums
 from cprbm_scene import Answer, Scene
 
 CHECKS = (joints, sums, cuts, section_law, contacts, probes)

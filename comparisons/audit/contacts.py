@@ -14,9 +14,10 @@ A contact holds where g >= a everywhere, g = a where a force acts, and F acts al
 normal.  Lines without thickness touch a rigid solid that is smaller by SUNK all around: a distance from the surface
 itself has no sign.  Where two beams touch as lines, neither penetration nor direction is judged.
 
-Undeclared contact is an overlap of two outlines that are thinner by DEEP.  No crossing is a pair with a contact, with a
-touch or an overlap at rest, such as a common joint, or in the scene's ``may_cross``.  Beside a beam in a contact of
-lines only the lines count.
+Undeclared contact is an overlap of two outlines that are thinner by DEEP, or of two places of a beam that are farther
+apart along the beam than LAP thicknesses.  On a radius of a thickness such places are 1.7 thicknesses apart.  No
+crossing is a pair with a contact, with a touch or an overlap at rest, such as a common joint, or in the scene's
+``may_cross``.  Beside a beam in a contact of lines only the lines count.
 
 All distances carry the errors of fine polylines and of the solvers' penalties.
 """
@@ -50,6 +51,9 @@ BESIDE = 3.0
 SMALL = 1e-6
 """Share of a contact's largest force below which places and directions of a force are not judged; also the
 counted share of thicknesses beside a beam in a contact of lines."""
+
+LAP = 2.0
+"""Thicknesses along a beam between two pieces from which on an overlap of both is a crossing."""
 
 FAR, BEHIND = 1e3, 0.05
 """Length of the edge of a half-plane, also the distance of a missing lap, and depth of the rigid solid behind an edge,
@@ -146,33 +150,44 @@ def crossings(scene: Scene, states: Sequence[StationState]) -> Iterator[str]:
         scene: the question.
         states: of an answer, in order.
     """
-    named = (*scene.may_cross, *((*contact.beams, name)[:2] for name, contact in scene.contacts.items()))
+    touching = ((*of.beams, *(() if isinstance(of, SelfContact) else (name,))) for name, of in scene.contacts.items())
+    named = (*scene.may_cross, *(beams[:2] for beams in touching))
     known = {frozenset(pair) for pair in named}.union(*(_overlaps(state.at_rest, 1.0 + DEEP) for state in states[:1]))
     for state in states:
         stage, load = state.station.stage, f"{state.station.value:g}"
         for pair in _overlaps(state, 1.0 - DEEP) - known:
             known.add(pair)
-            one, other = sorted(pair, key=[*scene.beams, *scene.contacts].index)
-            yield (
-                f"{one} and {other} pass through each other from {stage} {load} on ({state.stepped} = {load}), and no "
-                f"contact names them: add a contact of {one} and {other}, or "
-                f'may_cross = [["{one}", "{other}"]] if they lie in different planes.'
-            )
+            one, *others = sorted(pair, key=[*scene.beams, *scene.contacts].index)
+            where = f"from {stage} {load} on ({state.stepped} = {load}), and no"
+            if others:
+                yield (
+                    f"{one} and {others[0]} pass through each other {where} contact names them: add a contact of {one} "
+                    f'and {others[0]}, or may_cross = [["{one}", "{others[0]}"]] if they lie in different planes.'
+                )
+            else:
+                yield (
+                    f"{one} passes through itself {where} contact permits it: add a contact of the kind beam-self, or "
+                    f'may_cross = [["{one}", "{one}"]] if the laps lie in different planes.'
+                )
 
 
 def _overlaps(state: StationState, share: float) -> set[frozenset[str]]:
-    """Pairs of beams, or of a beam and a rigid solid, that overlap with a share of all thicknesses."""
-    rows: list[tuple[str, object, float]] = [
-        (name, _solid(state, of), 0.0) for name, of in state.scene.contacts.items() if isinstance(of, RigidContact)
+    """Pairs of beams, or of a beam and a rigid solid, and beams, that overlap with a share of all thicknesses."""
+    rows: list[tuple[str, object, float, float, float]] = [
+        (name, _solid(state, of), 0.0, 0.0, 0.0)
+        for name, of in state.scene.contacts.items()
+        if isinstance(of, RigidContact)
     ]
     for name, beam in state.beams.items():
         s, line = beam.fine
         ends = np.stack((line[:-1], line[1:]), axis=1).view(float).reshape(-1, 2, 2)
-        pieces = zip(np.asarray(shapely.linestrings(ends)), 0.5 * beam.thickness(0.5 * (s[1:] + s[:-1])), strict=True)
+        thickness = beam.thickness(0.5 * (s[1:] + s[:-1]))
+        pieces = zip(np.asarray(shapely.linestrings(ends)), 0.5 * thickness, s[:-1], s[1:], strict=True)
         rows += [(name, *piece) for piece in pieces]
-    names, shapes, half = (np.array(column) for column in zip(*rows, strict=True))
+    names, shapes, half, start, end = (np.array(column) for column in zip(*rows, strict=True))
     i, j = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=share * (half + half.max()))
     lines = [beam for contact in state.scene.contacts.values() if not contact.thick for beam in contact.beams]
     counted = np.where(np.isin(names[i], lines) | np.isin(names[j], lines), SMALL, share)
-    near = (names[i] < names[j]) & (shapely.distance(shapes[i], shapes[j]) < counted * (half[i] + half[j]))
+    apart = (names[i] < names[j]) | (names[i] == names[j]) & (start[j] - end[i] > LAP * (half[i] + half[j]))
+    near = apart & (shapely.distance(shapes[i], shapes[j]) < counted * (half[i] + half[j]))
     return {frozenset(pair) for pair in zip(names[i][near].tolist(), names[j][near].tolist(), strict=True)}

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from comparisons.choices import Choices, Count
-from comparisons.crew import Solver
+from comparisons.executor import Solver
 from comparisons.pairing import Solvers, prepared
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import Array

@@ -17,7 +17,7 @@ symbol      meaning
 ==========  ==============================================================================================
 v, v*       values of a probe at the last station, and the reference
 scale       the largest of |v*|, of a thousandth of the largest |v*| of its quantity, since a probe may vanish by
-            symmetry, and of 1e-4 of its natural value (:mod:`comparisons.verdict.scales`)
+            symmetry, and of 1e-4 of its natural value (:mod:`comparisons.quantities`)
 e           largest |v − v*| / scale over the probes of a measure
 U           the same of the reference's own uncertainty; zero where it is exact
 ==========  ==============================================================================================
@@ -38,7 +38,7 @@ import numpy as np
 
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers
-from comparisons.verdict.scales import NATURAL_SHARE, natural_value
+from comparisons.quantities import NATURAL_SHARE, natural_value
 from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Answer, Scene, SceneError
 from cprbm_scene.answer import Array

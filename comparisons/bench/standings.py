@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from comparisons.bench.contenders import Clocked
 from comparisons.bench.measures import MEASURES, Measure
 from comparisons.bench.running import Session, trend
-from comparisons.plain import Plain, plain
+from comparisons.writing import Plain, plain
 
 TARGETS = (1e-2, 1e-3, 1e-4)
 CLOCKED: tuple[Clocked, ...] = ("both", "solve")

@@ -8,8 +8,8 @@ from comparisons.bench.running import FIT_FROM, NO_WORSE, Session, Timing
 from comparisons.bench.standings import CLOCKED, ratio_key, ratios, standings, trends
 from comparisons.choices import Count
 from comparisons.formats import number, percent
-from comparisons.plain import Plain, plain
 from comparisons.present.columns import Column, Table, records_of, table_of, without_empty
+from comparisons.writing import Plain, plain
 
 _OF_CLOCK = {"wall": "", "cpu": " of the processor"}
 _TITLES: dict[Clocked, str] = {"both": "set-up and solve", "solve": "solve alone"}

@@ -14,7 +14,7 @@ from comparisons.audit import Audit, audit
 from comparisons.cli import bars, output
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
 from comparisons.cli.request import Request
-from comparisons.display_units import at_station, file_unit
+from comparisons.formats import at_station, file_unit
 from comparisons.logs import SOLVERS
 from comparisons.pairing import Solvers, exact_answer, solid_answer, solvers_of
 from comparisons.present.strips import Coloured, with_stresses

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import click
 
-from comparisons.plain import Plain, text_of
 from comparisons.present.columns import Section, Table
-from comparisons.writing import write
+from comparisons.writing import Plain, text_of, write
 
 _PLAIN_WIDTH = 140
 """Columns of tables outside a terminal."""

@@ -15,10 +15,10 @@ import click
 from comparisons.cli.bars import Bar, bar
 from comparisons.cli.output import print_section, write_json
 from comparisons.cli.request import Request
-from comparisons.plain import Plain
 from comparisons.present.columns import Section
 from comparisons.present.page import Chapter, Page, put_page, put_section
 from comparisons.store import Run, run_into
+from comparisons.writing import Plain
 from cprbm_scene import Question
 
 Result = TypeVar("Result")

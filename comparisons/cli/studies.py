@@ -22,7 +22,7 @@ from comparisons.present.page import own_folder
 from comparisons.store import run_into
 from comparisons.studies import calibration as calibrations
 from comparisons.studies import table1 as timings
-from comparisons.verdict.words import Word
+from comparisons.verdict import Word
 from cprbm_scene.frozendict import frozendict
 
 Session = running.Session

@@ -16,16 +16,15 @@ from comparisons.case import Comparison
 from comparisons.cli import bars, output, pipeline
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
 from comparisons.cli.request import Request
-from comparisons.plain import Plain
 from comparisons.present import brief, case_tables, csv_table, figures, offset, page
 from comparisons.present.columns import Section
 from comparisons.store import Run, run_into
 from comparisons.studies import convergence
 from comparisons.studies.report import Parts, Report
 from comparisons.tolerances.search import runs_within
+from comparisons.verdict import Word
 from comparisons.verdict.runs import Runs
-from comparisons.verdict.words import Word
-from comparisons.writing import write
+from comparisons.writing import Plain, write
 from cprbm_scene import OffsetQuestion, Question
 
 Compared = Comparison | offset_verdict.OffsetComparison

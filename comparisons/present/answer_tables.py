@@ -6,15 +6,22 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from comparisons.case import BranchVerdict, Comparison
-from comparisons.display_units import display_units, distance_text, load_column, load_text, with_unit
-from comparisons.formats import component_names, components, number, percent
+from comparisons.formats import (
+    component_names,
+    components,
+    display_units,
+    distance_text,
+    load_column,
+    load_text,
+    number,
+    percent,
+    with_unit,
+)
 from comparisons.present.columns import Column, Table, columns_of, table_of
-from comparisons.quantities import load_unit, norm, unit_of
+from comparisons.quantities import load_unit, norm, probe_scales, unit_of
 from comparisons.tolerances.result import Tolerance
-from comparisons.verdict.events import CriticalRow, mechanism, released
+from comparisons.verdict.events import CriticalRow, Place, mechanism, released
 from comparisons.verdict.rows import ROUND_OFF
-from comparisons.verdict.scales import probe_scales
-from comparisons.verdict.station_events import Place
 from cprbm_scene import Answer, Critical, Event, Scene, Stage
 
 CRITICAL_TITLE = "Critical values: where a branch ends"

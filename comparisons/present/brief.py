@@ -9,16 +9,15 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from comparisons.case import Comparison, Verdict
-from comparisons.display_units import at_station
-from comparisons.formats import component_names, components, number, percent
+from comparisons.formats import at_station, component_names, components, number, percent
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.present import offset
 from comparisons.present.columns import NOTHING, Column, Table, follow, table_of
 from comparisons.present.row_tables import Judged, judged_rows, row_units, share
 from comparisons.present.table import brief_lines
 from comparisons.sentences import pressure, theory_sentence
+from comparisons.verdict import SEVERITY, Word
 from comparisons.verdict.rows import ROUND_OFF
-from comparisons.verdict.words import SEVERITY, Word
 
 LINES, WIDTH = 30, 80
 """Most lines of a brief report, with an empty line below, and most columns."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from comparisons.display_units import display_unit
+from comparisons.formats import display_unit
 from comparisons.geometry import longest
 from comparisons.present.columns import Figure
 from comparisons.present.picture import Kind, Part, names_by_place

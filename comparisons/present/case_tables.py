@@ -7,16 +7,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from comparisons.case import Comparison
-from comparisons.claims import Standing, standings
-from comparisons.display_units import at_station, display_unit
-from comparisons.formats import number, percent
+from comparisons.formats import at_station, display_unit, number, percent
+from comparisons.opinions import Standing, solid_sentence, standings
 from comparisons.present import row_tables
 from comparisons.present.answer_tables import branch_table, critical_table, search_table
 from comparisons.present.columns import Column, Figure, Section, Table, follow, table_of
 from comparisons.present.json_document import solver
 from comparisons.reactions import MESH_ALLOWANCE, PERTURBATION, WorkEnergyReaction, is_long
 from comparisons.stations import kept
-from comparisons.third import sentence as solid_sentence
 from cprbm_scene import Answer, Scene
 
 _CERTIFICATE = {

@@ -8,8 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from comparisons.plain import Plain
-from comparisons.writing import write
+from comparisons.writing import Plain, write
 
 T = TypeVar("T")
 

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, TypedDict
 
 from comparisons.case import Comparison
-from comparisons.display_units import file_unit
-from comparisons.plain import Plain
+from comparisons.formats import file_unit
 from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
+from comparisons.writing import Plain
 from cprbm_scene import Answer, Probe, Scene, StationAnswer
 from cprbm_scene.answer import Array, PointForce
 from cprbm_scene.statement import STRESSES

@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from comparisons.case import Comparison
-from comparisons.display_units import at_station, axis_unit, display_unit
-from comparisons.formats import number
+from comparisons.formats import at_station, axis_unit, display_unit, number
 from comparisons.geometry import longest
 from comparisons.present.canvas import BLUE, GREY, LINES, RED, canvas, finished
 from comparisons.present.case_tables import by_drive

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from comparisons.case import Comparison
-from comparisons.display_units import at_station, display_unit, load_text, with_unit
+from comparisons.formats import at_station, display_unit, load_text, with_unit
 from comparisons.geometry import length, points
 from comparisons.present.canvas import (
     BLUE,

@@ -6,16 +6,15 @@ from typing import Any
 
 from comparisons.audit import Audit
 from comparisons.case import Comparison
-from comparisons.claims import claim_met, claim_of, claimed_difference
-from comparisons.plain import Plain, plain
+from comparisons.opinions import Third, claim_met, claim_of, claimed_difference, contact_model, thirds_of
 from comparisons.present.columns import follow
 from comparisons.quantities import arc_lengths, unit_of
 from comparisons.reactions import WorkEnergyReaction
-from comparisons.third import Third, contact_model, thirds_of
+from comparisons.stations import CERTIFICATE_NUMBERS
 from comparisons.tolerances.result import Tolerance
-from comparisons.verdict.completeness import CERTIFICATE_NUMBERS
 from comparisons.verdict.events import CriticalRow, released
 from comparisons.verdict.rows import Row
+from comparisons.writing import Plain, plain
 from cprbm_scene import Answer, Critical, Probe, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES

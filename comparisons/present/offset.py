@@ -10,9 +10,9 @@ import numpy as np
 from comparisons.formats import number, percent
 from comparisons.geometry import offset_curve
 from comparisons.offset_verdict import OffsetComparison, OffsetRow, claim_of_offset
-from comparisons.plain import Plain, plain
 from comparisons.present.canvas import BLUE, RED, canvas, common_legend, finished
 from comparisons.present.columns import Column, Figure, Section, Table, table_of
+from comparisons.writing import Plain, plain
 from cprbm_scene import OffsetClaim
 from cprbm_scene.offset import Shown
 

@@ -7,17 +7,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from comparisons.case import Comparison
-from comparisons.display_units import at_station, display_units, with_unit
-from comparisons.formats import number, percent, vector
+from comparisons.formats import at_station, display_units, number, percent, vector, with_unit
 from comparisons.geometry import bentness
+from comparisons.opinions import contact_model, thirds_of
 from comparisons.present.columns import Column, Table, columns_of, table_of
 from comparisons.quantities import norm
-from comparisons.third import contact_model, thirds_of
+from comparisons.verdict import Reason, Word
 from comparisons.verdict.calibration import EXACT_FACTOR, error_ratios, tally, true_errors
+from comparisons.verdict.events import Place
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs import SOLVERS
-from comparisons.verdict.station_events import Place
-from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES, Quantity

@@ -30,7 +30,7 @@ from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, na
 from comparisons.present.row_tables import BOTH, ERROR, judged_rows, share_columns, value_columns
 from comparisons.present.strips import Strip
 from comparisons.present.table import with_minus
-from comparisons.verdict.completeness import complete_stations
+from comparisons.stations import complete_stations
 from cprbm_scene import StationAnswer
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES

@@ -25,7 +25,24 @@ v_0 is then the value at p/16, and δ becomes an uncertainty.  L_f follows from 
 ``elements``.
 
 Three sizes stand beside the sum: the distance of ``paper`` from ``auto`` at N, the error of the straight-beam formula
-of stress (:mod:`comparisons.studies.curved_beam`), and L_f less the value of the solid.
+of stress, and L_f less the value of the solid.
+
+*Straight-beam formula.*  A beam that is curved at rest has in a rectangle in pure bending (Winkler; S. P. Timoshenko,
+Strength of Materials II, section 12)
+
+    σ_i = M (r_n − r_i)/(A e r_i),     K = (r_n − r_i) t/(6 e r_i) = (a − h b)/(3 b (1 − h)) = 1 + t/(3R) + O(h²)
+
+======  ====================================================================================
+R, t    radius of the neutral line at rest, thickness; h = t/(2R)
+r_i     radius of the inner edge, R − t/2
+r_n     radius where a pure moment leaves no stress, t/ln(r_o/r_i) = R/a
+a, b    (artanh h)/h and (a − 1)/h²; 1 and 1/3 of a straight beam
+e       R − r_n = R h² b/a
+K       stress at the inner edge over 6 M/(w t²), the straight beam's
+======  ====================================================================================
+
+The formula speaks of the moment.  That the moment is E A e R times the change of curvature, and not E I, is of second
+order.
 """
 
 from __future__ import annotations
@@ -38,16 +55,14 @@ import numpy as np
 
 from comparisons.choices import Choices, check
 from comparisons.geometry import bentness_on, length
+from comparisons.opinions import solid_limit
 from comparisons.pairing import in_paper
-from comparisons.quantities import direction, norm
+from comparisons.quantities import direction, norm, probe_scales
 from comparisons.sentences import problem_sentences
-from comparisons.stations import station_of
+from comparisons.stations import last_station, station_of
 from comparisons.store import AnswerMemory
-from comparisons.studies.curved_beam import inner_edge_factor
-from comparisons.third import solid_limit
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import Row, bare_row
-from comparisons.verdict.scales import probe_scales
 from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Answer, Probe, Scene, Stage
 from cprbm_scene.answer import Array, Flags
@@ -66,6 +81,14 @@ LINEAR = 0.5
 
 LEAST = 1e-9
 """Fraction below which the parts together are tolerances of the iterations."""
+
+_Runs = Mapping[str, Sequence[Answer]]
+"""Answers by name: ``cprbm`` as chosen, ``cprbm auto`` at LEVELS, ``fea`` at TIGHTNESS, ``fea finer`` and
+``solid`` at ELEMENTS."""
+
+_SERIES_BELOW = 0.1  # h where the terms left out and the digits that a − 1 loses are both below 1e-13
+
+_TERMS = 9
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,13 +145,7 @@ class Account:
     @property
     def last(self) -> tuple[Budget, ...]:
         """Budgets of the last station of the last stage."""
-        stage = self.scene.stages[-1]
-        return tuple(each for each in self.budgets if each.row.where == (stage.name, stage.stations[-1]))
-
-
-_Runs = Mapping[str, Sequence[Answer]]
-"""Answers by name: ``cprbm`` as chosen, ``cprbm auto`` at LEVELS, ``fea`` at TIGHTNESS, ``fea finer`` and
-``solid`` at ELEMENTS."""
+        return tuple(each for each in self.budgets if each.row.where == last_station(self.scene))
 
 
 def account_of(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
@@ -254,3 +271,20 @@ def _solid_part(
         return None, 0.0
     value, uncertainty = limited[0].value[counts], limited[0].uncertainty[counts]
     return float(np.dot(beams - value, along)), float(np.dot(uncertainty, np.abs(along)))
+
+
+def inner_edge_factor(bentness: Array) -> Array:
+    """K at thickness over radius ``bentness`` (k,), from 0 for a straight beam and less than 2.
+
+    Raises:
+        ValueError: an inner edge on or beyond the centre of curvature.
+    """
+    h = 0.5 * np.asarray(bentness, dtype=float)
+    if not np.all((h >= 0.0) & (h < 1.0)):
+        raise ValueError("thickness over radius must be at least 0 and less than 2")
+    series = h < _SERIES_BELOW
+    at = np.where(series, _SERIES_BELOW, h)
+    powers = 2.0 * np.arange(_TERMS)
+    b = np.where(series, np.sum(h[..., None] ** powers / (powers + 3.0), axis=-1), (np.arctanh(at) / at - 1.0) / at**2)
+    a = 1.0 + h**2 * b
+    return np.asarray((a - h * b) / (3.0 * b * (1.0 - h)))

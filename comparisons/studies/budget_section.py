@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from comparisons.choices import Count
-from comparisons.claims import claim_of
-from comparisons.display_units import at_station
-from comparisons.formats import number, percent
-from comparisons.plain import Plain, plain
+from comparisons.formats import at_station, number, percent
+from comparisons.opinions import claim_of
 from comparisons.present.canvas import canvas, finished
 from comparisons.present.columns import NOTHING, Column, Figure, Table, table_of
+from comparisons.stations import last_station
 from comparisons.studies.budget import PARTS, Account, Budget
+from comparisons.writing import Plain, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -112,8 +112,9 @@ def budget_table(account: Account) -> Table:
         "from auto to paper at the same links; curved, error of the straight-beam formula of stress, t/(3R) to first "
         "order; missed, limit of the finite elements less the solid's limit, with the uncertainty."
     )
-    sizes = f"{_count(account.choices.links)} links and {_count(account.choices.elements)} elements"
-    return table_of(f"Error budget at {_last(account)} with {sizes} per beam, %", columns, account.last, note)
+    sizes = f"{_count(account.choices.links)} links and {_count(account.choices.elements)} elements per beam"
+    title = f"Error budget at {at_station(account.scene, *last_station(account.scene))} with {sizes}, %"
+    return table_of(title, columns, account.last, note)
 
 
 def _part_columns(name: str) -> list[Column[Budget]]:
@@ -121,12 +122,6 @@ def _part_columns(name: str) -> list[Column[Budget]]:
     found = [Column[Budget](name, lambda at: _cell(at, at.parts[name] if at.all_parts else None, sign=True))]
     uncertainty = Column[Budget]("±", lambda at: _cell(at, at.rest_uncertainty if at.all_parts else None))
     return [*found, uncertainty] if name == "rest" else found
-
-
-def _last(account: Account) -> str:
-    """The last station of a scene."""
-    stage = account.scene.stages[-1]
-    return at_station(account.scene, stage.name, stage.stations[-1])
 
 
 def budget_figures(account: Account) -> tuple[Figure, ...]:
@@ -147,7 +142,7 @@ def budget_figures(account: Account) -> tuple[Figure, ...]:
             axes.annotate(text, (1.01, place), xycoords=("axes fraction", "data"), va="center", fontsize=9.0)
         drawing.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=9.0)
         caption = (
-            f"Parts of the differences at {_last(account)}: to the right "
+            f"Parts of the differences at {at_station(account.scene, *last_station(account.scene))}: to the right "
             "parts that make the difference larger, to the left parts that make it smaller; the diamond is the sum, "
             "and the number at the right the difference."
         )

@@ -13,16 +13,16 @@ import numpy as np
 from comparisons import cases
 from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
-from comparisons.crew import ALONE, Crew
+from comparisons.executor import ALONE, Crew
 from comparisons.formats import number, percent
 from comparisons.pairing import Solvers, exact_answer, exact_if_covered, paired
-from comparisons.plain import Plain
 from comparisons.present.canvas import GREY, canvas, finished
 from comparisons.present.columns import Figure, Section, Table
+from comparisons.stations import complete_part
+from comparisons.verdict import Word
 from comparisons.verdict.calibration import LARGEST_MEDIAN, SHARE_WITHIN, ErrorRatio, Tally, error_ratios, tally
-from comparisons.verdict.completeness import complete_part
 from comparisons.verdict.runs import SOLVERS
-from comparisons.verdict.words import Word
+from comparisons.writing import Plain
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 

@@ -1,26 +1,36 @@
-"""Error against N of a question, and the error budget: runs, figure and section."""
+"""Error against N of a question, and the error budget: runs, figures and section.
+
+Of an offset question the exact curve is known: the limit of every error is zero, and the order of two sizes is the
+logarithm of their errors' ratio over the logarithm of the ratio of sizes.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import log, nan
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from comparisons.choices import Choices
-from comparisons.crew import Crew
-from comparisons.display_units import at_station
-from comparisons.pairing import Solvers, exact_or_why
+from comparisons.executor import Crew
+from comparisons.formats import at_station, percent
+from comparisons.offset_verdict import OffsetRow, compared_offset
+from comparisons.pairing import OffsetConstruction, Solvers, exact_or_why
 from comparisons.present.canvas import GREY, LINES, canvas, common_legend, finished, logarithmic
-from comparisons.present.columns import Figure, Section
+from comparisons.present.columns import Column, Figure, Section, Table, table_of
 from comparisons.sentences import problem_sentences
-from comparisons.stations import at_shown
+from comparisons.stations import at_shown, last_station
 from comparisons.store import AnswerMemory
 from comparisons.studies import budget_section as budgets
 from comparisons.studies import convergence_tables as tables
-from comparisons.studies import offset_convergence
 from comparisons.studies.budget import account_of
 from comparisons.studies.families import Family, Method, Series, critical_families, probe_families, size
+from comparisons.verdict.uncertainty import Limit
 from cprbm_scene import OffsetQuestion, Question, Scene
+from cprbm_scene.offset import FEWEST, MOST
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,8 +75,7 @@ class Convergence:
     @property
     def last(self) -> tuple[Family, ...]:
         """Families at the last station."""
-        stage = self.scene.stages[-1]
-        where = stage.name, stage.stations[-1]
+        where = last_station(self.scene)
         return tuple(family for family in self.families if (family.stage, family.station) == where)
 
 
@@ -112,7 +121,7 @@ def convergence_section(
         SceneError: a solver refuses the question.
     """
     if isinstance(question, OffsetQuestion):
-        return offset_convergence.convergence_section(question, sizes, solvers.offset)
+        return _offset_section(question, sizes, solvers.offset)
     question = at_shown(question)
     memory = AnswerMemory(pool=crew.pool, solvers=solvers)
     found = convergence_of(question, sizes, choices, solvers, memory)
@@ -148,9 +157,8 @@ def convergence_figures(found: Convergence) -> tuple[Figure, ...]:
             _triangle(axes, found.sizes, series.order)
         panels[0].set_ylabel("distance from the limit / the probe's largest value")
         common_legend(drawing, "right center", 1, 8.5)
-        stage = found.scene.stages[-1]
         caption = (
-            f"Distance from the limit at {at_station(found.scene, stage.name, stage.stations[-1])}; above it the "
+            f"Distance from the limit at {at_station(found.scene, *last_station(found.scene))}; above it the "
             "limit's uncertainty, hollow where the uncertainty is larger."
         )
         exact = any(family.exact is not None for family in last)
@@ -185,3 +193,94 @@ def _triangle(axes: Axes, sizes: Sequence[int], order: float) -> None:
     axes.plot([left, right, left, left], [high, low, low, high], color=GREY, linewidth=1.0)
     at = (left, (low * high) ** 0.5)
     axes.annotate(f"{order:g}", at, textcoords="offset points", xytext=(4, -4), color=GREY, fontsize=9.0)
+
+
+def _offset_section(question: OffsetQuestion, sizes: tuple[int, ...], construct: OffsetConstruction) -> Section:
+    """Error against N for every spacing and offset, at the allowed sizes."""
+    numbers = tuple(n for n in sizes if FEWEST <= n <= MOST)
+    excluded = ", ".join(str(n) for n in sizes if n not in numbers)
+    families, completed = list[Family](), True
+    if len(numbers) > 1:
+        compared = compared_offset(question.model_copy(update={"numbers": numbers}), construct)
+        completed = compared.verdict.completed
+        curves: dict[tuple[str, float], list[OffsetRow]] = {}
+        for row in compared.rows:
+            curves.setdefault((row.spacing, row.offset), []).append(row)
+        families = [_offset_family(*key, rows) for key, rows in curves.items()]
+    return Section(
+        "Error against N",
+        (f"An offset question takes {FEWEST} to {MOST} springs; left out: {excluded}.",) if excluded else (),
+        (_offset_figure(question, numbers, families),) if families else (),
+        (_offset_table(question, numbers, families),) if families else (),
+        "convergence",
+        {
+            "case": question.name,
+            "families": [entry for family in families for entry in tables.entries(numbers, family)],
+            "runs": [],
+        },
+        completed,
+    )
+
+
+def _offset_family(spacing: str, offset: float, rows: list[OffsetRow]) -> Family:
+    """Errors of a spacing at an offset; an error that vanishes or is not finite has no order."""
+    orders = [
+        log(one.difference / two.difference) / log(two.n / one.n)
+        if one.difference > 0.0 and two.difference > 0.0
+        else None
+        for one, two in pairwise(rows)
+    ]
+    zero = np.zeros(1)
+    return Family(
+        solver="cprbm",
+        settings={"spacing": spacing},
+        probe=f"{spacing}.offset_points",
+        stage="offset",
+        station=offset,
+        unit="1",
+        scale=1.0,
+        components=("largest",),
+        values={row.n: np.array([row.difference]) for row in rows},
+        floor=0.0,
+        used=tuple(row.n for row in rows),
+        orders=tuple(orders),
+        found=Limit(zero, zero, nan, orders[-1], ""),
+        why="",
+        exact=zero,
+    )
+
+
+def _largest(families: list[Family], spacing: str, n: int) -> float:
+    """The largest error of all offsets."""
+    return max(float(each.values[n][0]) for each in families if each.settings["spacing"] == spacing)
+
+
+def _offset_table(question: OffsetQuestion, numbers: tuple[int, ...], families: list[Family]) -> Table:
+    def error(n: int) -> Column[str]:
+        return Column(f"N = {n}", lambda spacing: percent(_largest(families, spacing, n)))
+
+    def order(spacing: str) -> str:
+        return tables.spread(
+            each for family in families if family.settings["spacing"] == spacing for each in family.orders
+        )
+
+    return table_of(
+        f"{question.title or question.name}: largest error of all offsets",
+        [Column[str]("spacing", str), *map(error, numbers), Column("order", order)],
+        question.spacings,
+        f"Error along {question.axis}, relative to the {question.relative_to} of the exact offset curve; orders of "
+        "every two sizes and offset: median, least and largest.",
+    )
+
+
+def _offset_figure(question: OffsetQuestion, numbers: tuple[int, ...], families: list[Family]) -> Figure:
+    with canvas(6.4, 4.2) as drawing:
+        axes = drawing.add_subplot()
+        for place, spacing in enumerate(question.spacings):
+            line, marker = LINES[place % len(LINES)]
+            worst = [_largest(families, spacing, n) for n in numbers]
+            axes.plot(numbers, worst, line, marker=marker, color=f"C{place % 10}", markersize=4.5, label=spacing)
+        logarithmic(axes, numbers)
+        axes.set(xlabel="springs N", ylabel=f"largest error / {question.relative_to}")
+        axes.legend(loc="best")
+        return finished(drawing, "convergence", "Largest error of all offsets against the number of springs.")

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from statistics import median
 from typing import TYPE_CHECKING, NamedTuple
 
-from comparisons.display_units import at_station, display_unit, distance_text, with_unit
-from comparisons.formats import number, percent, vector
-from comparisons.plain import Plain, plain
+from comparisons.formats import at_station, display_unit, distance_text, number, percent, vector, with_unit
 from comparisons.present import json_document
 from comparisons.present.columns import Column, Table, table_of, without_empty
+from comparisons.stations import last_station
 from comparisons.studies.families import Family, size
 from comparisons.verdict.events import mechanism
+from comparisons.writing import Plain, plain
 from cprbm_scene import Scene
 
 if TYPE_CHECKING:
@@ -38,11 +38,9 @@ class Pair(NamedTuple):
 
 def pairs_of(families: Iterable[Family]) -> tuple[Pair, ...]:
     """Families of the CPRBM beside the families of the finite elements."""
-    by_solver: dict[str, dict[tuple[object, ...], Family]] = {"cprbm": {}, "fea": {}}
-    for family in families:
-        by_solver[family.solver][family.question] = family
-    fea = by_solver["fea"]
-    return tuple(Pair(family, fea[key]) for key, family in by_solver["cprbm"].items() if key in fea)
+    known = {(family.solver, family.question): family for family in families}
+    asked = (question for solver, question in known if solver == "cprbm" and ("fea", question) in known)
+    return tuple(Pair(known["cprbm", question], known["fea", question]) for question in asked)
 
 
 def document(found: Convergence) -> Plain:
@@ -143,14 +141,14 @@ def _mechanism(family: Family) -> str:
 
 
 def _limits(found: Convergence) -> Table:
-    scene, stage = found.scene, found.scene.stages[-1]
+    scene = found.scene
     note = (
         f"Both solvers in {found.series[0].theory}. Limits by Richardson's extrapolation; fractions of the probe's "
         "largest value in the stage. Stresses at one place."
     )
     return without_empty(
         Table(
-            f"{scene.title or scene.name}: limits at {at_station(scene, stage.name, stage.stations[-1])}",
+            f"{scene.title or scene.name}: limits at {at_station(scene, *last_station(scene))}",
             ("probe", "unit", f"CPRBM at {found.shown}", "from its limit", "CPRBM limit", "±", "FEA limit", "±",
              "limits apart", "CPRBM limit from exact", "no limit because"),
             tuple(_limit_row(scene, found.shown, pair) for pair in pairs_of(found.last)),

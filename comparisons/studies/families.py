@@ -18,13 +18,11 @@ from typing import Literal
 import numpy as np
 
 from comparisons.choices import Kinematics
-from comparisons.quantities import COMPONENTS, OPEN_AT_ZERO, arc_lengths, load_unit, unit_of
-from comparisons.stations import span_of, station_of
-from comparisons.verdict.completeness import ends_at_critical
+from comparisons.quantities import COMPONENTS, OPEN_AT_ZERO, arc_lengths, load_unit, probe_scales, unit_of
+from comparisons.stations import ends_at_critical, find_station, span_of, station_of
 from comparisons.verdict.events import mechanism
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import ROUND_OFF
-from comparisons.verdict.scales import probe_scales
 from comparisons.verdict.uncertainty import OWN, STANDARD, Limit, limit, observed, orders
 from cprbm_scene import Answer, Critical, Probe, Scene, Stage
 from cprbm_scene.answer import Array
@@ -235,11 +233,9 @@ def _exact_values(
     exact: Answer | None, stage: str, value: float, probe: str, places: slice, like: Array
 ) -> Array | None:
     """Exact values at a station; None without values of the shape of the solvers' values."""
-    try:
-        found = None if exact is None else station_of(exact, stage, value).values[probe][places]
-    except KeyError:  # the exact answer lacks the station or the probe
-        return None
-    return found if found is not None and found.size and found.shape == like.shape else None
+    station = None if exact is None else find_station(exact, stage, value)
+    found = np.zeros(0) if station is None or probe not in station.values else station.values[probe][places]
+    return found if found.size and found.shape == like.shape else None
 
 
 def critical_families(scene: Scene, series: Sequence[Series]) -> Iterator[Family]:

@@ -26,7 +26,6 @@ from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
 from comparisons.offset_verdict import OffsetComparison, compared_offset
 from comparisons.pairing import Solvers, paired
-from comparisons.plain import Plain
 from comparisons.present.columns import Section
 from comparisons.present.page import (
     Chapter,
@@ -42,7 +41,7 @@ from comparisons.store import Run, digest
 from comparisons.studies import table1
 from comparisons.studies.convergence import convergence_section
 from comparisons.verdict.runs import Runs
-from comparisons.writing import write
+from comparisons.writing import Plain, write
 from cprbm_scene import OffsetQuestion, Question, Scene, SceneError
 
 T = TypeVar("T")

@@ -20,9 +20,9 @@ from comparisons.bench.running import Plan, Session, Timing
 from comparisons.choices import Choices, Count
 from comparisons.formats import number
 from comparisons.pairing import Solvers
-from comparisons.plain import plain
 from comparisons.present.canvas import BLUE, RED, canvas, finished
 from comparisons.present.columns import Column, Figure, Section, records_of, table_of
+from comparisons.writing import plain
 from cprbm_scene import Scene
 from cprbm_scene.frozendict import frozendict
 

@@ -22,7 +22,7 @@ from typing import Literal
 
 from pydantic import ValidationError
 
-from comparisons.display_units import file_unit
+from comparisons.formats import file_unit
 from comparisons.quantities import COMPONENTS, unit_of
 from comparisons.sweeps.outcome import Outcome
 from cprbm_scene import Mistake, Scene, SceneError

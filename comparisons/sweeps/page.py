@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from comparisons.display_units import display_unit
+from comparisons.formats import display_unit
 from comparisons.present.page import rendered
 from comparisons.sweeps.pictures import curve_of, fullest, names_of, pictures
 from comparisons.sweeps.running import Sweep

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from comparisons.display_units import display_unit
+from comparisons.formats import display_unit
 from comparisons.present.canvas import BLUE, RED, canvas, finished
 from comparisons.present.columns import Figure
 from comparisons.sweeps.outcome import Outcome, Record

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from comparisons.display_units import file_unit
+from comparisons.formats import file_unit
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.answer import Array
 

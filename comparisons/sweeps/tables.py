@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from comparisons.display_units import file_unit
+from comparisons.formats import file_unit
 from comparisons.present.csv_table import csv_text, in_unit
 from comparisons.sweeps.outcome import Outcome, Record
 from comparisons.sweeps.running import Sweep, Task

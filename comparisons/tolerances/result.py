@@ -6,8 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from comparisons.display_units import at_station
-from comparisons.formats import percent
+from comparisons.formats import at_station, percent
 from cprbm_scene import Scene
 
 SolverName = Literal["cprbm", "fea", "solid"]

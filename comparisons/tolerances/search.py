@@ -24,16 +24,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from comparisons.choices import Choices
-from comparisons.crew import Crew
+from comparisons.executor import Crew
 from comparisons.pairing import Solvers, exact_or_why, in_other_theory, paired, with_solid
 from comparisons.reactions import perturbed_scene
 from comparisons.sentences import problem_sentences
 from comparisons.store import AnswerMemory
 from comparisons.tolerances.limits import Limits, limits_of
 from comparisons.tolerances.result import SolverName, Tolerance, WorstRow
+from comparisons.verdict.events import Place
 from comparisons.verdict.rows import Row, rows_of
 from comparisons.verdict.runs import Runs
-from comparisons.verdict.station_events import Place
 from cprbm_scene import Answer, Scene, SceneError
 from cprbm_scene.frozendict import frozendict
 

@@ -1,44 +1,72 @@
-"""Events on the load axis: critical points and closings of contacts in both solvers.
+"""Events of all runs: critical points and closings on the load axis, and the states of the runs by a station.
 
 ======  ==========================================================================================
 symbol  meaning
 ======  ==========================================================================================
 λ_c     load of an event in the CPRBM, λ_f in the finite elements, λ_o in the CPRBM in the other theory
-U       stated uncertainty of λ_c − λ_f (:mod:`comparisons.verdict.bounds`)
+U       stated uncertainty of λ_c − λ_f (:mod:`comparisons.verdict.runs`)
 θ       step of theory |λ_o − λ_c|; infinite where the CPRBM has no such critical point in the other theory
 T       tolerance of an event on the load axis (:func:`comparisons.stations.event_tolerance`)
 W       ``verdict_limit`` of the scene times the span of the stage
 ======  ==========================================================================================
 
-A critical point
-
-* is undecided if a solver lacks it, since the run ended early before the load;
-* differs if a solver lacks it otherwise, if the mechanisms differ, or if |λ_c − λ_f| > max(T, U);
-* is undecided if runs of one solver disagree, or U > T, or, in ``bending``, θ > max(T, W);
-* agrees otherwise.
+*Critical points.*  A critical point is undecided if a solver lacks it, since the run ended early before the load.  It
+differs if a solver lacks it otherwise, if the mechanisms differ, or if |λ_c − λ_f| > max(T, U).  It is undecided if
+runs of one solver disagree, or U > T, or, in ``bending``, θ > max(T, W).  It agrees otherwise.
 
 The first critical point of a stage is compared with the first of the other runs, the second with the second.  In a
 stage without ``beyond`` a run may pass a critical point and go on along another branch.  A passed critical point stands
 in for a missing critical point, and the row is undecided.
+
+*States.*  The state of a run at a station has these parts: the number of its branch, the number of passed critical
+points, and each contact, active or not.  Answers are compared where all runs have the same state.  A part may differ:
+
+* If each run goes through the same sequence of states in the stage, the station lies between the runs' loads of one
+  event.  A contact is then *unsettled*.
+* If runs of one solver disagree, the part is *unsettled* as well.
+* In all other cases the part is *contradictory*.
+
+A station within T of a critical point also lies between events: beside a fold the difference grows with the square root
+of the distance.  Runs on mirror images behind a bifurcation are unsettled.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from enum import Enum
+from itertools import groupby, pairwise
 
 import numpy as np
 
-from comparisons.quantities import load_unit
-from comparisons.stations import event_tolerance, span_of
-from comparisons.verdict.bounds import Bounds, bounds_of
-from comparisons.verdict.completeness import ends_at_critical
-from comparisons.verdict.runs import SOLVERS
-from comparisons.verdict.runs_table import RunsTable, solver_of
-from comparisons.verdict.words import Reason, Word
-from cprbm_scene import Critical, Stage
+from comparisons.quantities import deflection, load_unit
+from comparisons.stations import Where, begins_at, ends_at_critical, event_tolerance, span_of
+from comparisons.verdict import Reason, Word
+from comparisons.verdict.point_forces import active_contacts
+from comparisons.verdict.runs import SOLVERS, Bounds, RunsTable, solver_of
+from cprbm_scene import Answer, Critical, Loss, Scene, Stage, StationAnswer
+from cprbm_scene.answer import Shape
 from cprbm_scene.frozendict import frozendict
+
+BRANCH = "branch"
+PASSED = "passed critical points"
+MIRRORED = "mirror images"
+"""Parts of a state beside the names of contacts, which hold no blank; ``BRANCH`` is never in a set of such names."""
+
+MIRROR_DISTANCE = 0.05
+"""Least distance of beams on mirror images, a share of their largest distance from rest."""
+
+State = Mapping[str, int]
+"""Parts of a run's state at a station, a contact's 1 where the contact is active."""
+
+CONTINUES = 1e-3
+"""Least fall of the energy in a jump, a share of the energy: a path that continues on another branch loses none."""
+
+
+Closing = tuple[Stage, str, tuple[float, float], Bounds]
+"""Closing of a contact at loads farther apart than max(T, U): stage, contact, the solvers' loads, and U."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +77,7 @@ class CriticalRow:
         stage: name of the stage; place: number of the critical point in the stage, from 0; unit: SI unit of the loads.
         cprbm, fea: the solvers' critical points; None where a solver has none.
         span: of the stage; allowed: T; largest: max(T, W) in ``bending``, otherwise infinite.
-        steady: whether all runs of each solver have it by one mechanism, or none has.
+        mechanisms: mechanism by name of the run; None of a run without the critical point.
         ended_before: whether a run without the critical point ended early before the load.
         difference: |λ_c − λ_f|; NaN where a run lacks it.
         theory: θ; NaN where it is not known.
@@ -65,7 +93,7 @@ class CriticalRow:
     span: float
     allowed: float
     largest: float
-    steady: bool
+    mechanisms: Mapping[str, str | None]
     ended_before: bool = False
     difference: float = math.nan
     theory: float = math.nan
@@ -75,7 +103,7 @@ class CriticalRow:
     @property
     def judged(self) -> tuple[Word, Reason | None]:
         """Word and reason of the critical point."""
-        if not self.steady:
+        if disagree_within_a_solver(self.mechanisms):
             return Word.UNDECIDED, Reason.BRANCH
         if self.ended_before:
             return Word.UNDECIDED, Reason.RUN_ENDED
@@ -105,24 +133,6 @@ class CriticalRow:
         return math.nan if found is None else found.value
 
 
-@dataclass(frozen=True, slots=True)
-class ClosingRow:
-    """Closing of a contact at loads farther apart than max(T, U).
-
-    Attributes:
-        stage, contact: names; unit: SI unit of the loads; cprbm, fea: the solvers' loads.
-        stated: U; allowed: T.
-    """
-
-    stage: str
-    contact: str
-    unit: str
-    cprbm: float
-    fea: float
-    stated: float
-    allowed: float
-
-
 def mechanism(critical: Critical) -> str:
     """Mechanism of an instability in words, with the name of the contact or stop that lets go."""
     return f"{critical.what}: {critical.loss.value}" if critical.what else critical.loss.value
@@ -139,24 +149,18 @@ def released(critical: Critical) -> float | None:
     return fall if fall > CONTINUES * abs(critical.energy) else None
 
 
-CONTINUES = 1e-3
-"""Least fall of the energy in a jump, a share of the energy: a path that continues on another branch loses none."""
-
-
 def disagree_within_a_solver(states: Mapping[str, object]) -> bool:
     """Whether runs of one solver have different states, by the names of the runs."""
-    return any(
-        len({state for name, state in states.items() if solver_of(name) == solver}) > 1 for solver in ("cprbm", "fea")
-    )
+    return any(len({state for name, state in states.items() if solver_of(name) == solver}) > 1 for solver in SOLVERS)
 
 
 def critical_rows(table: RunsTable) -> tuple[CriticalRow, ...]:
     """All critical points of the two compared runs, in the order of stages."""
-    found = []
+    found = list[CriticalRow]()
+    followed: dict[str, Answer] = {**table.following, "cprbm": table.pair[0], "fea": table.pair[1]}
     for stage in table.scene.stages:
         own = {
-            name: tuple(one for one in answer.critical if one.stage == stage.name)
-            for name, answer in {**table.following, "cprbm": table.pair[0], "fea": table.pair[1]}.items()
+            name: tuple(one for one in answer.critical if one.stage == stage.name) for name, answer in followed.items()
         }
         for place in range(max(len(own[name]) for name in SOLVERS)):
             here = {name: each[place] if len(each) > place else None for name, each in own.items()}
@@ -181,7 +185,7 @@ def _with_passed_points(
                 nearest = min(alike, key=lambda one: abs(one.end.value - known.value))
                 points[name], turned[name] = nearest.end, nearest.turned
         found = replace(_critical_row(table, stage, row.place, points), turned=frozendict(turned))
-        if turned and found.steady and found.word is not Word.DIFFER:
+        if turned and not disagree_within_a_solver(found.mechanisms) and found.word is not Word.DIFFER:
             return found
     return row
 
@@ -198,15 +202,14 @@ def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str,
         span=span,
         allowed=allowed,
         largest=max(allowed, table.scene.verdict_limit * span) if table.runs.theory == "bending" else math.inf,
-        steady=not disagree_within_a_solver(mechanisms),
+        mechanisms=mechanisms,
         ended_before=_ended_before(table, here["cprbm"], here["fea"]),
     )
     present = {name: one for name, one in here.items() if one is not None}
     if len(present) < len(here):
         return row
     located = sum(
-        max(one.uncertainty for name, one in present.items() if solver_of(name) == solver)
-        for solver in ("cprbm", "fea")
+        max(one.uncertainty for name, one in present.items() if solver_of(name) == solver) for solver in SOLVERS
     )
     bounds = _on_load_axis(table, {name: one.value for name, one in present.items()}, located)
     difference = abs(present["cprbm"].value - present["fea"].value)
@@ -227,38 +230,148 @@ def _ended_before(table: RunsTable, cprbm: Critical | None, fea: Critical | None
     known = cprbm or fea
     if known is None or None not in (cprbm, fea):
         return False
-    name, answer = ("fea", table.pair[0]) if fea is None else ("cprbm", table.pair[1])
-    if name in table.following or known not in answer.critical:
+    without, answer = ("fea", table.pair[0]) if fea is None else ("cprbm", table.pair[1])
+    if without in table.following or known not in answer.critical:
         return False
     before = sum(station.branch <= answer.critical.index(known) for station in answer.stations)
-    return len(table.stations[name]) <= before
+    return len(table.stations[without]) <= before
 
 
-def closing_rows(table: RunsTable) -> tuple[ClosingRow, ...]:
+def far_closings(table: RunsTable) -> Iterator[Closing]:
     """Closings of contacts at loads that differ by more than the runs excuse."""
     loads: dict[tuple[str, str, int], dict[str, float]] = {}
     for name, answer in table.following.items():
-        count: dict[tuple[str, str], int] = {}
-        for event in answer.events:
-            if event.kind == "closes":
-                key = event.stage, event.contact
-                count[key] = count.get(key, -1) + 1
-                loads.setdefault((*key, count[key]), {})[name] = event.value
+        count = Counter[tuple[str, str]]()
+        for event in (event for event in answer.events if event.kind == "closes"):
+            key = event.stage, event.contact
+            count[key] += 1
+            loads.setdefault((*key, count[key]), {})[name] = event.value
     stages = {stage.name: stage for stage in table.scene.stages}
-    found = []
     for (stage, contact, _), here in loads.items():
-        if len(here) < len(table.following) or not set(SOLVERS) <= set(here):
-            continue
-        bounds = _on_load_axis(table, here, 0.0)
-        allowed = event_tolerance(table.scene, stages[stage])
-        cprbm, fea = (here[name] for name in SOLVERS)
-        if bounds is not None and abs(cprbm - fea) > max(allowed, bounds.total):
-            unit = load_unit(table.scene, stages[stage])
-            found.append(ClosingRow(stage, contact, unit, cprbm, fea, bounds.total, allowed))
-    return tuple(found)
+        if {*SOLVERS} <= here.keys() == table.following.keys():
+            bounds, pair = _on_load_axis(table, here, 0.0), (here["cprbm"], here["fea"])
+            allowed = event_tolerance(table.scene, stages[stage])
+            if bounds is not None and abs(pair[0] - pair[1]) > max(allowed, bounds.total):
+                yield stages[stage], contact, pair, bounds
 
 
 def _on_load_axis(table: RunsTable, loads: Mapping[str, float], round_off: float) -> Bounds | None:
     """Stated uncertainties of an event's loads."""
     values = {name: np.array([load]) for name, load in loads.items()}
-    return bounds_of(table.runs, values, lambda difference: float(np.abs(difference).max()), round_off)
+    return table.runs.bounds(values, lambda difference: float(np.abs(difference).max()), round_off)
+
+
+class Place(Enum):
+    """Whether all runs have passed the same critical points at a station."""
+
+    COMPARED = "compared"
+    BETWEEN = "between events"
+
+
+@dataclass(frozen=True, slots=True)
+class StationEvents:
+    """Events of all runs by a station.
+
+    Attributes:
+        branch: number of critical points before; None where the runs have met different numbers.
+        place: whether rows are compared here.
+        unsettled, contradictory: contacts and other parts of the state, as the module says.
+    """
+
+    branch: int | None
+    place: Place
+    unsettled: frozenset[str] = frozenset()
+    contradictory: frozenset[str] = frozenset()
+
+
+NO_EVENTS = StationEvents(0, Place.COMPARED)
+
+
+def station_events(table: RunsTable) -> dict[Where, StationEvents]:
+    """Events of all runs by every station that both compared runs reach."""
+    found: dict[Where, StationEvents] = {}
+    for stage in table.scene.stages:
+        reached = [where for where in table.reached if where[0] == stage.name]
+        states = {
+            name: {
+                where: _state(table.scene, stage, answer, index, table.stations[name][where])
+                for index, where in enumerate((stage.name, value) for value in stage.stations)
+                if where in reached and where in table.stations[name]
+            }
+            for name, answer in table.answers.items()
+        }
+        found |= {where: _events(table, stage, where, states) for where in reached}
+    return found
+
+
+def passed_by(scene: Scene, stage: Stage, answer: Answer, station: int) -> int:
+    """Number of passed critical points in a stage by the station with the number ``station``."""
+    values = (begins_at(scene, stage), *stage.stations[: station + 1])
+    mine = [one.end.value for one in answer.gone_over if one.end.stage == stage.name]
+    steps = [sorted(pair) for pair in pairwise(values)]
+    return sum(least < value <= most for value in mine for least, most in steps)
+
+
+def _state(scene: Scene, stage: Stage, answer: Answer, index: int, station: StationAnswer) -> State:
+    """State of a run at the station with the number ``index``."""
+    active, passed = active_contacts(station), passed_by(scene, stage, answer, index)
+    return {BRANCH: station.branch, PASSED: passed, **{name: int(name in active) for name in scene.contacts}}
+
+
+def _events(table: RunsTable, stage: Stage, where: Where, states: Mapping[str, Mapping[Where, State]]) -> StationEvents:
+    """Events by one station, with the states of the runs at all stations of the stage."""
+    here = {name: mine[where] for name, mine in states.items() if where in mine}
+    between, unsettled, contradictory = set[str](), set[str](), set[str]()
+    for part in here[SOLVERS[0]]:
+        values = {name: state[part] for name, state in here.items()}
+        if len(set(values.values())) == 1:
+            continue
+        paths = ([state[part] for state in states[name].values()] for name in here)
+        sequences = {tuple(value for value, _ in groupby(path)) for path in paths}
+        if part == BRANCH or (part == PASSED and len(sequences) == 1):
+            between.add(part)
+        elif len(sequences) == 1 or disagree_within_a_solver(values):
+            unsettled.add(part)
+        else:
+            contradictory.add(part)
+    tolerance = event_tolerance(table.scene, stage)
+
+    def is_near(points: Iterable[Critical]) -> bool:
+        return any(one.stage == stage.name and abs(where[1] - one.value) <= tolerance for one in points)
+
+    if is_near(one.end for answer in table.pair for one in answer.gone_over):
+        unsettled.add(PASSED)
+    if _on_mirror_images(table, table.at(where)):
+        unsettled.add(MIRRORED)
+    is_between = bool(between) or is_near(one for answer in table.pair for one in answer.critical)
+    return StationEvents(
+        None if BRANCH in between else here[SOLVERS[0]][BRANCH],
+        Place.BETWEEN if is_between else Place.COMPARED,
+        frozenset(unsettled),
+        frozenset(contradictory - unsettled),
+    )
+
+
+def _on_mirror_images(table: RunsTable, here: Mapping[str, StationAnswer]) -> bool:
+    """Whether a compared run has met a bifurcation, and beams of some runs lie far from the compared CPRBM's."""
+    points_met = (
+        one
+        for answer, name in zip(table.pair, SOLVERS, strict=True)
+        for one in (*answer.critical[: here[name].branch], *(each.end for each in answer.gone_over))
+    )
+    if not any(one.loss is Loss.BIFURCATION for one in points_met):
+        return False
+    first = here[SOLVERS[0]].shapes
+    beams = table.scene.beams
+    bent = max(deflection(beam, first[name]) for name, beam in beams.items())
+    apart = max(_distance(first[name], station.shapes[name]) for station in here.values() for name in beams)
+    return apart > MIRROR_DISTANCE * bent
+
+
+def _distance(one: Shape, other: Shape) -> float:
+    """Largest distance of nine places of a beam in two shapes, m."""
+    first, second = (
+        np.stack([np.interp(np.linspace(0.0, shape.s[-1], 9), shape.s, along) for along in (shape.x, shape.y)])
+        for shape in (one, other)
+    )
+    return float(np.max(np.hypot(*(first - second))))

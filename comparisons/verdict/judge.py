@@ -1,6 +1,6 @@
 """Word and reason of a row, and of all rows of a case.
 
-A row differs if |v_c − v_f| exceeds its stated uncertainty (:mod:`comparisons.verdict.bounds`), or if a true error
+A row differs if |v_c − v_f| exceeds its stated uncertainty (:mod:`comparisons.verdict.runs`), or if a true error
 beside the exact value exceeds twice the stated error.  A row is undecided if the stated uncertainty exceeds the scene's
 limit: such an uncertainty would excuse a wrong answer, and θ may be an error of discretisation (COARSE).  All other
 rows in ``bending`` are undecided if the step of theory θ exceeds the limit (THEORY): both solvers then agree on a
@@ -25,15 +25,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from comparisons.verdict.bounds import bounds_of
+from comparisons.stations import ABSENT_WHILE_OPEN
+from comparisons.verdict import Reason, Word
 from comparisons.verdict.calibration import true_errors
-from comparisons.verdict.completeness import ABSENT_WHILE_OPEN
+from comparisons.verdict.events import MIRRORED, PASSED, Place
 from comparisons.verdict.point_forces import resultant
 from comparisons.verdict.rows import ROUND_OFF, Row
-from comparisons.verdict.runs import SOLVERS
-from comparisons.verdict.runs_table import RunsTable
-from comparisons.verdict.station_events import MIRRORED, PASSED, Place
-from comparisons.verdict.words import Reason, Word
+from comparisons.verdict.runs import SOLVERS, RunsTable
 from cprbm_scene import Scene
 
 Judged = tuple[Word | None, Reason | None]
@@ -124,7 +122,7 @@ def _same_resultant(table: RunsTable, row: Row) -> bool:
         return False
     beam, others = row.shared
     sums = {name: resultant(station, {row.probe.of, *others}, beam) for name, station in table.at(row.where).items()}
-    bounds = bounds_of(table.runs, sums, lambda difference: float(np.linalg.norm(difference)), 0.0)
+    bounds = table.runs.bounds(sums, lambda difference: float(np.linalg.norm(difference)))
     v_c, v_f = (sums[name] for name in SOLVERS)
     return bounds is not None and float(np.linalg.norm(v_c - v_f)) <= bounds.total
 

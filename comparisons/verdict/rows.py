@@ -23,14 +23,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, norm, unit_of
+from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, denominator, norm, probe_scales, unit_of
 from comparisons.stations import find_station
-from comparisons.verdict.bounds import Bounds, bounds_of
+from comparisons.verdict.events import NO_EVENTS, Place, StationEvents, station_events
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
-from comparisons.verdict.runs import Runs
-from comparisons.verdict.runs_table import RunsTable
-from comparisons.verdict.scales import denominator, probe_scales
-from comparisons.verdict.station_events import NO_EVENTS, Place, StationEvents, station_events
+from comparisons.verdict.runs import Bounds, Runs, RunsTable
 from comparisons.verdict.uncertainty import largest
 from cprbm_scene import Answer, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array, Flags
@@ -163,7 +160,7 @@ def bare_row(
         probe: the probe.
         stage: the stage.
         value: the station.
-        scale: of the probe in the stage, :func:`comparisons.verdict.scales.probe_scales`.
+        scale: of the probe in the stage, :func:`comparisons.quantities.probe_scales`.
 
     Raises:
         KeyError: an answer lacks the probe.
@@ -224,7 +221,7 @@ def _measured(
     masked = {name: value[counts] for name, value in values.items()}
     return replace(
         row,
-        bounds=bounds_of(runs, masked, lambda difference: norm(probe.quantity, difference), floor, known),
+        bounds=runs.bounds(masked, lambda difference: norm(probe.quantity, difference), floor, known),
         true_errors=_true_errors(row, exact, size),
     )
 

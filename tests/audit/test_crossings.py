@@ -8,8 +8,8 @@ import pytest
 import comparisons
 from comparisons.audit import audit
 from comparisons.choices import Choices
-from comparisons.verdict.words import Word
-from cprbm_scene import Answer, Ending, Shape, StationAnswer, read, scene_from
+from comparisons.verdict import Reason, Word
+from cprbm_scene import Answer, Ending, SceneError, Shape, StationAnswer, read, scene_from
 from cprbm_scene.answer import BeamState
 from tests.verdict.made_up import CERTIFICATE
 
@@ -176,3 +176,86 @@ def test_undeclared_contact():
     assert 'may_cross = [["up", "lo"]]' in verdict.because
     allowed = read(SCENE).model_copy(update={"may_cross": (("lo", "up"),)})
     assert comparisons.compare(allowed, Choices(links=20, elements=20)).verdict.word is Word.AGREE
+
+
+def rolled(turns):
+    """The beam ``b``, 100 thicknesses long, that a moment at the end rolls up to a circle."""
+    return {"b": arc(0.1 / (2.0 * np.pi * turns), 0.1, 401)}
+
+
+@pytest.mark.parametrize(("turns", "cross"), [(0.9, 0), (0.98, 0), (1.0, 1), (1.3, 1)])
+def test_a_beam_that_is_rolled_by_more_than_a_turn_passes_through_itself(turns, cross):
+    # at 0.98 turns both ends are two thicknesses apart
+    assert len(crossings(scene_of(BESIDE), rolled(turns))) == cross
+
+
+def test_a_beam_that_passes_through_itself_is_named_once_with_the_first_load():
+    (said,) = crossings(scene_of(BESIDE), rolled(0.5), rolled(1.1), rolled(1.3))
+    assert "b passes through itself from push 2 on (F = 2)" in said
+    assert 'may_cross = [["b", "b"]]' in said
+
+
+def test_a_loop_whose_ends_cross_passes_through_itself():
+    half = line((-0.02, 0.0), (0.0, 0.02)), line((0.0, 0.02), (0.005, -0.02)), line((0.005, -0.02), (-0.02, 0.015))
+    assert len(crossings(scene_of(BESIDE), {"b": np.concatenate((half[0], half[1][1:], half[2][1:]))})) == 1
+
+
+def test_a_tight_bend_is_no_crossing():
+    # a hairpin of two straight legs about a radius of 0.8 thicknesses
+    s = np.linspace(0.0, 0.1, 2001)
+    turn = np.clip((s - 0.04) / (0.8 * T), 0.0, np.pi)
+    places = np.column_stack([np.cumsum(of) * s[1] for of in (np.cos(turn), np.sin(turn))])
+    assert crossings(scene_of(BESIDE), {"b": places}) == ()
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [{"may_cross": [["b", "b"]]}, {"contacts": {"own": {"kind": "beam-self", "beam": "b"}}}],
+    ids=["may_cross", "contact"],
+)
+def test_a_beam_may_pass_through_itself_where_the_scene_permits_it(keys):
+    assert crossings(scene_of(BESIDE, **keys), rolled(1.3)) == ()
+
+
+def test_a_contact_of_a_beam_with_another_permits_no_crossing_of_itself():
+    keys = {"contacts": {"both": {"kind": "beam-beam", "between": ["a", "b"]}}}
+    assert len(crossings(scene_of(BESIDE, **keys), rolled(1.3))) == 1
+
+
+def test_an_edge_twice_is_a_mistake():
+    with pytest.raises(SceneError, match="two different names, or a beam twice"):
+        scene_of(BESIDE, {"disc": {**EDGES["disc"], "body": "ground", "beam": "b"}}, may_cross=[["disc", "disc"]])
+
+
+def test_a_cantilever_that_a_moment_rolls_by_more_than_a_turn_is_undecided():
+    # a moment of 2 pi E I/L rolls the cantilever to a full circle
+    ei, length = 2e9 * 0.01 * 0.0005**3 / 12.0, 0.1
+    scene = scene_from(
+        {
+            "name": "rolled",
+            "theory": "bending",
+            "materials": {"plastic": {"youngs_modulus": 2e9, "poisson_ratio": 0.36}},
+            "bodies": {
+                "ground": {"motion": "fixed", "points": {"A": [0.0, 0.0]}},
+                "tip": {"motion": "free", "points": {"P": [length, 0.0]}},
+            },
+            "beams": {
+                "b": {
+                    "curve": {"kind": "line", "start": [0.0, 0.0], "end": [length, 0.0]},
+                    "thickness": 0.0005,
+                    "width": 0.01,
+                    "material": "plastic",
+                    "start": {"joint": "weld", "point": "A"},
+                    "end": {"joint": "weld", "point": "P"},
+                }
+            },
+            "loads": {"M": {"kind": "moment", "body": "tip"}},
+            "stages": [
+                {"name": "roll", "steps": "M", "stations": [turns * 2.0 * np.pi * ei / length for turns in (0.9, 1.3)]}
+            ],
+            "probes": [{"of": "P", "quantity": "displacement"}],
+        }
+    )
+    verdict = comparisons.compare(scene, Choices(links=20, elements=20)).verdict
+    assert (verdict.word, verdict.reason) == (Word.UNDECIDED, Reason.UNDECLARED_CONTACT)
+    assert f"b passes through itself from roll {scene.stages[0].stations[1]:g} on" in verdict.because

@@ -16,7 +16,7 @@ from comparisons.bench.standings import TARGETS, ratios, seconds_at, standings
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
-from comparisons.plain import text_of
+from comparisons.writing import text_of
 from cprbm_scene import Ending, Mistake, SceneError
 from cprbm_scene.frozendict import frozendict
 from tests.verdict.made_up import MadeUp

@@ -10,11 +10,10 @@ import pytest
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
-from comparisons.plain import text_of
 from comparisons.store import AnswerMemory
-from comparisons.studies.budget import Budget, account_of
+from comparisons.studies.budget import Budget, account_of, inner_edge_factor
 from comparisons.studies.budget_section import LOOKS, budget_figures, budget_table, data_of, sentences_of
-from comparisons.studies.curved_beam import inner_edge_factor
+from comparisons.writing import text_of
 from cprbm_scene import Ending, Stage
 from tests.verdict.made_up import MadeUp
 

@@ -10,12 +10,12 @@ from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.cli.main import run
+from comparisons.opinions import contact_model
 from comparisons.pairing import Solvers, paired
 from comparisons.present.answer_tables import answer_tables, branch_table
 from comparisons.present.case_tables import case_sections
 from comparisons.present.row_tables import paper_table
-from comparisons.third import contact_model
-from comparisons.verdict.station_events import NO_EVENTS
+from comparisons.verdict.events import NO_EVENTS
 from cprbm_scene import Ending
 from cprbm_scene.frozendict import frozendict
 from tests.tables import tables_of

@@ -4,7 +4,7 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.claims import claim_of
+from comparisons.opinions import claim_of
 from comparisons.pairing import paired
 from comparisons.verdict.rows import rows_of
 from cprbm_scene import SceneError

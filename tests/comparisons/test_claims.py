@@ -7,8 +7,8 @@ import pytest
 
 from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.claims import claim_difference, claim_met, claim_of, standings
 from comparisons.formats import percent
+from comparisons.opinions import claim_difference, claim_met, claim_of, standings
 from comparisons.pairing import paired
 from comparisons.present import json_document
 from comparisons.verdict.rows import Row

@@ -11,15 +11,15 @@ import pytest
 
 import comparisons
 import cprbm
-from comparisons import cases, display_units
+from comparisons import cases, formats
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers, paired
-from comparisons.plain import plain, text_of
 from comparisons.present import json_document
 from comparisons.present.answer_tables import answer_tables
 from comparisons.present.csv_table import contact_csv, csv_of, numbers
+from comparisons.writing import plain, text_of
 from cprbm_scene import Answer, Certificate, Ending, Scene, StationAnswer, scene_from
 from tests.robustness.toml import toml_of
 from tests.verdict.made_up import CERTIFICATE, MadeUp
@@ -196,19 +196,19 @@ def test_contact_forces_sum_up_to_the_resultant_of_the_probe(wrapped):
     ],
 )
 def test_a_stated_unit_has_no_prefix_by_size(scene, unit, size, factor, name):
-    assert display_units.display_unit(scene, unit, size) == (pytest.approx(factor, rel=1e-15), name)
+    assert formats.display_unit(scene, unit, size) == (pytest.approx(factor, rel=1e-15), name)
 
 
 def test_without_a_stated_unit_a_table_has_one_prefix_for_the_largest_value(hinge):
     sizes = [("m", 0.02), ("m", 3e-6), ("Pa", 2e7), ("rad", 0.1)]
-    assert display_units.display_units(hinge, sizes) == {"m": (1e-3, "mm"), "Pa": (1e6, "MPa"), "rad": (1.0, "rad")}
+    assert formats.display_units(hinge, sizes) == {"m": (1e-3, "mm"), "Pa": (1e6, "MPa"), "rad": (1.0, "rad")}
 
 
 def test_units_are_no_part_of_the_question(scene):
     in_si = Scene(**dict(scene))
     assert in_si == scene
-    assert display_units.load_text(in_si, "bend", math.radians(45.0)) == "0.785398 rad (45.00°)"
-    assert display_units.load_text(scene, "bend", math.radians(45.0)) == "45°"
+    assert formats.load_text(in_si, "bend", math.radians(45.0)) == "0.785398 rad (45.00°)"
+    assert formats.load_text(scene, "bend", math.radians(45.0)) == "45°"
 
 
 def test_tables_and_files_are_in_the_units_of_the_scene(scene, bent):

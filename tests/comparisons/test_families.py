@@ -9,12 +9,12 @@ import pytest
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.cli.main import run
-from comparisons.crew import ALONE
+from comparisons.executor import ALONE
 from comparisons.pairing import Solvers
-from comparisons.plain import text_of
 from comparisons.studies import convergence
 from comparisons.studies import convergence_tables as tables
 from comparisons.studies.convergence import convergence_of
+from comparisons.writing import text_of
 from cprbm_scene import Ending
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict

@@ -210,7 +210,7 @@ LONG = """
 import os, time
 from pathlib import Path
 from comparisons.choices import Choices
-from comparisons.crew import crew_of
+from comparisons.executor import crew_of
 
 
 def waits(scene, choices):

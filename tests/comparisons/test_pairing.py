@@ -14,8 +14,7 @@ import pytest
 from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.crew import ALONE, crew_of
-from comparisons.executor import WorkerDiedError
+from comparisons.executor import ALONE, WorkerDiedError, crew_of
 from comparisons.pairing import (
     EXACT_LIMIT,
     Solvers,
@@ -28,7 +27,7 @@ from comparisons.pairing import (
     paired,
     solvers_of,
 )
-from comparisons.verdict.words import Word
+from comparisons.verdict import Word
 from cprbm_scene import Critical, Ending, Loss, Mistake, SceneError
 from tests.tables import tables_of
 from tests.verdict.made_up import MadeUp

@@ -16,7 +16,6 @@ from comparisons import reactions as module
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.plain import text_of
 from comparisons.present import curves, json_document
 from comparisons.present.case_tables import summary
 from comparisons.reactions import (
@@ -28,6 +27,7 @@ from comparisons.reactions import (
     perturbed_scene,
     reactions,
 )
+from comparisons.writing import text_of
 from cprbm_scene import Ending, Stage
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.freedoms import unit

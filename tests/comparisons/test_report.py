@@ -19,8 +19,8 @@ from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
 from comparisons.present import page, stepper
 from comparisons.present.columns import Section
 from comparisons.studies import report
+from comparisons.verdict import Word
 from comparisons.verdict.runs import Runs
-from comparisons.verdict.words import Word
 from comparisons.writing import write
 from cprbm_scene import Mistake, SceneError
 from tests.comparisons.killed import QUESTION

@@ -13,14 +13,14 @@ from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.cli.main import commands, run
 from comparisons.cli.options import tolerance
-from comparisons.crew import ALONE
+from comparisons.executor import ALONE
+from comparisons.opinions import solid_limit
 from comparisons.pairing import Solvers, solid_answer, solvers_of
-from comparisons.third import solid_limit
 from comparisons.tolerances.limits import limits_of
 from comparisons.tolerances.search import LARGEST, runs_within, solve_within
+from comparisons.verdict import Word
 from comparisons.verdict.rows import rows_of
 from comparisons.verdict.runs import Runs
-from comparisons.verdict.words import Word
 from cprbm_scene import Ending, Probe
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict

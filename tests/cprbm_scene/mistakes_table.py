@@ -84,7 +84,6 @@ SECTIONS["references of the hinge"] = (
         ("contacts/contact/between", ["beam1", "beam3"], "contacts.contact.between[1]", "names no beam"),
         ("stages/0/steps", "N", "names no load"),
         ("may_cross", [["beam1", "beam3"]], "may_cross[0][1]", "a beam or contact with a rigid edge: 'beam1', 'beam2'"),
-        ("may_cross", [["beam1", "beam1"]], "may_cross[0]", "two different names"),
         ("drives", {"D": {"kind": "rotation", "body": "BD", "from": "loud"}}, "drives.D.from", "is 'load' meant"),
         ("stages/0/steps", ["M", "F"], "stages[0].steps[1]", "names no load"),
         ("stages/0/steps", ["M", "M"], "different loads, each once"),

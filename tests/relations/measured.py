@@ -5,7 +5,7 @@ symbol  meaning
 ======  ==============================================================================================
 v, w    a probe's value at a station, in the answer to the scene and in that to the image
 v′      what v is in the image
-c       the probe's scale in the stage in the image, :mod:`comparisons.verdict.scales`
+c       the probe's scale in the stage in the image, :mod:`comparisons.quantities`
 e       |w − v′|/c, the violation
 r       residual or its floor by the certificate of the image's station
 u, u′   the uncertainties of v and w on their discretisations, :mod:`tests.relations.uncertain`
@@ -25,11 +25,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.crew import Solver
-from comparisons.quantities import arc_lengths, norm
+from comparisons.executor import Solver
+from comparisons.quantities import arc_lengths, norm, probe_scales
 from comparisons.stations import station_of
 from comparisons.verdict.point_forces import away_from_point_forces
-from comparisons.verdict.scales import probe_scales
 from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer, scene_from
 from cprbm_scene.answer import Array, Flags
 from cprbm_scene.statement import STRESSES

@@ -8,7 +8,7 @@ from itertools import chain
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.crew import Solver
+from comparisons.executor import Solver
 from comparisons.pairing import Solvers
 from cprbm_scene import SceneError
 from tests.relations.image import Data

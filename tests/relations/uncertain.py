@@ -13,11 +13,10 @@ from functools import cached_property
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.crew import Solver
-from comparisons.quantities import arc_lengths, norm
+from comparisons.executor import Solver
+from comparisons.quantities import arc_lengths, norm, probe_scales
 from comparisons.stations import station_of
 from comparisons.verdict.point_forces import away_from_point_forces
-from comparisons.verdict.scales import probe_scales
 from comparisons.verdict.uncertainty import error, largest
 from cprbm_scene import Answer, Probe, Scene, StationAnswer
 from cprbm_scene.answer import Array

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.crew import Solver
+from comparisons.executor import Solver
 from comparisons.pairing import Solvers
 from cprbm_scene import Answer, Ending, Mistake, Scene, SceneError
 from tests.cprbm.scenes import cantilever_data, force

@@ -32,13 +32,11 @@ from comparisons.choices import Choices
 from comparisons.formats import number
 from comparisons.pairing import Solvers, paired
 from comparisons.quantities import norm
-from comparisons.stations import station_of
-from comparisons.verdict.bounds import Bounds
+from comparisons.stations import ends_at_critical, problems, station_of
+from comparisons.verdict import Word
 from comparisons.verdict.calibration import EXACT_FACTOR, true_errors
-from comparisons.verdict.completeness import ends_at_critical, problems
 from comparisons.verdict.rows import Row
-from comparisons.verdict.runs import Runs
-from comparisons.verdict.words import Word
+from comparisons.verdict.runs import Bounds, Runs
 from cprbm_scene import Answer, Scene, SceneError
 from tests.robustness.auditing import Auditing
 from tests.robustness.outcomes import Outcome, Way

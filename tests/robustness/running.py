@@ -9,8 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from comparisons.pairing import Solvers
-from comparisons.plain import Plain
-from comparisons.writing import write
+from comparisons.writing import Plain, write
 from cprbm_scene import Scene, SceneError, scene_from
 from tests.robustness.drawing import Drawn, drawn
 from tests.robustness.judging import Effort, judged

@@ -7,7 +7,7 @@ import pytest
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer, paired, solvers_of
-from comparisons.verdict.words import Word
+from comparisons.verdict import Word
 from cprbm_scene import Scene
 from tests.scenes.rare_scenes import ASKED, scene
 from tests.together.planted import asked_of, stiffer, without_contact

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from comparisons.choices import Choices
-from comparisons.crew import Solver
+from comparisons.executor import Solver
 from comparisons.pairing import Solvers
 from comparisons.verdict.runs import Runs
 from cprbm_scene import Answer, Scene

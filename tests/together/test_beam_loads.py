@@ -15,7 +15,7 @@ from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.quantities import load_unit
-from comparisons.verdict.words import Reason
+from comparisons.verdict import Reason
 from cprbm_scene import Ending, Loss, scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, cantilever_data
 from tests.elastica_reference.scenes import case

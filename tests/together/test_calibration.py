@@ -17,11 +17,11 @@ import pytest
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.plain import text_of
 from comparisons.studies.calibration import Calibration, Trial, result_of, tallies, trial_of
+from comparisons.verdict import Word
 from comparisons.verdict.calibration import Tally
 from comparisons.verdict.rows import rows_of
-from comparisons.verdict.words import Word
+from comparisons.writing import text_of
 from cprbm_scene import scene_from
 from tests.together import truths
 

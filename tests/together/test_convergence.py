@@ -14,7 +14,7 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.crew import ALONE
+from comparisons.executor import ALONE
 from comparisons.pairing import Solvers
 from comparisons.studies.convergence import Convergence, convergence_of
 from comparisons.studies.convergence_tables import pairs_of

@@ -9,9 +9,8 @@ from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, cprbm_answer, paired
 from comparisons.present.curves import curve_figures
-from comparisons.quantities import load_unit
-from comparisons.verdict.scales import natural_value
-from comparisons.verdict.words import Reason, Word
+from comparisons.quantities import load_unit, natural_value
+from comparisons.verdict import Reason, Word
 from tests.cprbm.driven import driven_hinge
 from tests.together.driven import GAP, gripper_like, punched, snapping
 

@@ -31,11 +31,11 @@ import fea_reference.model
 from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.crew import Solver
+from comparisons.executor import Solver
 from comparisons.geometry import length, points
 from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
+from comparisons.verdict import Word
 from comparisons.verdict.runs import Runs
-from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Arc, BeamContact, CircleContact, Ending, Polynomial, Probe, Scene, StationAnswer
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict

@@ -12,9 +12,9 @@ import cprbm
 from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.crew import crew_of
+from comparisons.executor import crew_of
 from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
-from comparisons.verdict.words import Word
+from comparisons.verdict import Word
 from cprbm_scene import Scene
 from tests.together.planted import COARSE, without_contact
 

@@ -10,8 +10,8 @@ from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import fea_answer
 from comparisons.stations import station_of
+from comparisons.verdict import Word
 from comparisons.verdict.rows import rows_of
-from comparisons.verdict.words import Word
 
 
 @pytest.fixture(scope="module")

@@ -10,8 +10,8 @@ import pytest
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
+from comparisons.verdict import Word
 from comparisons.verdict.rows import rows_of
-from comparisons.verdict.words import Word
 from tests.cprbm.scenes import hinge
 from tests.references import hinge as exact
 

@@ -5,10 +5,10 @@ import pytest
 
 from comparisons.case import compare
 from comparisons.choices import Choices
+from comparisons.opinions import solid_sentence, thirds_of
 from comparisons.pairing import Solvers, paired, with_solid
 from comparisons.present.json_document import comparison
 from comparisons.present.row_tables import solid_table
-from comparisons.third import sentence, thirds_of
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
 
 
@@ -43,8 +43,8 @@ def test_three_columns_are_told(thick):
     sheet = solid_table(thick)
     assert {"CPRBM", "FEA", "solid"} <= set(sheet.headers)
     assert len(sheet.rows) == 2
-    assert "in bending (finite elements)" in sentence(thick)
-    assert "in shear (CPRBM)" in sentence(thick)
+    assert "in bending (finite elements)" in solid_sentence(thick)
+    assert "in shear (CPRBM)" in solid_sentence(thick)
     document = comparison(thick)
     assert document["solvers"]["solid"]["ending"] == "COMPLETED"
     assert {row["probe"] for row in document["solid"]} == {"tip.displacement", "beam.bending_stress"}

@@ -15,11 +15,10 @@ import pytest
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers
-from comparisons.quantities import arc_lengths, norm
+from comparisons.quantities import arc_lengths, denominator, norm, probe_scales
 from comparisons.stations import station_of
 from comparisons.tolerances.search import solve_within
 from comparisons.verdict.point_forces import away_from_point_forces
-from comparisons.verdict.scales import denominator, probe_scales
 from cprbm_scene import Answer, Scene
 from tests.references import hinge as exact
 from tests.together.test_tapered import FORCE, LENGTH, scene_of

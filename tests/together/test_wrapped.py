@@ -7,7 +7,7 @@ from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict.words import Word
+from comparisons.verdict import Word
 from tests.references.wrapped import Wrapped
 
 

@@ -26,10 +26,10 @@ import cprbm.chain.beam
 from comparisons import cases
 from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
-from comparisons.crew import Solver
+from comparisons.executor import Solver
 from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
+from comparisons.verdict import Word
 from comparisons.verdict.runs import Runs
-from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict

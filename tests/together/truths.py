@@ -13,7 +13,7 @@ import numpy as np
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.crew import Solver
+from comparisons.executor import Solver
 from comparisons.geometry import length, points
 from cprbm_scene import Answer, Certificate, Ending, Probe, Scene, Shape, StationAnswer, scene_from
 from cprbm_scene.answer import frozen_array

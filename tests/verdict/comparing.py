@@ -10,7 +10,7 @@ import numpy as np
 
 from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
-from comparisons.crew import Solver
+from comparisons.executor import Solver
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict.rows import Row
 from cprbm_scene import Answer, Ending, Scene, StationAnswer

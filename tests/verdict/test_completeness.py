@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from comparisons.choices import Choices
-from comparisons.verdict.completeness import complete_stations, problems
+from comparisons.stations import complete_stations, problems
 from cprbm_scene import Ending, Probe
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict

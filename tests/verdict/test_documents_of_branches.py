@@ -12,14 +12,14 @@ import pytest
 
 from comparisons.answer_file import packed, unpacked
 from comparisons.choices import Choices
-from comparisons.claims import standings
-from comparisons.crew import ALONE
+from comparisons.executor import ALONE
+from comparisons.opinions import standings
 from comparisons.pairing import Solvers
-from comparisons.plain import text_of
 from comparisons.present import json_document
 from comparisons.present.answer_tables import answer_tables
 from comparisons.studies import convergence_tables as tables
 from comparisons.studies.convergence import convergence_of
+from comparisons.writing import text_of
 from cprbm_scene import Claim, Loss
 from tests.tables import tables_of
 from tests.verdict.comparing import compared

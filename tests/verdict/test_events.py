@@ -12,11 +12,9 @@ import pytest
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.stations import begins_at, event_tolerance, span_of
-from comparisons.verdict.events import critical_rows
-from comparisons.verdict.runs import Runs
-from comparisons.verdict.runs_table import RunsTable
-from comparisons.verdict.station_events import Place
-from comparisons.verdict.words import Word
+from comparisons.verdict import Word
+from comparisons.verdict.events import Place, critical_rows
+from comparisons.verdict.runs import Runs, RunsTable
 from cprbm_scene import Answer, Critical, Ending, Loss, Stage
 from cprbm_scene.frozendict import frozendict
 from tests.verdict.comparing import altered, compared, counted, ending, only, opened, said_of, word_of

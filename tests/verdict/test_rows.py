@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from comparisons.choices import Choices
+from comparisons.opinions import contact_model
 from comparisons.pairing import Solvers, paired
-from comparisons.third import contact_model
 from comparisons.verdict.rows import rows_of
 from cprbm_scene import Mistake, Probe, SceneError, Stage
 from tests.verdict.comparing import altered, compared, counted, ending, only, row_of, said_of, word_of

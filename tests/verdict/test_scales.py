@@ -12,8 +12,8 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
+from comparisons.quantities import probe_scales
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources, zone_ends
-from comparisons.verdict.scales import probe_scales
 from cprbm_scene import Probe, Stage
 from cprbm_scene.answer import PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from comparisons.choices import Choices
-from cprbm_scene import Ending
+from cprbm_scene import Ending, Loss
 from tests.verdict.comparing import altered, compared, ending, only, word_of
 from tests.verdict.jumping import Jumping
 from tests.verdict.made_up import MadeUp, with_value
@@ -89,3 +89,37 @@ def test_a_critical_point_is_told_in_degrees_with_its_mechanism(crank):
         "The branch ends in forward at 1.2288 rad (70.41°) (stopB: fold) in the CPRBM and 1.2287 rad"
     )
     assert "0.0043° apart against a stated 0.0091°, 0.30° allowed; the theories are 0.029° apart: AGREE." in first
+
+
+def test_runs_of_one_solver_that_disagree_on_a_mechanism_are_named(crank):
+    """All runs stop at one critical point, which one run of the finite elements names a bifurcation."""
+    stops = Jumping("fea", stops=True)
+    fea = only(stops, replace(stops, loss=Loss.BIFURCATION), lambda choices: choices.elements == 91)
+    found = compared(crank, Jumping("cprbm", stops=True), fea)
+    assert word_of(found) == "UNDECIDED BRANCH"
+    assert "bifurcation in fea beside)" in found.verdict.because
+    assert "fold in cprbm, cprbm finer, fea, fea finer, cprbm beside; " in found.verdict.because
+    assert "Runs without a complete answer" not in found.verdict.sentence
+
+
+def test_a_run_that_ends_where_the_other_goes_on_makes_no_agreement(crank):
+    """The CPRBM stops at a critical point on which both solvers agree; the finite elements go on."""
+    stops = Jumping("cprbm", stops=True)
+
+    def first_stage_alone(scene, choices):
+        found = Jumping("fea")(scene, choices)
+        return replace(found, critical=found.critical[:1])
+
+    found = compared(crank, stops, first_stage_alone)
+    assert found.verdict.word.value != "AGREE"
+    assert not found.verdict.completed
+
+
+def test_a_passed_critical_point_stands_beside_the_critical_point_of_the_other_solver(crank):
+    fea = Jumping("fea", stops=True, loss=Loss.BIFURCATION)
+    found = compared(crank, Jumping("cprbm", over=0.29), fea)
+    assert word_of(found) == "DIFFER EVENTS"
+    assert found.verdict.because.startswith(
+        "The branch ends in forward at nowhere in the CPRBM, which passed 1.2288 rad"
+    )
+    assert "(fold) and went on, and 1.2287 rad (70.40°) (bifurcation) in the finite elements" in found.verdict.because

@@ -13,11 +13,10 @@ from comparisons.audit import audit
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict.bounds import Bounds
+from comparisons.verdict import Reason, Word, worst_of
 from comparisons.verdict.judge import judge_case, judge_rows
 from comparisons.verdict.rows import Row
-from comparisons.verdict.runs_table import RunsTable
-from comparisons.verdict.words import Reason, Word, worst_of
+from comparisons.verdict.runs import Bounds, RunsTable
 from cprbm_scene import Probe, Stage
 from cprbm_scene.answer import PointForces, frozen_array
 from tests.verdict.comparing import altered, compared, counted, only, opened, row_of, said_of, word_of

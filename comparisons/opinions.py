@@ -1,4 +1,11 @@
-"""Further opinions beside a row, on which no word of the verdict rests: a solid, and another formulation of contact.
+"""Opinions beside rows, on which no word of the verdict rests: claims of the source, a solid, another formulation.
+
+*Claims* of the scene's source are met or not, station by station and as a whole.  A source divides a difference of a
+force or a moment by the value at the station; a row divides by the largest value of the stage.  A claim is therefore
+compared with the difference over the reference's own norm, unless this norm vanishes.  A claim with a value is compared
+with the distance of the CPRBM from this value.
+
+*Solid.*
 
 ======  ==========================================================================================
 symbol  meaning
@@ -8,7 +15,6 @@ u       stated uncertainty of x, the largest over the probe's stations in the st
 ======  ==========================================================================================
 
 The distance of a beam theory from x is the error of the theory, as far as u and the uncertainties of the solvers allow.
-
 Away from corners quadrilaterals of second order converge with the fourth power of the element's size.  At the corner of
 a face that is held the stress has no bound, and displacements converge with an order of about 1.5 (M. L. Williams,
 Stress singularities resulting from various boundary conditions in angular corners of plates in extension, J. Appl.
@@ -26,15 +32,95 @@ import numpy as np
 
 from comparisons.case import Comparison
 from comparisons.formats import percent
-from comparisons.quantities import norm
+from comparisons.quantities import VANISHING, norm
 from comparisons.stations import find_station, station_of
+from comparisons.verdict.events import CriticalRow
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs import Runs
 from comparisons.verdict.uncertainty import GRIDS, Limit, largest, limit
-from cprbm_scene import Answer, Scene, StationAnswer
+from cprbm_scene import Answer, Claim, Scene, StationAnswer
 from cprbm_scene.answer import Array, Flags
-from cprbm_scene.statement import STRESSES
+from cprbm_scene.statement import CRITICAL, STRESSES
+
+_OF_THE_VALUE = frozenset({"force", "reaction", "reaction_moment"})
+"""Quantities with claims on the share of the value itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """A claim beside all its stations.
+
+    Attributes:
+        claim: the claim.
+        worst: the row, or the critical value, with the largest difference.
+        difference: the largest difference, a fraction.
+        met: stations with a smaller difference than the claimed bound.
+        stations: all stations with a value of both sides.
+    """
+
+    claim: Claim
+    worst: Row | CriticalRow
+    difference: float
+    met: int
+    stations: int
+
+    @property
+    def holds(self) -> bool:
+        """Whether the claim is met at every station."""
+        return self.met == self.stations
+
+
+def claim_of(scene: Scene, row: Row | CriticalRow) -> Claim | None:
+    """The claim about a station, or about a stage with a critical value, otherwise about all; None without a claim."""
+    place = "stage" if isinstance(row, CriticalRow) else "station"
+    about = [claim for claim in scene.claims if _is_about(claim, row)]
+    return min(about, key=lambda claim: getattr(claim, place) is None, default=None)
+
+
+def _is_about(claim: Claim, row: Row | CriticalRow) -> bool:
+    """Whether a claim is about a row; without a station the claim is about all stations of the probe."""
+    if isinstance(row, CriticalRow):
+        return claim.probe == CRITICAL and row.place == 0 and claim.in_stage(row.stage)
+    return claim.probe == row.probe.name and claim.speaks_of(row.stage, row.station)
+
+
+def claim_difference(row: Row) -> float | None:
+    """Difference of the solvers as a source states differences, a fraction; None without a divisor."""
+    own = norm(row.probe.quantity, row.fea)
+    of_the_value = row.probe.quantity in _OF_THE_VALUE and own >= VANISHING * row.scale
+    return (replace(row, denominator=own) if of_the_value else row).fraction(row.difference)
+
+
+def claimed_difference(claim: Claim, row: Row | CriticalRow) -> float | None:
+    """Difference from a claimed value, otherwise between the solvers, a fraction; None without such a difference."""
+    if isinstance(row, CriticalRow):
+        reference = row.fea.value if claim.value is None and row.fea is not None else claim.value
+        if row.cprbm is None or reference is None:
+            return None
+        return abs(row.cprbm.value - reference) / (abs(reference) or row.span)
+    if claim.value is None:
+        return claim_difference(row)
+    return abs(float(row.cprbm[0]) - claim.value) / (abs(claim.value) or row.scale) if row.cprbm.size == 1 else None
+
+
+def claim_met(claim: Claim | None, row: Row | CriticalRow) -> bool | None:
+    """Whether the difference stays below the claimed bound; None without a claim or a difference."""
+    found = None if claim is None else claimed_difference(claim, row)
+    return None if claim is None or found is None else found <= claim.bound
+
+
+def standings(scene: Scene, rows: Sequence[Row], criticals: Sequence[CriticalRow] = ()) -> tuple[Standing, ...]:
+    """Every claim with a row or critical value, in the scene's order."""
+    found: list[Standing] = []
+    for claim in scene.claims:
+        about: list[Row | CriticalRow] = [row for row in rows if _is_about(claim, row)]
+        about += (row for row in criticals if _is_about(claim, row))
+        mine = [(off, row) for row in about if (off := claimed_difference(claim, row)) is not None]
+        if mine:
+            off, worst = max(mine, key=lambda each: each[0])
+            found.append(Standing(claim, worst, off, sum(each <= claim.bound for each, _ in mine), len(mine)))
+    return tuple(found)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +197,7 @@ def thirds_of(compared: Comparison) -> tuple[Third, ...]:
     return tuple(replace(one, uncertainty=widest[one.row.probe.name, one.row.stage]) for one in found)
 
 
-def sentence(compared: Comparison) -> str:
+def solid_sentence(compared: Comparison) -> str:
     """Largest distances from the solid at the last station with a displacement or a rotation; empty without a solid."""
     runs = compared.runs
     if runs.solid is None:
