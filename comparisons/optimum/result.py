@@ -3,64 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from math import isfinite
-from typing import Any
+from math import nan
 
 from comparisons.formats import number
-from comparisons.optimum.problem import Problem
-from comparisons.optimum.search import End, PointSolver
-from comparisons.present.columns import NOTHING, Section, Table
+from comparisons.optimum.search import Optimum, Problem
+from comparisons.plain import Plain, plain
+from comparisons.present.columns import Section, Table
 from comparisons.sweeps.demands import Measure
 from comparisons.sweeps.outcome import Outcome
-from comparisons.sweeps.points import Point
+from comparisons.sweeps.points import Point, place_text
 
 _SAME = 1e-3
 """Distance over the range of two ends of starts that count as a point."""
-
-
-@dataclass(frozen=True, slots=True)
-class Optimum:
-    """Ends of all starts, the best first, and the check of the best.
-
-    Attributes:
-        problem: scene, ranges, goal and limits.
-        ends: of the starts.
-        finer: outcome of the best end at twice the links.
-        compared: outcome of the comparison of both solvers at the best end.
-    """
-
-    problem: Problem
-    ends: tuple[End, ...]
-    finer: Outcome
-    compared: Outcome
-
-    @property
-    def best(self) -> End:
-        """The best end."""
-        return self.ends[0]
-
-    @property
-    def doubt(self) -> str:
-        """Why the best end is no optimum; empty for an optimum."""
-        if not self.best.feasible:
-            return "no start met all limits"
-        if not self.best.settled:
-            return "the number of solves ran out"
-        if not self.finer.completed:
-            return f"twice the links end with {self.finer.ending}"
-        verdict = self.compared.verdict or self.compared.ending
-        return "" if verdict == "AGREE" else f"both solvers: {verdict} {self.compared.reason}".rstrip()
-
-
-def optimum(problem: Problem, ends: list[End], solver: PointSolver) -> Optimum:
-    """The check of the best of ``ends``.
-
-    Raises:
-        OSError: the journal cannot be written.
-    """
-    best = ends[0].point
-    return Optimum(problem, tuple(ends), solver.outcome(best, finer=True), solver.outcome(best, "compare"))
 
 
 def result_of(found: Optimum) -> Section:
@@ -80,7 +34,7 @@ def _sentences(found: Optimum) -> Iterator[str]:
     name = "an optimum" if not found.doubt else "the best point, no optimum"
     aim = problem.goal.aim if problem.goal.value is None else f"reach {problem.measure.text(problem.goal.value)}"
     value = f"{aim} {problem.measure}: {problem.measure.text(best.number)}"
-    yield f"{problem.scene.name}: {name} at {_text(problem, best.point)}. {value[0].upper()}{value[1:]}."
+    yield f"{problem.scene.name}: {name} at {place_text(problem.axes, best.point)}. {value[0].upper()}{value[1:]}."
     if found.doubt:
         yield f"The point is no optimum: {found.doubt}. {found.compared.sentence}".rstrip()
     same = sum(each.feasible and _near(problem, each.point, best.point) for each in found.ends)
@@ -91,10 +45,6 @@ def _sentences(found: Optimum) -> Iterator[str]:
     )
 
 
-def _text(problem: Problem, point: Point) -> str:
-    return ", ".join(axis.text(point[axis.name]) for axis in problem.axes)
-
-
 def _near(problem: Problem, one: Point, other: Point) -> bool:
     return all(abs(one[a.name] - other[a.name]) <= _SAME * abs(a.high - a.low) for a in problem.axes)
 
@@ -103,8 +53,8 @@ def _starts_table(found: Optimum) -> Table:
     problem = found.problem
     rows = tuple(
         (
-            _text(problem, each.begun),
-            _text(problem, each.point),
+            place_text(problem.axes, each.begun),
+            place_text(problem.axes, each.point),
             number(each.number, 6),
             "met" if each.feasible else "not met",
             str(each.solves),
@@ -119,7 +69,7 @@ def _starts_table(found: Optimum) -> Table:
 def _check_table(found: Optimum) -> Table:
     """Goal and limits at N and 2N links, and by the finite elements."""
     rows = tuple(
-        (name, measure.unit, *(number(value, 6) if isfinite(value) else NOTHING for value in _checked(found, measure)))
+        (name, measure.unit, *(number(value, 6) for value in _checked(found, measure)))
         for name, measure in _numbers(found.problem).items()
     )
     return Table("Best point, checked", ("number", "unit", "CPRBM", "at 2N", "FEA"), rows)
@@ -134,28 +84,26 @@ def _checked(found: Optimum, measure: Measure) -> tuple[float, float, float]:
     """Largest value of a number at N, at 2N and by the finite elements; NaN without a value."""
     fea = [{**each, "value": each["fea"]} for each in found.compared.numbers if each.get("fea") is not None]
     outcomes = found.best.outcome, found.finer, Outcome("fea", "COMPLETED", "", numbers=tuple(fea))
-    first, second, third = (max(measure.values(each), key=abs, default=float("nan")) for each in outcomes)
+    first, second, third = (max(measure.values(each), key=abs, default=nan) for each in outcomes)
     return first, second, third
 
 
-def _data(found: Optimum) -> dict[str, Any]:
+def _data(found: Optimum) -> Plain:
     """Documented JSON; parameters in SI, numbers in the units of the scene's file."""
     problem = found.problem
-
-    def plain(value: float) -> float | None:
-        return value if isfinite(value) else None
-
-    return {
+    goal = {"number": str(problem.measure), "unit": problem.measure.unit, "value": found.best.number}
+    starts = [
+        {"start": each.begun, "end": each.point, "value": each.number, "met": each.feasible, "solves": each.solves}
+        for each in found.ends
+    ]
+    data: Plain = plain({
         "scene": problem.scene.name,
         "optimum": not found.doubt,
         "doubt": found.doubt,
         "verdict": found.compared.verdict,
-        "parameters": dict(found.best.point),
-        "goal": {"number": str(problem.measure), "unit": problem.measure.unit, "value": plain(found.best.number)},
-        "starts": [
-            {"start": dict(each.begun), "end": dict(each.point), "value": plain(each.number), "met": each.feasible,
-             "solves": each.solves}
-            for each in found.ends
-        ],
-        "checked": {name: list(map(plain, _checked(found, each))) for name, each in _numbers(problem).items()},
-    }  # fmt: skip
+        "parameters": found.best.point,
+        "goal": goal,
+        "starts": starts,
+        "checked": {name: _checked(found, each) for name, each in _numbers(problem).items()},
+    })  # fmt: skip
+    return data

@@ -1,4 +1,4 @@
-"""Search for the parameters of a goal within limits: COBYQA of SciPy from several starts.
+"""The search for parameters of a goal within limits: COBYQA of SciPy from several starts, and a check of the best.
 
 ======  ==========================================================================================
 symbol  meaning
@@ -15,24 +15,22 @@ start: the trust region shrinks, and the start goes on elsewhere.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from math import isfinite
+from functools import partial
+from math import isfinite, nan
 from pathlib import Path
 from threading import Lock
 
 import numpy as np
 
-from comparisons.choices import Choices
-from comparisons.optimum.problem import Problem
-from comparisons.pairing import Solvers
+from comparisons.sweeps.demands import Bound, Goal, Measure, bounds_of, measure_of, read_demands
 from comparisons.sweeps.outcome import Asked, Outcome
-from comparisons.sweeps.points import Point
-from comparisons.sweeps.running import Sweep, run, tasks_of
-from comparisons.sweeps.workers import Workers
+from comparisons.sweeps.points import SEED, Axis, Point, in_file_units, ranges_of
+from comparisons.sweeps.running import JOURNAL, Runner, Sweep, known_outcomes, tasks_of
 from comparisons.writing import append_line
-from cprbm_scene import SceneError
+from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.answer import Array
 
 FEASIBLE = 1e-6
@@ -40,6 +38,69 @@ FEASIBLE = 1e-6
 
 _FIRST, _LAST = 0.1, 1e-4
 """First and last radius of the trust region, shares of the ranges."""
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """A scene with ranges of parameters, a goal and limits.
+
+    Attributes:
+        scene: the question.
+        axes: ranges of the parameters.
+        goal: aim and value.
+        measure: the number of the goal.
+        bounds: the limits.
+    """
+
+    scene: Scene
+    axes: tuple[Axis, ...]
+    goal: Goal
+    measure: Measure
+    bounds: tuple[Bound, ...]
+
+    def number(self, outcome: Outcome) -> float:
+        """The number of the goal, of several stations the worst; NaN without a complete answer."""
+        values = self.measure.values(outcome) if outcome.completed else []
+        return max(values, key=self.cost, default=nan)
+
+    def cost(self, number: float) -> float:
+        """The function to minimise, of the number of the goal."""
+        if self.goal.value is not None:
+            return (number - self.goal.value) ** 2
+        return -number if self.goal.aim == "maximise" else number
+
+    def point(self, u: Array) -> Point:
+        """Values of the parameters, SI, at shares ``u`` (d,) of the ranges."""
+        return {axis.name: float(axis.low + x * (axis.high - axis.low)) for axis, x in zip(self.axes, u, strict=True)}
+
+    def starts(self, count: int) -> list[Array]:
+        """Shares (d,) of ``count`` starts: the values of the file, and Sobol points."""
+        from scipy.stats import qmc
+
+        own = [(self.scene.parameters[axis.name].value - axis.low) / (axis.high - axis.low) for axis in self.axes]
+        others = qmc.Sobol(len(own), seed=SEED).random_base2((count - 1).bit_length())
+        return [np.clip(own, 0.0, 1.0), *others[: count - 1]]
+
+
+def problem_of(scene: Scene, axes: Sequence[Axis], file: Path) -> Problem:
+    """The problem with the goal and the limits in a file.
+
+    Args:
+        scene: the question.
+        axes: ranges of parameters; without axes the ranges of the scene.
+        file: with a goal and limits.
+
+    Raises:
+        SceneError: the file is wrong, has no goal, or the scene has no such number or no range.
+    """
+    demands = read_demands(file)
+    if demands.goal is None:
+        raise SceneError([Mistake("goal", "nothing", "[goal] with a probe and an aim", str(file))])
+    varied = in_file_units(scene, axes or ranges_of(scene))
+    if not varied:
+        raise SceneError([Mistake("--vary", "no range", "NAME=FIRST..LAST, or a parameter with a range")])
+    measure = measure_of(scene, demands.goal, "goal", str(file))
+    return Problem(scene, varied, demands.goal, measure, bounds_of(scene, demands, str(file)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,28 +126,54 @@ class End:
 
 
 @dataclass(frozen=True, slots=True)
-class PointSolver:
+class Optimum:
+    """Ends of all starts, the best first, and the check of the best.
+
+    Attributes:
+        problem: scene, ranges, goal and limits.
+        ends: of the starts.
+        finer: outcome of the best end at twice the links.
+        compared: outcome of the comparison of both solvers at the best end.
+    """
+
+    problem: Problem
+    ends: tuple[End, ...]
+    finer: Outcome
+    compared: Outcome
+
+    @property
+    def best(self) -> End:
+        """The best end."""
+        return self.ends[0]
+
+    @property
+    def doubt(self) -> str:
+        """Why the best end is no optimum; empty for an optimum."""
+        if not self.best.feasible:
+            return "no start met all limits"
+        if not self.best.settled:
+            return "the number of solves ran out"
+        if not self.finer.completed:
+            return f"twice the links end with {self.finer.ending}"
+        verdict = self.compared.verdict or self.compared.ending
+        return "" if verdict == "AGREE" else f"both solvers: {verdict} {self.compared.reason}".rstrip()
+
+
+@dataclass(frozen=True, slots=True)
+class _PointSolver:
     """Solver of single points for several threads, with a journal of outcomes.
 
     Attributes:
         problem: scene and ranges.
-        workers: solve the points.
-        choices: how finely, and by which variants.
-        solvers: the functions that answer.
-        limit: time limit per solve, s.
+        runner: solver of the points.
         journal: file of the outcomes.
         known: outcomes by key.
-        moved: called with the number of known outcomes.
     """
 
     problem: Problem
-    workers: Workers
-    choices: Choices
-    solvers: Solvers
-    limit: float
+    runner: Runner
     journal: Path
     known: dict[str, Outcome]
-    moved: Callable[[int], None]
     lock: Lock = field(default_factory=Lock)
 
     def outcome(self, point: Point, asked: Asked = "cprbm", *, finer: bool = False) -> Outcome:
@@ -100,45 +187,46 @@ class PointSolver:
         Raises:
             OSError: the journal cannot be written.
         """
-        scene, choices = self.problem.scene, self.choices.finer() if finer else self.choices
+        scene, runner = self.problem.scene, self.runner
+        choices = runner.choices.finer() if finer else runner.choices
+        alone = Runner(runner.workers, choices, runner.solvers, runner.limit)
         try:
-            tasks = tasks_of(scene, [point], asked, frozenset(), choices)
+            (task,) = tasks_of(scene, [point], asked, frozenset(), choices)
         except SceneError as error:
             return Outcome(asked, "REFUSED", "; ".join(map(str, error.mistakes)))
-        sweep = Sweep(scene, self.problem.axes, tasks, self.known)
-        found = run(sweep, self.workers, choices, self.solvers, self.limit, None).outcomes[tasks[0].key]
+        found = alone.run(Sweep(scene, self.problem.axes, (task,), self.known)).outcomes[task.key]
         with self.lock:
-            if self.known.get(tasks[0].key) != found:
-                self.known[tasks[0].key] = found
-                append_line(self.journal, found.line(tasks[0].key))
-                self.moved(len(self.known))
+            if self.known.get(task.key) != found:
+                self.known[task.key] = found
+                append_line(self.journal, found.line(task.key))
+                runner.moved(len(self.known))
         return found
 
 
-def search(problem: Problem, solver: PointSolver, starts: int, most: int) -> list[End]:
-    """Ends of all starts, the best first: feasible before infeasible ends, then by the goal.
+def optimum(problem: Problem, runner: Runner, starts: int, most: int) -> Optimum:
+    """Ends of all starts, the best first (feasible before infeasible ends, then by the goal), and its check.
 
     Args:
         problem: scene, ranges, goal and limits.
-        solver: of points.
+        runner: solver of points, with a folder for the journal.
         starts: number of starts.
         most: largest number of solves per start.
 
     Raises:
         OSError: the journal cannot be written.
     """
+    assert runner.out is not None
+    solver = _PointSolver(problem, runner, runner.out / JOURNAL, known_outcomes([runner.out]))
     first = problem.number(solver.outcome(problem.point(problem.starts(1)[0])))
-    scale = abs(problem.cost(first)) if isfinite(first) else 1.0
-
-    def end(u: Array) -> End:
-        return _end(problem, solver, u, scale or 1.0, most)
-
+    scale = (abs(problem.cost(first)) if isfinite(first) else 1.0) or 1.0
     with ThreadPoolExecutor(starts) as pool:
-        found = list(pool.map(end, problem.starts(starts)))
-    return sorted(found, key=lambda each: (not each.feasible, problem.cost(each.number) if each.feasible else 0.0))
+        found = list(pool.map(partial(_end, problem, solver, scale, most), problem.starts(starts)))
+    found.sort(key=lambda each: (not each.feasible, problem.cost(each.number) if each.feasible else 0.0))
+    best = found[0].point
+    return Optimum(problem, tuple(found), solver.outcome(best, finer=True), solver.outcome(best, "compare"))
 
 
-def _end(problem: Problem, solver: PointSolver, begun: Array, scale: float, most: int) -> End:
+def _end(problem: Problem, solver: _PointSolver, scale: float, most: int, begun: Array) -> End:
     """End of the start at the shares ``begun`` (d,)."""
     from scipy.optimize import Bounds, NonlinearConstraint, minimize
 
@@ -164,8 +252,8 @@ def _end(problem: Problem, solver: PointSolver, begun: Array, scale: float, most
         constraints=limits,
         options={"initial_tr_radius": _FIRST, "final_tr_radius": _LAST, "maxfev": most},
     )
-    outcome = solver.outcome(problem.point(found.x))
-    feasible = outcome.completed and all(bound.excess(outcome) <= FEASIBLE for bound in problem.bounds)
-    number = problem.number(outcome)
     point = problem.point(found.x)
-    return End(problem.point(begun), point, outcome, number, feasible, len(seen), bool(found.status == 0))
+    outcome = solver.outcome(point)
+    feasible = outcome.completed and all(bound.excess(outcome) <= FEASIBLE for bound in problem.bounds)
+    number, settled = problem.number(outcome), bool(found.status == 0)
+    return End(problem.point(begun), point, outcome, number, feasible, len(seen), settled)

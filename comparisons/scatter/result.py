@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import isfinite
-from typing import Any
 
 from comparisons.formats import number, percent, scaled_unit
+from comparisons.plain import Plain, plain
 from comparisons.present.canvas import BLUE, RED, canvas, finished
 from comparisons.present.columns import Figure, Section, Table
-from comparisons.scatter.statistics import LEVELS, Indices, Interval, quantiles, share
-from comparisons.scatter.study import LEAST, Scatter, values_of
+from comparisons.scatter.study import LEAST, LEVELS, Indices, Interval, Scatter, quantiles, share, values_of
 from comparisons.sweeps.demands import Measure, meets
 
 _PANELS = 6
@@ -115,29 +113,27 @@ def _histograms(scatter: Scatter, chosen: Sequence[Measure]) -> Iterator[Figure]
         yield finished(figure, "scatter", "Numbers of points by value at the last stations. Line: nominal value.")
 
 
-def _data(scatter: Scatter, scattering: Sequence[Measure], found: dict[Measure, Indices]) -> dict[str, Any]:
+def _data(scatter: Scatter, scattering: Sequence[Measure], found: dict[Measure, Indices]) -> Plain:
     """Documented JSON: intervals are lists of value, low and high end; numbers in the units of the scene's file."""
-
-    def plain(interval: Interval) -> list[float | None]:
-        return [each if isfinite(each) else None for each in interval]
-
-    return {
+    numbers = [
+        {
+            "stage": measure.stage,
+            "probe": measure.probe,
+            "component": measure.component,
+            "unit": measure.unit,
+            "nominal": measure.values(scatter.nominal)[0],
+            "quantiles": quantiles(values_of(measure, scatter.standing)),
+            "first": found[measure].first if measure in found else [],
+            "total": found[measure].total if measure in found else [],
+        }
+        for measure in scattering
+    ]
+    data: Plain = plain({
         "scene": scatter.sweep.scene.name,
         "points": len(scatter.sample),
         "parameters": [axis.name for axis in scatter.sweep.axes],
-        "shares": {name: plain(each) for name, each in _shares(scatter).items()},
-        "levels": list(LEVELS),
-        "numbers": [
-            {
-                "stage": measure.stage,
-                "probe": measure.probe,
-                "component": measure.component,
-                "unit": measure.unit,
-                "nominal": measure.values(scatter.nominal)[0],
-                "quantiles": [plain(each) for each in quantiles(values_of(measure, scatter.standing))],
-                "first": [plain(each) for each in found[measure].first] if measure in found else [],
-                "total": [plain(each) for each in found[measure].total] if measure in found else [],
-            }
-            for measure in scattering
-        ],
-    }
+        "shares": _shares(scatter),
+        "levels": LEVELS,
+        "numbers": numbers,
+    })  # fmt: skip
+    return data

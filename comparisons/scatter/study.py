@@ -1,28 +1,162 @@
-"""A study of scatter: its points as a sweep, and values and shares from the outcomes."""
+"""A study of scatter: points drawn from the tolerances of a scene as a sweep, and statistics of the outcomes.
+
+======  ==========================================================================================
+symbol  meaning
+======  ==========================================================================================
+d, n    number of parameters, and number of points in a sample, a power of 2
+A, B    two independent samples (n, d): the columns of a scrambled Sobol sequence in 2 d dimensions
+ABᵢ     the sample A with column i of B, for the indices of parameter i
+f       a number of the answer, a function of the parameters
+Sᵢ      first-order index: the variance of the mean of f for a fixed parameter i, over the variance of f
+Tᵢ      total-order index: the mean of the variance of f with all but parameter i fixed, over the variance of f
+======  ==========================================================================================
+
+Quantiles have the exact binomial interval of independent points; for scrambled Sobol points this interval is cautious.
+Shares have Wilson's interval.  The design and the estimates of the indices are those of Saltelli et al., Computer
+Physics Communications 181 (2010) 259-270, in SciPy; their intervals of 95 % confidence come from resampled rows.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.pairing import Solvers
-from comparisons.scatter.draws import Distribution, drawn
-from comparisons.scatter.statistics import CONSTANT, Indices, indices
 from comparisons.sweeps.demands import Bound, Measure, measures
 from comparisons.sweeps.outcome import Asked, Outcome
-from comparisons.sweeps.points import axes_of, in_file_units
-from comparisons.sweeps.running import Sweep, known_outcomes, run, tasks_of
-from comparisons.sweeps.workers import Workers
-from cprbm_scene import Scene
+from comparisons.sweeps.points import SEED, axes_of, in_file_units
+from comparisons.sweeps.running import Sweep, tasks_of
+from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.answer import Array
+
+LEVELS = (0.025, 0.5, 0.975)
+"""Probabilities of the quantiles."""
 
 LEAST = 16
 """Least number of rows for indices."""
+
+CONSTANT = 1e-9
+"""Standard deviation below which a number is constant, over the largest magnitude of its unit: round-off of answers."""
+
+_CONFIDENCE = 0.95
+_RESAMPLES = 400
+_EDGE = 2.0**-32
+"""Distance of a share from 0 and 1, where a normal distribution is infinite; Sobol points have 30 bits."""
+
+
+class Distribution(Protocol):
+    """Distribution of a parameter, such as a frozen distribution of :mod:`scipy.stats`."""
+
+    def ppf(self, q: Array) -> Array:
+        """Values, SI, below which the parameter lies with the probabilities ``q``."""
+
+
+def distributions_of(scene: Scene) -> dict[str, Distribution]:
+    """Distributions of the parameters with a tolerance.
+
+    Raises:
+        SceneError: no parameter has a tolerance.
+    """
+    from scipy.stats import norm, uniform
+
+    found: dict[str, Distribution] = {}
+    for name, parameter in scene.parameters.items():
+        scatter = parameter.tolerance
+        if scatter is not None and scatter.normal is not None:
+            found[name] = norm(parameter.value, scatter.normal)
+        elif scatter is not None and scatter.uniform is not None:
+            found[name] = uniform(parameter.value - scatter.uniform, 2.0 * scatter.uniform)
+    if not found:
+        allowed = "a parameter with a tolerance, as t = { value = 2.0, unit = 'mm', tolerance = { normal = 0.02 } }"
+        raise SceneError([Mistake("parameters", "no tolerance", allowed, scene.file)])
+    return found
+
+
+def drawn(distributions: Mapping[str, Distribution], count: int, *, indices: bool) -> Array:
+    """Values (k, d) of d parameters, SI: a sample of ``count`` points, or with ``indices`` A, B, AB₁, ... AB_d.
+
+    Raises:
+        SceneError: indices of a single parameter.
+    """
+    from scipy.stats import qmc
+
+    size = len(distributions)
+    if indices and size < 2:
+        raise SceneError([Mistake("--sobol", "one parameter with a tolerance", "two or more: the index of one is 1")])
+    samples = 2 if indices else 1
+    shares = qmc.Sobol(samples * size, seed=SEED).random_base2(count.bit_length() - 1)
+    shares = np.clip(shares, _EDGE, 1.0 - _EDGE)
+    own = [*distributions.values()] * samples
+    columns = [each.ppf(column) for each, column in zip(own, shares.T, strict=True)]
+    if not indices:
+        return np.column_stack(columns)
+    a, b = columns[:size], columns[size:]
+    mixed = ([*a[:i], b[i], *a[i + 1 :]] for i in range(size))
+    return np.concatenate([np.column_stack(each) for each in (a, b, *mixed)])
+
+
+class Interval(NamedTuple):
+    """An estimate and the ends of its interval; NaN where the sample is too small for an end."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class Indices:
+    """First- and total-order indices by parameter."""
+
+    first: tuple[Interval, ...]
+    total: tuple[Interval, ...]
+
+
+def quantiles(values: Array) -> tuple[Interval, ...]:
+    """Quantiles of ``values`` (n,) at ``LEVELS``."""
+    from scipy.stats import quantile_test
+
+    found = []
+    for level in LEVELS:
+        ends = quantile_test(values, p=level).confidence_interval(_CONFIDENCE)
+        found.append(Interval(float(np.quantile(values, level)), float(ends.low), float(ends.high)))
+    return tuple(found)
+
+
+def share(count: int, whole: int) -> Interval:
+    """``count`` over ``whole``."""
+    from scipy.stats import binomtest
+
+    ends = binomtest(count, whole).proportion_ci(_CONFIDENCE, method="wilson")
+    return Interval(count / whole, float(ends.low), float(ends.high))
+
+
+def indices(values: Array) -> Indices:
+    """Indices of d parameters.
+
+    Args:
+        values: (d + 2, n) values of f at A, B, AB₁, ... AB_d; n is a power of 2.
+    """
+    count = values.shape[1]
+    rows = np.random.default_rng(SEED).integers(count, size=(_RESAMPLES, count))
+    estimate = _estimates(values)
+    low, high = np.quantile([_estimates(values[:, row]) for row in rows], [0.025, 0.975], axis=0)
+    first, total = (
+        tuple(map(Interval, *(each[order].tolist() for each in (estimate, low, high)))) for order in range(2)
+    )
+    return Indices(first, total)
+
+
+def _estimates(values: Array) -> Array:
+    """Estimates (2, d) of the first- and total-order indices."""
+    from scipy.stats import sobol_indices
+
+    functions = {"f_A": values[None, 0], "f_B": values[None, 1], "f_AB": values[2:, None]}
+    found = sobol_indices(func=functions, n=values.shape[1])
+    return np.array([found.first_order, found.total_order])
 
 
 @dataclass(frozen=True)  # slots refuse cached properties
@@ -30,7 +164,7 @@ class Scatter:
     """Outcomes at the nominal point and at the points of a sample.
 
     Attributes:
-        sweep: the nominal point, then the points of :func:`comparisons.scatter.draws.drawn`.
+        sweep: the nominal point, then the points of :func:`drawn`.
         count: number of points in a sample.
         indexed: whether the points serve the indices too; then the two samples A and B count.
         bounds: limits of the yield.
@@ -120,19 +254,4 @@ def study(
     nominal = [scene.parameters[name].value for name in names]
     points = tuple(dict(zip(names, map(float, row), strict=True)) for row in (nominal, *values))
     tasks = tasks_of(scene, points, asked, frozenset(), choices)
-    return Scatter(Sweep(scene, in_file_units(scene, axes_of(points)), tasks, {}), count, indexed, bounds)
-
-
-def solved(
-    scatter: Scatter,
-    workers: Workers,
-    choices: Choices,
-    solvers: Solvers,
-    limit: float,
-    out: Path | None,
-    moved: Callable[[int], None] = lambda done: None,
-) -> Scatter:
-    """The study with all outcomes; arguments and errors as of :func:`comparisons.sweeps.running.run`."""
-    known = {} if out is None else known_outcomes([out])
-    asked = replace(scatter.sweep, outcomes=known)
-    return replace(scatter, sweep=run(asked, workers, choices, solvers, limit, out, moved))
+    return Scatter(Sweep(scene, in_file_units(scene, axes_of(points)), tasks), count, indexed, bounds)

@@ -1,20 +1,29 @@
-"""Tables of a sweep: a line per number, and a line per point with the numbers of the last stations.
+"""Files of a sweep's numbers: two CSV tables, and NetCDF through xarray (extra ``netcdf``).
 
-Numbers are in the units of the scene's file; every number of the long table stands beside its unit.
+The long table has a line per number with its unit, the wide table a line per point with the numbers of the last
+stations; both are in the units of the scene's file.  NetCDF is in SI: variables ``STAGE.PROBE.COMPONENT`` over the
+points, the stations of the stage, and the places of a stress, with ``STAGE.station`` and ``STAGE.branch``.  A missing
+number is NaN.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from comparisons.display_units import file_unit
 from comparisons.present.csv_table import csv_text, in_unit
 from comparisons.sweeps.outcome import Outcome, Record
-from comparisons.sweeps.running import Sweep, Task
 from comparisons.writing import write
 from cprbm_scene import Scene
+from cprbm_scene.answer import Array
+
+if TYPE_CHECKING:
+    from comparisons.sweeps.running import Sweep, Task
 
 _VALUES = ("value", "fea", "difference", "stated")
 _PLACES = ("stage", "station", "station_unit", "branch", "probe", "component", "arc_length", "arc_length_unit")
@@ -48,10 +57,10 @@ def write_tables(folder: Path, sweep: Sweep) -> None:
     Raises:
         OSError: a file cannot be written.
     """
-    names = {axis.name: f"{axis.name}, {axis.unit}".rstrip(", ") for axis in sweep.axes}
+    names = {axis.name: axis.label for axis in sweep.axes}
     heads = ["point", *names.values(), "solver"]
     tails = ["ending", "verdict", "reason", "iterations", "seconds", "key", "sentence"]
-    long = ({**_in_units(sweep, record, names)} for record in records(sweep))
+    long = (_in_units(sweep, record, names) for record in records(sweep))
     columns = [*heads, *_PLACES, *_VALUES, "unit", "word", *tails]
     write(folder / "numbers.csv", csv_text(columns, long))
     rows = [_wide(sweep, task, outcome, names) for task, outcome in sweep.points()]
@@ -98,3 +107,46 @@ def _in_units(sweep: Sweep, record: Mapping[str, Any], names: Mapping[str, str])
 def _convert(scene: Scene, row: dict[str, Any], unit: str, columns: Iterable[str]) -> None:
     factor, row[unit] = file_unit(scene, row[unit])
     row.update({column: in_unit(row.get(column), factor) for column in columns})
+
+
+def write_netcdf(path: Path, sweep: Sweep) -> None:
+    """Write all numbers of a sweep.
+
+    Raises:
+        OSError: the file cannot be written.
+        ImportError: xarray is not installed.
+    """
+    import xarray
+
+    found = list(sweep.points())
+    data = xarray.Dataset({"point": ("point", [task.number for task, _ in found])}, attrs={"scene": sweep.scene.name})
+    for axis in sweep.axes:
+        data[axis.name] = "point", [task.point[axis.name] for task, _ in found]
+    for name in ("solver", "ending", "verdict"):
+        data[name] = "point", [getattr(outcome, name) for _, outcome in found]
+    for stage in sweep.scene.stages:
+        rows = [[each for each in outcome.numbers if each["stage"] == stage.name] for _, outcome in found]
+        stations = f"{stage.name}.stations"
+        for key in ("station", "branch"):
+            data[f"{stage.name}.{key}"] = ("point", stations), _table(rows, key)[:, :, 0]
+        for name, unit in {name_of(each): each["unit"] for row in rows for each in row}.items():
+            values = _table([[each for each in row if name_of(each) == name] for row in rows], "value", rows)
+            dimensions = ("point", stations, f"{stage.name}.{name}.places")[: 2 + (values.shape[2] > 1)]
+            data[f"{stage.name}.{name}"] = dimensions, values.reshape(values.shape[: len(dimensions)]), {"unit": unit}
+    data.to_netcdf(path, engine="scipy")
+
+
+def _table(rows: Sequence[Sequence[Record]], key: str, whole: Sequence[Sequence[Record]] | None = None) -> Array:
+    """Values (points, stations, places) of a ``key`` of ``rows``; ``whole`` rows state all stations by point."""
+    cells = {}
+    orders = [list(dict.fromkeys(each["station"] for each in row)) for row in whole or rows]
+    for place, (row, order) in enumerate(zip(rows, orders, strict=True)):
+        counts = Counter[float]()
+        for each in row:
+            cells[place, order.index(each["station"]), counts[each["station"]]] = each[key]
+            counts[each["station"]] += 1
+    sizes = len(rows), max(map(len, orders)), 1 + max((places for _, _, places in cells), default=0)
+    table = np.full(sizes, np.nan)
+    for cell, value in cells.items():
+        table[cell] = value
+    return table
