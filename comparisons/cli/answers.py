@@ -12,6 +12,7 @@ import click
 
 from comparisons.audit import Audit, audit
 from comparisons.cli import bars, output
+from comparisons.cli.doctor import WHAT_DRAWS
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
 from comparisons.cli.request import Request
 from comparisons.display_units import at_station, file_unit
@@ -19,7 +20,6 @@ from comparisons.logs import SOLVERS
 from comparisons.pairing import Solvers, exact_answer, solid_answer, solvers_of
 from comparisons.present.strips import Coloured, with_stresses
 from comparisons.quantities import load_unit
-from comparisons.starting.libraries import WHAT_DRAWS
 from comparisons.tolerances.result import Tolerance
 from comparisons.writing import write
 from cprbm_scene import Answer, Scene

@@ -16,8 +16,7 @@ from comparisons.cli.options import tolerance
 from comparisons.crew import ALONE
 from comparisons.pairing import Solvers, solid_answer, solvers_of
 from comparisons.third import solid_limit
-from comparisons.tolerances.limits import limits_of
-from comparisons.tolerances.search import LARGEST, runs_within, solve_within
+from comparisons.tolerances.search import LARGEST, limits_of, runs_within, solve_within
 from comparisons.verdict.rows import rows_of
 from comparisons.verdict.runs import Runs
 from comparisons.verdict.words import Word

@@ -13,12 +13,12 @@ from PIL import Image
 
 import cprbm
 from comparisons import cases
+from comparisons.cli.doctor import trouble_with
 from comparisons.cli.main import run
 from comparisons.present import animation, space
 from comparisons.present.picture import views_of
 from comparisons.present.strips import SECTIONS, with_stresses
 from comparisons.present.vtu import ACROSS, beam_block, force_block, obstacle_block
-from comparisons.starting.libraries import trouble_with
 
 needs_meshio = pytest.mark.skipif(bool(trouble_with("meshio")), reason="meshio, of the extra 'view', is not there")
 needs_pyvista = pytest.mark.skipif(bool(trouble_with("pyvista")), reason="pyvista, of the extra 'view', is not there")
