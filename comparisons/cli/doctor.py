@@ -169,7 +169,7 @@ def doctor(quiet: bool) -> int:  # noqa: FBT001 - click passes a keyword
 
 def _drawing_text() -> str:
     """Whether PyVista draws here."""
-    from comparisons.present.space import tried  # NumPy may be missing
+    from comparisons.present.view import tried  # NumPy may be missing
 
     trouble = tried()
     remedy = f"{'impossible':<12} ({trouble}); on Debian and Ubuntu install, as root: {WHAT_DRAWS}"

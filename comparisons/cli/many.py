@@ -10,7 +10,7 @@ from typing import Literal
 
 import click
 
-from comparisons.cli import bars, output
+from comparisons.cli import output
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
 from comparisons.cli.request import Request
 from comparisons.optimum.result import result_of as optimum_section
@@ -95,7 +95,7 @@ def optimise(request: Request, goal: Path, vary: tuple[str, ...], starts: int, s
 def _runner(request: Request, scene: Scene, command: str, solves: int) -> Iterator[tuple[Path, Runner]]:
     """Context with the folder, and the solver of the points with a bar."""
     out = request.out or Path(f"{command}-{scene.name}")
-    with workers_on(request.place) as workers, bars.bar(solves, shown=not request.quiet, loggers=()) as progress:
+    with workers_on(request.place) as workers, output.bar(solves, shown=not request.quiet, loggers=()) as progress:
         request.with_room(str(out))
         yield out, Runner(workers, request.choices, request.solvers, request.at_most, out, progress.move)
 

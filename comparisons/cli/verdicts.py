@@ -1,19 +1,24 @@
-"""``cprbm compare``, ``converge`` and ``report``: both solvers on questions, as tables, JSON and a page."""
+"""``cprbm compare``, ``converge`` and ``report``: both solvers on questions, as tables, JSON and a page.
+
+After every result the page and the JSON file are whole: an interrupted command leaves all finished work.
+"""
 
 from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import partial
 from logging import NOTSET
 from pathlib import Path
+from typing import TypeVar
 
 import click
 
 from comparisons import case, cases, logs, offset_verdict, pairing, provenance
 from comparisons.case import Comparison
-from comparisons.cli import bars, output, pipeline
+from comparisons.cli import output
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
 from comparisons.cli.request import Request
 from comparisons.plain import Plain
@@ -29,6 +34,7 @@ from comparisons.writing import write
 from cprbm_scene import OffsetQuestion, Question
 
 Compared = Comparison | offset_verdict.OffsetComparison
+Result = TypeVar("Result")
 
 
 def compare_all(request: Request) -> int:
@@ -40,13 +46,13 @@ def compare_all(request: Request) -> int:
     questions = request.questions()
     request = request.with_room("report" if "all" in request.arguments else "")
     # with a tolerance a status line with N replaces the bar
-    progress = bars.bar(len(questions), shown=not request.quiet and request.tol is None, noun="case")
+    progress = output.bar(len(questions), shown=not request.quiet and request.tol is None, noun="case")
     ends = _put_case, page.report_page, _document, partial(_show, request)
-    finished = pipeline.answer_all(request, questions, partial(_comparisons, request, questions), progress, *ends)
+    finished = _answer_all(request, questions, partial(_comparisons, request, questions), progress, *ends)
     _export(request, [found for found in finished if isinstance(found, Comparison)])
     if request.prints and not request.quiet and len(finished) > 1:
         output.print_tables([brief.summary(finished)], brief.WIDTH)
-    pipeline.print_folder(request)
+    output.print_folder(request)
     verdicts = [found.verdict for found in finished]
     if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):
         return INCOMPLETE
@@ -54,7 +60,7 @@ def compare_all(request: Request) -> int:
     return UNDECIDED if undecided or any(map(_failed_searches, finished)) else 0
 
 
-def _comparisons(request: Request, questions: Sequence[Question], run: Run, progress: bars.Bar) -> Iterator[Compared]:
+def _comparisons(request: Request, questions: Sequence[Question], run: Run, progress: output.Bar) -> Iterator[Compared]:
     """Comparisons of all questions; the next question is solved while the caller draws and prints the last."""
     begun = partial(_begin, request, [] if request.tol else questions, run)
     following = begun(0)
@@ -66,7 +72,7 @@ def _comparisons(request: Request, questions: Sequence[Question], run: Run, prog
             yield case.compare(question, pending())
         else:
             assert request.tol is not None
-            with bars.status(shown=not request.quiet) as say:
+            with output.status(shown=not request.quiet) as say:
                 runs, searches = runs_within(question, request.choices, request.tol, run.solvers, run.crew, say)
             yield replace(case.compare(question, runs), tolerances=searches)
 
@@ -129,7 +135,7 @@ def converge_all(request: Request, sizes: tuple[int, ...]) -> int:
     questions = request.questions()
     request = request.with_room("convergence" if "all" in request.arguments else "")
 
-    def results(run: Run, progress: bars.Bar) -> Iterator[Section]:
+    def results(run: Run, progress: output.Bar) -> Iterator[Section]:
         for question in progress.through(questions):
             yield convergence.convergence_section(question, sizes, request.choices, run.solvers, run.crew)
 
@@ -145,11 +151,9 @@ def converge_all(request: Request, sizes: tuple[int, ...]) -> int:
         for sentence in section.sentences:
             click.echo(f"{question.name}: {sentence}")
 
-    progress = bars.bar(len(questions), shown=not request.quiet, share=0.8)
-    finished = pipeline.answer_all(
-        request, questions, results, progress, chapter, page.convergence_page, document, show
-    )
-    pipeline.print_folder(request)
+    progress = output.bar(len(questions), shown=not request.quiet, share=0.8)
+    finished = _answer_all(request, questions, results, progress, chapter, page.convergence_page, document, show)
+    output.print_folder(request)
     return 0 if all(section.complete for section in finished) else INCOMPLETE
 
 
@@ -165,7 +169,7 @@ def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -
     missing, names = found.missing(), tuple(question.name for question in questions)
     with (
         run_into(request.out, request.solvers, names, request.processes) as run,
-        bars.bar(len(missing), shown=not request.quiet) as progress,
+        output.bar(len(missing), shown=not request.quiet) as progress,
     ):
         pending = _begin(request, missing, run, 0)
         for place, question in enumerate(progress.through(missing)):
@@ -178,4 +182,47 @@ def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -
         output.write_json(request.json_file, found.document())
     for chapter in found.chapters.values() if request.prints else ():
         click.echo(f"{chapter.name}: {chapter.word}. {chapter.sentence}")
-    pipeline.print_folder(request)
+    output.print_folder(request)
+
+
+def _answer_all(
+    request: Request,
+    questions: Sequence[Question],
+    results: Callable[[Run, output.Bar], Iterator[Result]],
+    progress: AbstractContextManager[output.Bar],
+    chapter_of: Callable[[Path, Question, Result], page.Chapter],
+    page_of: Callable[[Sequence[page.Chapter]], page.Page],
+    document_of: Callable[[Sequence[Result]], Plain],
+    show: Callable[[Question, Result], None],
+) -> list[Result]:
+    """Results of all questions; page and JSON stand after every result, and JSON on standard output at the end.
+
+    Args:
+        request: files, folder and solvers.
+        questions: in order.
+        results: results in the same order, for a run into the folder and a bar.
+        progress: context with the bar.
+        chapter_of: writes the files of a result into the folder; the chapter of the page.
+        page_of: page of all chapters.
+        document_of: JSON of all results.
+        show: prints a result.
+    """
+    out, finished, chapters = request.out, list[Result](), list[page.Chapter]()
+    names = tuple(question.name for question in questions)
+    with run_into(out, request.solvers, names, request.processes) as run, progress as shown:
+        for question, result in zip(questions, results(run, shown), strict=True):
+            finished.append(result)
+            if out is not None:
+                chapters.append(chapter_of(out, question, result))
+            run.mark_shown(question.name)
+            whole = run.covers(names[: len(finished)])
+            if whole and out is not None:
+                page.put_page(out, page_of(chapters))
+            if whole and request.prints:
+                output.write_json(request.json_file, document_of(finished))
+            shown.clear()
+            if request.prints:
+                show(question, result)
+    if not request.prints:
+        output.write_json(request.json_file, document_of(finished))
+    return finished

@@ -18,9 +18,8 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic_core import to_json
 
 from comparisons import cases, provenance
-from comparisons.bench.contenders import OURS, contenders
 from comparisons.bench.measures import benchmark_scene, reference
-from comparisons.bench.running import Plan, Session, refusal_text
+from comparisons.bench.running import OURS, Plan, Session, contenders, refusal_text
 from comparisons.bench.section import bench_section
 from comparisons.case import Comparison, compare
 from comparisons.choices import Choices

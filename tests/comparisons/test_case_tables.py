@@ -11,8 +11,7 @@ from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers, paired
-from comparisons.present.answer_tables import answer_tables, branch_table
-from comparisons.present.case_tables import case_sections
+from comparisons.present.case_tables import answer_tables, branch_table, case_sections
 from comparisons.present.row_tables import paper_table
 from comparisons.third import contact_model
 from comparisons.verdict.station_events import NO_EVENTS

@@ -17,7 +17,7 @@ from comparisons.crew import ALONE
 from comparisons.pairing import Solvers
 from comparisons.plain import text_of
 from comparisons.present import json_document
-from comparisons.present.answer_tables import answer_tables
+from comparisons.present.case_tables import answer_tables
 from comparisons.studies import convergence_tables as tables
 from comparisons.studies.convergence import convergence_of
 from cprbm_scene import Claim, Loss
