@@ -86,9 +86,7 @@ def _begin(request: Request, questions: Sequence[Question], run: Run, place: int
 
 
 def _put_case(out: Path, question: Question, compared: Compared) -> page.Chapter:
-    figures = page.figures_of(compared)
-    page.put_case(out, compared, figures)
-    return page.case_chapter(compared, figures)
+    return page.put_case(out, compared, page.figures_of(compared))
 
 
 def _document(finished: Sequence[Compared]) -> Plain:

@@ -29,7 +29,6 @@ from comparisons.plain import Plain
 from comparisons.present.columns import Section
 from comparisons.present.page import (
     Chapter,
-    case_chapter,
     figures_of,
     light,
     put_case,
@@ -153,11 +152,7 @@ class Report:
         Raises:
             OSError: the folder cannot be written to.
         """
-        own, figures = self.folder / question.name, figures_of(compared)
-        put_case(self.folder, compared, figures)
-        for section in further:
-            put_section(own, section)
-        chapter = case_chapter(compared, figures, further)
+        own, chapter = self.folder / question.name, put_case(self.folder, compared, figures_of(compared), further)
         chapter = replace(chapter, files=("scene.toml", *chapter.files))
         write(own / "scene.toml", chapter.scene)
         # the last of all files: with it all are there

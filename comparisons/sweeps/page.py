@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from comparisons.display_units import display_unit
-from comparisons.present.canvas import BLUE, RED, canvas, finished
+from comparisons.present.canvas import BLUE, RED, canvas, finished, panels
 from comparisons.present.columns import Figure, Section
 from comparisons.present.page import put_section, rendered
 from comparisons.sweeps.outcome import Outcome, Record
@@ -93,13 +93,6 @@ def _unit_of(sweep: Sweep, numbers: Sequence[Record], kind: str = "") -> tuple[f
     return display_unit(sweep.scene, numbers[0][unit], max(abs(each[value]) for each in numbers))
 
 
-def _panels(figure: Any, count: int) -> list[Axes]:  # noqa: ANN401 - loaded inside the canvas
-    columns = min(count, 2)
-    rows = -(-count // columns)
-    figure.set_size_inches(4.2 * columns, 3.0 * rows)
-    return [figure.add_subplot(rows, columns, place + 1) for place in range(count)]
-
-
 def _over_parameters(sweep: Sweep, solved: Solved, names: Sequence[tuple[str, str]]) -> Figure:
     """Numbers of the last station over the parameters: curves, contours, or points of a sample."""
     grid, first = all(axis.count for axis in sweep.axes), sweep.axes[0]
@@ -107,7 +100,7 @@ def _over_parameters(sweep: Sweep, solved: Solved, names: Sequence[tuple[str, st
     failed = [task for task, outcome in sweep.points() if not outcome.completed]
     ends = [{(each["stage"], name_of(each)): each for each in last_numbers(outcome)} for _, outcome in solved]
     with canvas(6.4, 4.8) as figure:
-        for axes, (stage, name) in zip(_panels(figure, len(names)), names, strict=True):
+        for axes, (stage, name) in zip(panels(figure, len(names), 3.0), names, strict=True):
             known = [each.get((stage, name)) for each in ends]
             size, label = _unit_of(sweep, [each for each in known if each is not None])
             numbers = [np.nan if each is None else each["value"] / size for each in known]
@@ -157,7 +150,7 @@ def _curves(sweep: Sweep, solved: Solved, stage: str, names: Sequence[str]) -> F
     first, longest = sweep.axes[0], _fullest(solved)
     steps = next(each.steps for each in sweep.scene.stages if each.name == stage)
     with canvas(6.4, 4.8) as figure:
-        for axes, name in zip(_panels(figure, len(names)), names, strict=True):
+        for axes, name in zip(panels(figure, len(names), 3.0), names, strict=True):
             whole = _curve_of(longest, stage, name)
             (size, label), (step, step_label) = _unit_of(sweep, whole[-1:]), _unit_of(sweep, whole, "station")
             axes.set_title(f"{name}, {label}".rstrip(", "), fontsize=9)

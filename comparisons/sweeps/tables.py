@@ -9,17 +9,16 @@ number is NaN.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from comparisons.display_units import file_unit
-from comparisons.present.csv_table import csv_text, in_unit
+from comparisons.present.csv_table import csv_text, in_file_units, in_unit
 from comparisons.sweeps.outcome import Outcome, Record
 from comparisons.writing import write
-from cprbm_scene import Scene
 from cprbm_scene.answer import Array
 
 if TYPE_CHECKING:
@@ -57,20 +56,19 @@ def write_tables(folder: Path, sweep: Sweep) -> None:
     Raises:
         OSError: a file cannot be written.
     """
-    names = {axis.name: axis.label for axis in sweep.axes}
-    heads = ["point", *names.values(), "solver"]
+    heads = ["point", *(axis.label for axis in sweep.axes), "solver"]
     tails = ["ending", "verdict", "reason", "iterations", "seconds", "key", "sentence"]
-    long = (_in_units(sweep, record, names) for record in records(sweep))
+    long = (_in_units(sweep, record) for record in records(sweep))
     columns = [*heads, *_PLACES, *_VALUES, "unit", "word", *tails]
     write(folder / "numbers.csv", csv_text(columns, long))
-    rows = [_wide(sweep, task, outcome, names) for task, outcome in sweep.points()]
+    rows = [_wide(sweep, task, outcome) for task, outcome in sweep.points()]
     wide = dict.fromkeys(name for row in rows for name in row if name not in (*heads, *tails))
     write(folder / "last.csv", csv_text([*heads, *tails[:-1], *wide, "sentence"], rows))
 
 
-def _wide(sweep: Sweep, task: Task, outcome: Outcome, names: Mapping[str, str]) -> dict[str, Any]:
+def _wide(sweep: Sweep, task: Task, outcome: Outcome) -> dict[str, Any]:
     """A point with the numbers of the last station of every stage; without the stresses along beams."""
-    row = _in_units(sweep, _point(task, outcome), names)
+    row = _in_units(sweep, _point(task, outcome))
     for number in last_numbers(outcome):
         factor, unit = file_unit(sweep.scene, number["unit"])
         row[f"{number['stage']} {name_of(number)}, {unit}"] = in_unit(number["value"], factor)
@@ -92,21 +90,10 @@ def name_of(number: Record) -> str:
     return ".".join(filter(None, (number["probe"], number["component"])))
 
 
-def _in_units(sweep: Sweep, record: Mapping[str, Any], names: Mapping[str, str]) -> dict[str, Any]:
-    row = {name: value for name, value in record.items() if name not in names}
-    for axis in sweep.axes:
-        row[names[axis.name]] = in_unit(record[axis.name], axis.size)
-    if "unit" in record:
-        _convert(sweep.scene, row, "unit", _VALUES)
-        _convert(sweep.scene, row, "station_unit", ("station",))
-        row["arc_length_unit"] = "m"
-        _convert(sweep.scene, row, "arc_length_unit", ("arc_length",))
-    return row
-
-
-def _convert(scene: Scene, row: dict[str, Any], unit: str, columns: Iterable[str]) -> None:
-    factor, row[unit] = file_unit(scene, row[unit])
-    row.update({column: in_unit(row.get(column), factor) for column in columns})
+def _in_units(sweep: Sweep, record: Mapping[str, Any]) -> dict[str, Any]:
+    """A record with the units of the scene's file; parameters have their units in the keys."""
+    row = in_file_units(sweep.scene, record) if "unit" in record else {**record}
+    return row | {axis.label: in_unit(row.pop(axis.name), axis.size) for axis in sweep.axes}
 
 
 def write_netcdf(path: Path, sweep: Sweep) -> None:

@@ -10,9 +10,9 @@ from scipy.stats import lognorm, norm
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
-from comparisons.scatter.study import indices, study, values_of
 from comparisons.sweeps.outcome import solve
 from comparisons.sweeps.running import Runner
+from comparisons.sweeps.scatter import indices, study, values_of
 from comparisons.sweeps.workers import workers_on
 from cprbm_scene import read
 from tests.sweeps.scenes import CANTILEVER, table
