@@ -126,7 +126,7 @@ def sweep(
         SceneError: the scene refuses a name or a value.
         OSError: the folder cannot be written to.
     """
-    from comparisons.sweeps.start import start
+    from comparisons.sweeps.running import start
 
     return start(scene, vary, solver, check, choices, executor, at_most, None if out is None else Path(out))
 

@@ -11,8 +11,8 @@ from comparisons import case
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer, exact_answer, fea_answer, paired, solid_answer, solvers_of
 from comparisons.present import figures
-from comparisons.present.answer_tables import answer_tables
 from comparisons.present.brief import headline, last_rows_of_stages, nearest_rows
+from comparisons.present.case_tables import answer_tables
 from comparisons.present.columns import Figure, Table
 from comparisons.present.csv_table import comparison_records, csv_of, csv_of_comparisons, numbers
 from comparisons.present.page import rendered

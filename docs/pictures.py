@@ -16,10 +16,10 @@ import numpy as np
 import cprbm
 from comparisons import cases
 from comparisons.geometry import length, points
-from comparisons.present.animation import files
 from comparisons.present.canvas import BLUE, GREY, RED, canvas, draw_parts, image
 from comparisons.present.picture import view_of
 from comparisons.present.strips import with_stresses
+from comparisons.present.view import files
 from comparisons.writing import write
 from cprbm_scene import Answer, OffsetQuestion, Scene, read
 from cprbm_scene.answer import Array

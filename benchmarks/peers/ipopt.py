@@ -22,7 +22,7 @@ from benchmarks.peers.solving import LATE, Solve, Solved
 
 if TYPE_CHECKING:
     from benchmarks.peers.record import Discretised
-    from comparisons.bench.contenders import Contender
+    from comparisons.bench.running import Contender
 
 OPTIONS: dict[str, Any] = {
     "print_time": False,

@@ -9,7 +9,7 @@ from benchmarks.peers import record
 from benchmarks.peers.judged import TOLERANCE, judged
 from benchmarks.peers.record import Discretised
 from benchmarks.peers.solving import Optimiser, Solved
-from comparisons.bench.contenders import Clocked, Contender, Outcome, Run
+from comparisons.bench.running import Clocked, Contender, Outcome, Run
 from comparisons.choices import Count
 from cprbm_scene import Scene
 

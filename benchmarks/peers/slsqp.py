@@ -12,7 +12,7 @@ from benchmarks.peers.solving import Clock, Solve, by_scipy
 
 if TYPE_CHECKING:
     from benchmarks.peers.record import Discretised
-    from comparisons.bench.contenders import Contender
+    from comparisons.bench.running import Contender
 
 # The change of the energy, in S, at which it stops: at 1e-10 the common residual of the hinge at N = 40 is 1.4e-6, at
 # 1e-12 it is 6e-7, and differences leave no less.

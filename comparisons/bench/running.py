@@ -1,4 +1,7 @@
-"""Runs of all methods at all sizes on the clock.
+"""Methods of a benchmark, and their runs at all sizes on the clock.
+
+A method has a set-up, a solve, and the outcome of the result.  The methods here are the project's own solvers;
+optimisers come from outside as further methods.
 
 ======  ====================================================================================
 symbol  meaning
@@ -24,17 +27,25 @@ import gc
 import math
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import Literal
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
 
 import numpy as np
 
-from comparisons.bench.contenders import Clocked, Contender, Outcome, mean
 from comparisons.bench.measures import NOTHING, Measure, Reference, errors
-from comparisons.choices import Count, Kinematics
-from cprbm_scene import Scene, SceneError
+from comparisons.choices import Choices, Count, Kinematics
+from comparisons.executor import Solver
+from comparisons.pairing import Solvers, prepared
+from cprbm_scene import Answer, Scene, SceneError
+from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.threads import one_thread
+
+OURS: tuple[str, ...] = ("auto", "paper", "fea")
+"""Names of the project's own methods, in the order of the tables."""
+
+Clocked = Literal["solve", "both"]
+"""Extent of a time: the solve alone, or set-up and solve together."""
 
 SIZES = (10, 20, 40, 80, 160, 320, 640, 1280, 2560, 5120)
 FIT_FROM = 40
@@ -50,6 +61,107 @@ CLOCKS: Mapping[Clock, Callable[[], float]] = frozendict({"wall": time.perf_coun
 
 Extent = Clocked | Literal["set-up"]
 _EXTENTS: Mapping[Extent, slice] = frozendict({"set-up": slice(0, 1), "solve": slice(1, 2), "both": slice(0, 2)})
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Outcome of a solve.
+
+    Attributes:
+        ended: COMPLETED, or the name of another ending; why: a sentence on another ending.
+        iterations: at every reached station.
+        values: at the last station, by probe; empty without the last station.
+        residual: in the common measure of the peers; None of the project's own methods, which certify themselves.
+    """
+
+    ended: str
+    why: str
+    iterations: tuple[int, ...]
+    values: Mapping[str, Array]
+    residual: float | None = None
+
+    @property
+    def completed(self) -> bool:
+        """True for a complete answer."""
+        return self.ended == "COMPLETED"
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A run: ``set_up`` returns the solve, both on the clock; ``outcome`` of the result is off the clock."""
+
+    set_up: Callable[[], Callable[[], Any]]
+    outcome: Callable[[Any], Outcome]
+
+
+Begin = Callable[[Scene, Count, float], Run]
+"""A run from a scene, N and the largest seconds of a solve; raises SceneError where the method refuses the scene."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contender:
+    """A method.
+
+    Attributes:
+        name: in the option ``--method``; method, formulation: in the JSON; label: in tables.
+        begin: begin of a run.
+        largest: largest of the standard sizes.
+        tolerance: largest residual of a complete solve of a peer; None for the project's own methods.
+        ratios: clocks of the ratios of the method's time to the time of CPRBM ``paper``.
+        look: colour and marker of the points in figures.
+        absence: why the method cannot take part on this machine; empty if it can.
+    """
+
+    name: str
+    method: str
+    formulation: str | None
+    label: str
+    begin: Begin
+    largest: int = 160
+    tolerance: float | None = None
+    ratios: tuple[Clocked, ...] = ()
+    look: tuple[str, str] = ("#606060", "x")
+    absence: str = ""
+
+    @property
+    def is_peer(self) -> bool:
+        """True for an optimiser on the problem of CPRBM ``paper``, which solves the last station only."""
+        return self.tolerance is not None
+
+
+def contenders(solvers: Solvers, choices: Choices) -> tuple[Contender, ...]:
+    """The project's own methods, in the order of ``OURS``."""
+    auto, paper = (_ours(solvers.cprbm, replace(choices, formulation=name)) for name in ("auto", "paper"))
+    fea = _ours(solvers.fea, choices)
+    return (
+        Contender("auto", "cprbm", "auto", "CPRBM auto", auto, 5120, ratios=("both",), look=("#1f5fa8", "o")),
+        Contender("paper", "cprbm", "paper", "CPRBM paper", paper, 640, look=("#5aa0e0", "s")),
+        Contender("fea", "fea", None, f"FEA {choices.kinematics}", fea, 1280, look=("#c8321e", "^")),
+    )
+
+
+def _ours(solver: Solver, choices: Choices) -> Begin:
+    def begin(scene: Scene, count: Count, at_most: float) -> Run:
+        # a penalty whose error falls with the error of the elements
+        chosen = replace(choices.of_size(round(mean(count))), links=count, elements=count)
+        return Run(lambda: prepared(solver, scene, chosen), outcome_of)
+
+    return begin
+
+
+def mean(count: Count) -> float:
+    """N: links or elements per beam, on average where beams have numbers of their own."""
+    return float(count) if isinstance(count, int) else sum(count.values()) / len(count)
+
+
+def outcome_of(answer: Answer) -> Outcome:
+    """Outcome of a solve of our solvers."""
+    return Outcome(
+        ended=answer.ending.name,
+        why="" if answer.completed else answer.sentence,
+        iterations=tuple(station.certificate.iterations for station in answer.stations),
+        values=answer.stations[-1].values if answer.completed and answer.stations else frozendict(),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,8 +216,7 @@ class Timing:
 
     def spread(self, extent: Extent) -> float:
         """Distance of the quartiles, s."""
-        low, _, high = self.quartiles(extent)
-        return high - low
+        return self.quartiles(extent)[2] - self.quartiles(extent)[0]
 
     @property
     def n(self) -> float:
@@ -208,10 +319,8 @@ class Session:
         return timing.n > self.largest.get(timing.contender.name, math.inf)
 
     def _run(self, job: Timing) -> tuple[tuple[float, float], Outcome]:
-        run, clock = (
-            job.contender.begin(self.scene, job.count, self.plan.at_most),
-            self.clock or CLOCKS[self.plan.clock],
-        )
+        run = job.contender.begin(self.scene, job.count, self.plan.at_most)
+        clock = self.clock or CLOCKS[self.plan.clock]
         begin = clock()
         solve = run.set_up()
         ready = clock()
@@ -226,9 +335,9 @@ class Session:
             SceneError: every method has refused the question.
         """
         found = [timing for timing in self.timings if timing.seconds]
-        for timing in self.timings if not found else ():
-            if timing.refusal:
-                raise timing.refusal
+        refusal = next((timing.refusal for timing in self.timings if timing.refusal), None)
+        if refusal and not found:
+            raise refusal
         ours = {row.count: row.errors for row in found if row.contender.name == "paper" and row.counts}
         for row in (row for row in found if row.contender.is_peer):
             limits = ours.get(row.count, {})

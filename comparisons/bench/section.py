@@ -1,23 +1,71 @@
-"""Section of a benchmark: tables, error against time (work and precision), and time and iterations against N."""
+"""The section of a benchmark: tables, figures and documented JSON of the rows, and results of the rows that count.
+
+Results are the fastest method at an error, ratios of times, and growth of times.  A method reaches an error at a size
+if the errors at this size and at all larger sizes are no larger.  Its time lies on the straight line between this size
+and the size before, in the logarithms of error and time; without a size before, the time is the time of the size.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from comparisons.bench.contenders import Contender
-from comparisons.bench.measures import MEASURES, Measure
-from comparisons.bench.running import Session, Timing, trend
-from comparisons.bench.tables import document, size_text, tables_of
+from comparisons.bench.measures import MEASURES, Measure, uncertainties
+from comparisons.bench.running import FIT_FROM, NO_WORSE, OURS, Clocked, Contender, Session, Timing, trend
+from comparisons.choices import Count
+from comparisons.formats import number, percent
 from comparisons.present.canvas import canvas, common_legend, finished, logarithmic
-from comparisons.present.columns import Figure, Section
+from comparisons.present.columns import Column, Figure, Section, Table, records_of, table_of, without_empty
+from comparisons.writing import Plain, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+TARGETS = (1e-2, 1e-3, 1e-4)
+_CLOCKED: dict[Clocked, str] = {"both": "set-up and solve", "solve": "solve alone"}
+_UNTIMED = ("slsqp_both", "ipopt_both", "ipopt_solve")
+"""Ratios of methods that take no part: None."""
+
 _MEASURED: dict[Measure, str] = {"places": "error of displacements and rotations", "forces": "error of forces"}
+
+_OF_CLOCK = {"wall": "", "cpu": " of the processor"}
+_LIBRARIES = {"python": "Python", "numpy": "NumPy", "scipy": "SciPy", "scikit-fem": "scikit-fem", "casadi": "CasADi"}
+
+_COLUMNS: tuple[Column[Timing], ...] = (
+    Column("method", lambda row: row.contender.label),
+    Column("N", lambda row: size_text(row.count)),
+    Column("set-up", lambda row: row.median("set-up"), number),
+    Column("solve", lambda row: row.median("solve"), number),
+    Column("spread", lambda row: row.spread("solve"), lambda value: number(value, 2)),
+    Column("repeats", lambda row: len(row.seconds)),
+    Column("places", lambda row: row.errors.get("places"), percent),
+    Column("forces", lambda row: row.errors.get("forces"), percent),
+    Column("iterations", lambda row: row.iterations),
+    Column("per station", lambda row: row.iterations_per_station, number),
+    Column("ended", lambda row: ending_of(row)),
+)
+
+_KEYS: tuple[Column[Timing], ...] = (
+    Column("method", lambda row: row.contender.method),
+    Column("formulation", lambda row: row.contender.formulation),
+    Column("n", lambda row: plain(row.count)),
+    Column("setup_seconds", lambda row: row.median("set-up")),
+    Column("seconds", lambda row: row.median("solve")),
+    Column("spread", lambda row: row.spread("solve")),
+    Column("error", lambda row: row.errors.get("places")),
+    Column("force_error", lambda row: row.errors.get("forces")),
+    Column("ended", lambda row: ending_of(row)),
+    Column("why", lambda row: row.outcome.why),
+    Column("counts", lambda row: row.counts),
+    Column("residual", lambda row: plain(row.outcome.residual)),
+    Column("repeats", lambda row: len(row.seconds)),
+    Column("iterations", lambda row: row.iterations),
+    Column("iterations_by_station", lambda row: list(row.outcome.iterations)),
+)
+
 Rows = dict[Contender, Sequence[Timing]]
 """Rows that count, by method."""
 
@@ -83,3 +131,209 @@ def _decades(axes: Axes, name: str, sizes: Sequence[float] = ()) -> None:
     for axis in (axes.yaxis,) if sizes else (axes.yaxis, axes.xaxis):
         low, high = np.log10(axis.get_view_interval())
         axis.set_view_interval(10.0 ** np.floor(low), 10.0 ** np.ceil(high), ignore=True)
+
+
+def tables_of(measured: Session) -> tuple[Table, ...]:
+    """All tables: times and errors, the fastest methods, ratios, growth, and everything left out."""
+    name = measured.scene.title or measured.scene.name
+    timings = table_of(f"{name}: time against error", _COLUMNS, measured.rows(), _note(measured))
+    fastest = [_fastest(measured, clocked) for clocked in _CLOCKED]
+    found = (timings, *fastest, _ratios(measured), _trends(measured), _omissions(measured))
+    return tuple(table for table in found if table.rows)
+
+
+def size_text(count: Count) -> str:
+    """N in a table."""
+    return str(count) if isinstance(count, int) else ", ".join(map(str, count.values()))
+
+
+def ending_of(timing: Timing) -> str:
+    """Name of the ending of a row's runs."""
+    return "WORSE" if timing.worse else timing.outcome.ended
+
+
+def _note(measured: Session) -> str:
+    extent = "the whole scene" if measured.plan.whole else "the last load, from the state without stress"
+    off = {measure: percent(u) for measure, u in uncertainties(measured.scene, measured.reference).items() if u > 0.0}
+    known = f"; itself known to {', '.join(f'{u} ({measure})' for measure, u in off.items())}" if off else ""
+    peers = (
+        f" A peer has completed with a residual of at most {_tolerance(measured):g}; WORSE: its error is more than "
+        f"{NO_WORSE:g} times that of CPRBM paper at this N."
+        if any(each.is_peer for each in measured.methods())
+        else ""
+    )
+    return (
+        f"Seconds{_OF_CLOCK[measured.plan.clock]} for {extent}: medians of the set-up and of the solve, and the "
+        "distance of the solve's quartiles. N: links or elements per beam. Errors: the largest of displacements and "
+        "rotations (places), of contacts' and drives' forces (forces), against "
+        f"{measured.reference.by}{known}.{peers}"
+    )
+
+
+def _tolerance(measured: Session) -> float | None:
+    """Largest residual of a complete solve of a peer; None without a peer."""
+    return next((each.tolerance for each in measured.methods() if each.is_peer), None)
+
+
+def _fastest(measured: Session, clocked: Clocked) -> Table:
+    labels = {each.name: each.label for each in measured.methods()}
+    rows = tuple(
+        (f"{percent(one['error'])} of {one['measure']}", labels.get(one["fastest"], "nobody"), number(one["ahead"]),
+         *(number(one["seconds"].get(name)) for name in labels))
+        for one in standings(measured) if one["clocked"] == clocked
+    )  # fmt: skip
+    return Table(
+        f"Fastest at an error, {_CLOCKED[clocked]}",
+        ("error", "fastest", "times ahead", *labels.values()),
+        rows,
+        "Seconds, between two sizes by the straight line through the logarithms of error and time; a dash where no "
+        "measured size reaches the error for good. Times ahead: the next one's seconds over the fastest one's.",
+    )
+
+
+def _ratios(measured: Session) -> Table:
+    labels = {
+        _ratio_key(each.name, clocked): each.label if len(each.ratios) == 1 else f"{each.label}, {clocked}"
+        for each in measured.methods()
+        for clocked in each.ratios
+    }
+    rows = [
+        (size_text(one["n"]), *(number(one[key]) for key in (*labels, "iterations_per_station")))
+        for one in ratios(measured)
+    ]
+    return without_empty(
+        Table(
+            "How many times longer than CPRBM paper on the same problem",
+            ("N", *labels.values(), "iterations per station"),
+            tuple(rows),
+            "Medians over medians: the solve over our solve, else set-up and solve over ours; a dash where a row does "
+            "not count. Set-up begins with the scene for the CPRBM, with the discretised problem for the peers. "
+            "Iterations are those of CPRBM paper.",
+        )
+    )
+
+
+def _trends(measured: Session) -> Table:
+    machine = measured.machine
+    libraries = ", ".join(f"{label} {machine[name]}" for name, label in _LIBRARIES.items() if name in machine)
+    rows = [
+        (method.label, f"{one['n'][0]:g} to {one['n'][-1]:g}", number(one["exponent"]), number(one["iterations_ratio"]))
+        for method, one in zip(measured.methods(), trends(measured), strict=True)
+        if one["exponent"] is not None
+    ]
+    return Table(
+        "How it grows",
+        ("method", "N", "exponent of time", "iterations, last to first"),
+        tuple(rows),
+        f"The exponent e of seconds = a·N^e by least squares of the logarithms, set-up and solve together, over the "
+        f"rows with N of {FIT_FROM} or more that count. {machine['cpu']}, {machine['cores']} cores, BLAS on one "
+        f"thread; {libraries}.",
+    )
+
+
+def _omissions(measured: Session) -> Table:
+    sizes = dict[tuple[str, str], list[str]]()
+    for one in measured.omissions():
+        sizes.setdefault((one.name, one.why), []).append("all" if one.count is None else size_text(one.count))
+    rows = tuple((name, ", ".join(mine), why) for (name, why), mine in sizes.items())
+    return Table("Left out", ("method", "N", "why"), rows)
+
+
+def document(measured: Session) -> Plain:
+    """``bench``: rows, fastest methods, ratios, trends; times in seconds, errors as fractions."""
+    plan, reference = measured.plan, measured.reference
+    # the project's own methods first, then peers by their names
+    left_out = sorted(measured.omissions(), key=lambda one: (OURS.index(one.name) if one.name in OURS else 9, one.name))
+    return {
+        "case": measured.scene.name,
+        "machine": plain(measured.machine),
+        "repeat": plan.repeat,
+        "kinematics": plan.kinematics,
+        "clock": plan.clock,
+        "stations": "all" if plan.whole else "last",
+        "tolerance": _tolerance(measured),
+        "reference": {"by": reference.by, "uncertainty": plain(uncertainties(measured.scene, reference))},
+        "rows": records_of(_KEYS, measured.rows()),
+        "fastest": standings(measured),
+        "ratios": ratios(measured),
+        "trends": trends(measured),
+        "left_out": [{"method": one.name, "n": plain(one.count), "why": one.why} for one in left_out],
+    }
+
+
+def standings(measured: Session) -> list[Plain]:
+    """``fastest``: for each measure with errors, by both clocks, at every target."""
+    known = [name for name in MEASURES if any(name in timing.errors for timing in measured.rows())]
+    asked = ((measure, clocked, target) for measure in known for clocked in _CLOCKED for target in TARGETS)
+    return [_standing(measured, *each) for each in asked]
+
+
+def _standing(measured: Session, measure: Measure, clocked: Clocked, target: float) -> Plain:
+    """Seconds by method that reaches the error, the fastest, and the quotient of the second and the first time."""
+    seconds = dict[str, float]()
+    for contender in measured.methods():
+        counted = [row for row in measured.rows(contender.name) if row.counts and measure in row.errors]
+        found = seconds_at([(row.errors[measure], row.median(clocked)) for row in counted], target)
+        if found is not None:
+            seconds[contender.name] = found
+    first, second, *_ = (*sorted(seconds.values()), 0.0, 0.0)
+    return {
+        "measure": measure,
+        "error": target,
+        "clocked": clocked,
+        "fastest": min(seconds, key=lambda name: seconds[name], default=None),
+        "ahead": second / first if first and second else None,
+        "seconds": seconds,
+    }
+
+
+def seconds_at(points: Sequence[tuple[float, float]], target: float) -> float | None:
+    """Seconds from which the error is at most the ``target``, of (error, seconds) by ascending size; or None."""
+    first = max((place + 1 for place, (error, _) in enumerate(points) if error > target), default=0)
+    if first == len(points):
+        return None
+    (error, seconds), (before, quick) = points[first], points[max(first - 1, 0)]
+    if first == 0 or min(error, seconds, quick) <= 0.0:
+        return seconds
+    share = math.log(before / target) / math.log(before / error)
+    return math.exp(math.log(quick) + share * math.log(seconds / quick))
+
+
+def ratios(measured: Session) -> list[Plain]:
+    """``ratios``: times over the time of the CPRBM in ``paper``, at every size with another method.
+
+    A row that does not count has None.
+    """
+    found = []
+    for ours in (row for row in measured.rows("paper") if row.counts):
+        rows = {row.contender.name: row for row in measured.rows() if row.count == ours.count and row.counts}
+        record: Plain = {"n": plain(ours.count), **dict.fromkeys(_UNTIMED)}
+        for method in measured.methods():
+            for clocked in method.ratios:
+                mine, theirs = ours.median(clocked), rows.get(method.name)
+                record[_ratio_key(method.name, clocked)] = theirs.median(clocked) / mine if theirs and mine else None
+        if rows.keys() - {"paper", "fea"}:
+            found.append({**record, "iterations_per_station": ours.iterations_per_station})
+    return found
+
+
+def _ratio_key(name: str, clocked: Clocked) -> str:
+    """Key of a ratio in the JSON."""
+    return f"{name.replace('-', '_')}_{clocked}"
+
+
+def trends(measured: Session) -> list[Plain]:
+    """``trends``: growth of time and iterations of every method."""
+    omitted = [(one.name, plain(one.count)) for one in measured.omissions()]
+    found = {contender: trend(measured.rows(contender.name)) for contender in measured.methods()}
+    return [
+        {
+            "method": contender.method,
+            "formulation": contender.formulation,
+            "n": [plain(n) for n in sizes],
+            "exponent": exponent,
+            "iterations_ratio": iterations,
+            "left_out": [count for name, count in omitted if name == contender.name],
+        }
+        for contender, (sizes, exponent, iterations) in found.items()
+    ]

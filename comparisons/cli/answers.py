@@ -11,7 +11,8 @@ from typing import Literal
 import click
 
 from comparisons.audit import Audit, audit
-from comparisons.cli import bars, output
+from comparisons.cli import output
+from comparisons.cli.doctor import WHAT_DRAWS
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
 from comparisons.cli.request import Request
 from comparisons.formats import at_station, file_unit
@@ -19,7 +20,6 @@ from comparisons.logs import SOLVERS
 from comparisons.pairing import Solvers, exact_answer, solid_answer, solvers_of
 from comparisons.present.strips import Coloured, with_stresses
 from comparisons.quantities import load_unit
-from comparisons.starting.libraries import WHAT_DRAWS
 from comparisons.tolerances.result import Tolerance
 from comparisons.writing import write
 from cprbm_scene import Answer, Scene
@@ -44,7 +44,7 @@ def solve(request: Request, solver: SolverName) -> int:
 
 def _write(request: Request, scene: Scene, answer: Answer, audited: Audit, searches: tuple[Tolerance, ...]) -> None:
     """Write the files of an answer, and print its tables."""
-    from comparisons.present import answer_tables, csv_table, figures, json_document  # not for a quiet solve
+    from comparisons.present import case_tables, csv_table, figures, json_document  # not for a quiet solve
 
     if request.json_file is not None:
         document = json_document.solution(scene, answer, searches, audited)
@@ -54,7 +54,7 @@ def _write(request: Request, scene: Scene, answer: Answer, audited: Audit, searc
     if request.plot_file is not None and answer.stations:
         figures.answer_figure(scene, answer).save(request.plot_file)
     if request.prints and not request.quiet:
-        output.print_tables(answer_tables.answer_tables(scene, answer, searches))
+        output.print_tables(case_tables.answer_tables(scene, answer, searches))
 
 
 def _answer_of(request: Request, scene: Scene, solver: SolverName) -> Found:
@@ -67,11 +67,11 @@ def _answer_of(request: Request, scene: Scene, solver: SolverName) -> Found:
     if request.tol is not None and solver != "exact":
         from comparisons.tolerances.search import solve_within
 
-        with bars.status(shown=not request.quiet) as say:
+        with output.status(shown=not request.quiet) as say:
             answer, search = solve_within(scene, solver, request.choices, request.tol, solvers, say)
         return answer, audit(scene, answer), (search,)
     function = getattr(solvers, solver) or {"exact": exact_answer, "solid": solid_answer}[solver]
-    with bars.bar(1, shown=not request.quiet, loggers=SOLVERS):
+    with output.bar(1, shown=not request.quiet, loggers=SOLVERS):
         answer = function(scene, request.choices)
     return answer, audit(scene, answer), ()
 
@@ -95,13 +95,13 @@ def view(request: Request, solver: SolverName, quantity: Coloured, station: str 
         click.BadParameter: the file has no known ending, or the station does not exist.
         click.ClickException: VTK cannot draw here.
     """
-    from comparisons.present import animation, space  # not for a solve
+    from comparisons.present import view as pictures  # not for a solve
 
     scene = with_stresses(request.scene())
     path = request.out or Path(f"{scene.name}.png")
-    kind = animation.kind_of(path)
+    kind = pictures.kind_of(path)
     if kind is None:
-        allowed = f"a name that ends in {', '.join(animation.KINDS)}"
+        allowed = f"a name that ends in {', '.join(pictures.KINDS)}"
         raise click.BadParameter(f"found {path.name!r}; allowed: {allowed}", param_hint="--out")
     last = None if station is None else _station(scene, station)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -113,9 +113,9 @@ def view(request: Request, solver: SolverName, quantity: Coloured, station: str 
         return code
     shown = replace(answer, stations=answer.stations[: places[-1]])
     try:
-        for file, content in animation.files(scene, shown, path, kind, quantity):
+        for file, content in pictures.files(scene, shown, path, kind, quantity):
             write(file, content)
-    except space.DrawingError as trouble:
+    except pictures.DrawingError as trouble:
         remedy = f"On Debian and Ubuntu install its libraries with: {WHAT_DRAWS}"
         raise click.ClickException(f"VTK cannot draw in space here ({trouble}). {remedy}") from None
     if not request.quiet:

@@ -1,14 +1,143 @@
-"""``cprbm list`` and ``doctor``: built-in cases, and libraries with commands for installation."""
+"""``cprbm list`` and ``doctor``: built-in cases, and installed and missing libraries with install commands.
+
+Every library is imported in a separate process: without a library of the system the import may end the process.
+"""
 
 from __future__ import annotations
 
 import platform
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
 
 import click
 
 from comparisons import cases
 from comparisons.cli.errors import INCOMPLETE
-from comparisons.starting import libraries
+
+SECONDS = 120.0
+
+_APT = "apt-get install --yes --no-install-recommends"
+
+WHAT_DRAWS = f"{_APT} libegl1 libgl1-mesa-dri"
+"""Command for all that VTK needs to draw without a screen: the dispatcher, and Mesa's renderer."""
+
+
+@dataclass(frozen=True, slots=True)
+class Library:
+    """A library.
+
+    Attributes:
+        name: of the distribution; module: imported name; needed_for: purpose.
+        least: range of releases.
+        extra: part of the project with the library; empty of a required library.
+        system: command, as root on Debian and Ubuntu, for the libraries of the system; found on a bare Debian 12.
+    """
+
+    name: str
+    module: str
+    needed_for: str
+    least: str
+    extra: str = ""
+    system: str = ""
+
+    @property
+    def line(self) -> str:
+        """Command that installs the library for the running Python."""
+        return f'{shlex.quote(sys.executable)} -m pip install "{self.name}{self.least}"'
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """A library with the installed ``version`` and the ``trouble`` of the import; both empty without a value."""
+
+    library: Library
+    version: str
+    trouble: str
+
+    @property
+    def there(self) -> bool:
+        """Whether the library can be used."""
+        return bool(self.version) and not self.trouble
+
+    @property
+    def text(self) -> str:
+        """Version and purpose of the library, and the command that installs the library if needed."""
+        library = self.library
+        if not self.trouble:
+            install = "" if self.version else f"; install: {library.line}"
+            return f"{self.version or 'missing':<12} for {library.needed_for}{install}"
+        system = line_for(library.name, self.trouble)
+        remedy = f"install the library again: {library.line} --force-reinstall"
+        if system:
+            remedy = f"on Debian and Ubuntu install its system libraries, as root: {system}"
+        return f"{self.version:<12} cannot be imported ({self.trouble}); for {library.needed_for}; {remedy}"
+
+
+LIBRARIES = (
+    Library("numpy", "numpy", "every number", ">=2.0"),
+    Library("scipy", "scipy.linalg", "linear algebra", ">=1.13"),
+    Library("numba", "numba", "the compiled chain", ">=0.61"),
+    Library("scikit-fem", "skfem", "the finite elements", ">=12.0,<13"),
+    Library("shapely", "shapely", "outlines that cross", ">=2.1"),
+    Library("pydantic", "pydantic", "reading scenes and settings", ">=2.9"),
+    Library("click", "click", "the command line", ">=8.2"),
+    Library("rich", "rich", "tables and progress", ">=13.7"),
+    Library("jinja2", "jinja2", "pages", ">=3.1"),
+    Library("matplotlib", "matplotlib.figure", "figures", ">=3.9"),
+    Library("casadi", "casadi", "IPOPT, an optimiser that 'bench' compares with in a checkout", ">=3.6", "peers"),
+    Library("xarray", "xarray", "sweeps as NetCDF", ">=2024.7", "netcdf"),
+    Library("distributed", "distributed", "sweeps on many machines", ">=2024.8", "cluster"),
+    Library(
+        "threadpoolctl",
+        "threadpoolctl",
+        "linear algebra in one thread, where Python calls the solvers",
+        ">=3.5",
+        "threads",
+    ),
+    Library(
+        "gmsh",
+        "gmsh",
+        "meshes of the solid by gmsh, and 'import' of geometry",
+        ">=4.13",
+        "solid",
+        f"{_APT} libgl1 libglu1-mesa libgomp1 libxcursor1 libxft2 libxinerama1",
+    ),
+    Library("ezdxf", "ezdxf", "'import' of DXF drawings", ">=1.3", "dxf"),
+    Library("meshio", "meshio", "those meshes, and files for ParaView", ">=5.3", "solid"),
+    Library("pyvista", "pyvista", "pictures in space by 'view'", ">=0.44", "view", WHAT_DRAWS),
+)
+
+
+def states() -> Iterator[State]:
+    """State of every library."""
+    for library in LIBRARIES:
+        found = trouble = ""
+        with suppress(PackageNotFoundError):
+            found = version(library.name)
+            trouble = trouble_with(library.module)
+        yield State(library, found, trouble)
+
+
+def trouble_with(module: str) -> str:
+    """Trouble of an import: the last line of Python's message; empty after a successful import."""
+    try:
+        done = subprocess.run(
+            [sys.executable, "-c", f"import {module}"], capture_output=True, text=True, timeout=SECONDS, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return f"importing it takes more than {SECONDS:.0f} s"
+    last = (done.stderr.strip().splitlines() or [f"importing it ends Python with {done.returncode}"])[-1]
+    return last if done.returncode else ""
+
+
+def line_for(name: str, trouble: str) -> str:
+    """Command for the libraries of the system, if the ``trouble`` of a library names a shared library; else empty."""
+    return next((each.system for each in LIBRARIES if each.name == name), "") if ".so" in trouble else ""
 
 
 def list_cases() -> None:
@@ -22,7 +151,7 @@ def doctor(quiet: bool) -> int:  # noqa: FBT001 - click passes a keyword
     if not quiet:
         click.echo(f"Python {platform.python_version()}")
     there, missing, required = list[str](), list[str](), False
-    for state in libraries.states():
+    for state in states():
         lacking = not (state.there or state.library.extra)
         required |= lacking
         (there if state.there else missing).append(state.library.name)
@@ -40,8 +169,8 @@ def doctor(quiet: bool) -> int:  # noqa: FBT001 - click passes a keyword
 
 def _drawing_text() -> str:
     """Whether PyVista draws here."""
-    from comparisons.present.space import tried  # NumPy may be missing
+    from comparisons.present.view import tried  # NumPy may be missing
 
     trouble = tried()
-    remedy = f"{'impossible':<12} ({trouble}); on Debian and Ubuntu install, as root: {libraries.WHAT_DRAWS}"
+    remedy = f"{'impossible':<12} ({trouble}); on Debian and Ubuntu install, as root: {WHAT_DRAWS}"
     return remedy if trouble else f"{'works':<12} for pictures in space by 'view'"

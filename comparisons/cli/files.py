@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import json
 import re
+from importlib.resources import files
 from pathlib import Path
 
 import click
 
+from comparisons.cli.doctor import line_for
 from comparisons.cli.errors import printable
-from comparisons.importing.formats import read_drawing
+from comparisons.importing.drawing import read_drawing
 from comparisons.importing.scene_text import Choices, Unit, scene_text
-from comparisons.starting import template
-from comparisons.starting.libraries import line_for
 from comparisons.writing import write
+from cprbm_scene.reading import schema as schema_of_scenes
+
+SCHEMA = "scene.schema.json"
+"""Name of the schema's file, beside the scene that refers to it."""
 
 
 def new(name: str, out: Path, quiet: bool) -> None:  # noqa: FBT001 - click passes a keyword
@@ -22,8 +27,8 @@ def new(name: str, out: Path, quiet: bool) -> None:  # noqa: FBT001 - click pass
         click.UsageError: the name is wrong, or the file exists.
     """
     path = _free_path(out, name, "NAME", "another name")
-    write(path, template.text(name))
-    write(out / template.SCHEMA, template.schema_text())
+    write(path, first_scene(name))
+    write(out / SCHEMA, _schema_text())
     if not quiet:
         click.echo(f"{path}: change the scene, then run 'cprbm compare {path}'.")
 
@@ -54,7 +59,18 @@ def import_drawing(
 
 def schema() -> None:
     """Print the JSON schema of scene files."""
-    click.echo(template.schema_text(), nl=False)
+    click.echo(_schema_text(), nl=False)
+
+
+def first_scene(name: str) -> str:
+    """The first scene, commented, under a ``name`` of letters, digits, ``_`` and ``-``."""
+    template = files("comparisons.importing").joinpath("scene.toml").read_text(encoding="utf-8")
+    return template.replace("{schema}", SCHEMA).replace("{name}", name).replace("{file}", f"{name}.toml")
+
+
+def _schema_text() -> str:
+    """The JSON schema of scene files, with a line end."""
+    return json.dumps(schema_of_scenes(), indent=1, ensure_ascii=False) + "\n"
 
 
 def _free_path(out: Path, name: str, hint: str, remedy: str) -> Path:

@@ -2,31 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
 import click
 
-from comparisons.cli import bars, output
+from comparisons.cli import output
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
 from comparisons.cli.request import Request
-from comparisons.optimum import problem as problems
-from comparisons.optimum import result as optima
-from comparisons.optimum.search import PointSolver, search
 from comparisons.present.columns import Section
 from comparisons.present.page import Page, put_page, put_section
-from comparisons.scatter import study as scatters
-from comparisons.scatter.draws import distributions_of
-from comparisons.scatter.result import result_of
 from comparisons.sweeps import points as grids
-from comparisons.sweeps import running
 from comparisons.sweeps.demands import Demands, bounds_of, read_demands
-from comparisons.sweeps.netcdf import write_netcdf
+from comparisons.sweeps.optimum import optimum, optimum_section, problem_of
 from comparisons.sweeps.page import write_page
-from comparisons.sweeps.tables import write_tables
-from comparisons.sweeps.workers import Workers, workers_on
+from comparisons.sweeps.running import Runner, Sweep, tasks_of
+from comparisons.sweeps.scatter import distributions_of, scatter_section, study
+from comparisons.sweeps.tables import write_netcdf, write_tables
+from comparisons.sweeps.workers import workers_on
 from cprbm_scene import Scene
 
 
@@ -47,10 +43,9 @@ def sweep(
     scene = request.scene()
     axes, points = _points(request, scene, vary, sample)
     checked = grids.chosen_for_check(points, axes, check)
-    tasks = running.tasks_of(scene, points, solver, checked, request.choices, shard)
-    with _workers(request, scene, "sweep", len(tasks)) as (out, workers, moved):
-        found = running.Sweep(scene, axes, tasks, running.known_outcomes([out, *merge]))
-        found = running.run(found, workers, request.choices, request.solvers, request.at_most, out, moved)
+    tasks = tasks_of(scene, points, solver, checked, request.choices, shard)
+    with _runner(request, scene, "sweep", len(tasks)) as (out, runner):
+        found = runner.run(Sweep(scene, axes, tasks), merge)
     write_tables(out, found)
     write_page(out, found)
     if netcdf:
@@ -59,8 +54,7 @@ def sweep(
     if not request.quiet:
         for task, outcome in found.points():
             if not outcome.completed:
-                place = ", ".join(axis.text(task.point[axis.name]) for axis in axes)
-                click.echo(f"{place}: {outcome.sentence}")
+                click.echo(f"{grids.place_text(axes, task.point)}: {outcome.sentence}")
         click.echo(f"tables: {out / 'numbers.csv'}, {out / 'last.csv'}; page: {out / 'index.html'}")
     outcomes = [outcome for _, outcome in found.points()]
     if any(not outcome.completed or outcome.verdict == "DIFFER" for outcome in outcomes):
@@ -74,11 +68,10 @@ def tolerance(
     """Solve a sample of a scene's parameters, and print quantiles and yield; exit code 1 if a point is missing."""
     scene = request.scene()
     bounds = bounds_of(scene, read_demands(limits) if limits else Demands(), str(limits))
-    distributions = distributions_of(scene)
-    asked = scatters.study(scene, distributions, samples, solver, request.choices, indexed=sobol, bounds=bounds)
-    with _workers(request, scene, "tolerance", len(asked.sweep.tasks)) as (out, workers, moved):
-        found = scatters.solved(asked, workers, request.choices, request.solvers, request.at_most, out, moved)
-    result = result_of(found)
+    found = study(scene, distributions_of(scene), samples, solver, request.choices, indexed=sobol, bounds=bounds)
+    with _runner(request, scene, "tolerance", len(found.sweep.tasks)) as (out, runner):
+        found = replace(found, sweep=runner.run(found.sweep))
+    result = scatter_section(found)
     write_tables(out, found.sweep)
     _put(request, scene, out, result, f"{out / 'tolerance.json'}, {out / 'numbers.csv'}")
     return 0 if result.complete else INCOMPLETE
@@ -87,27 +80,22 @@ def tolerance(
 def optimise(request: Request, goal: Path, vary: tuple[str, ...], starts: int, solves: int) -> int:
     """Search the parameters of a scene for a goal; exit code 3 if the best point is undecided, 1 without an optimum."""
     scene = request.scene()
-    problem = problems.problem_of(scene, [grids.axis_of(text, request.si) for text in vary], goal)
-    with _workers(request, scene, "optimise", starts * solves) as (out, workers, moved):
-        known, journal = running.known_outcomes([out]), out / running.JOURNAL
-        settings = request.choices, request.solvers, request.at_most
-        solver = PointSolver(problem, workers, *settings, journal, known, moved)
-        found = optima.optimum(problem, search(problem, solver, starts, solves), solver)
-    _put(request, scene, out, optima.result_of(found), str(out / "optimum.json"))
+    problem = problem_of(scene, [grids.axis_of(text, request.si) for text in vary], goal)
+    with _runner(request, scene, "optimise", starts * solves) as (out, runner):
+        found = optimum(problem, runner, starts, solves)
+    _put(request, scene, out, optimum_section(found), str(out / "optimum.json"))
     if not found.doubt:
         return 0
     return UNDECIDED if found.compared.verdict == "UNDECIDED" else INCOMPLETE
 
 
 @contextmanager
-def _workers(
-    request: Request, scene: Scene, command: str, solves: int
-) -> Iterator[tuple[Path, Workers, Callable[[int], None]]]:
-    """Context with the folder, workers, and a bar to be moved to a number of finished solves."""
+def _runner(request: Request, scene: Scene, command: str, solves: int) -> Iterator[tuple[Path, Runner]]:
+    """Context with the folder, and the solver of the points with a bar."""
     out = request.out or Path(f"{command}-{scene.name}")
-    with workers_on(request.place) as workers, bars.bar(solves, shown=not request.quiet, loggers=()) as progress:
+    with workers_on(request.place) as workers, output.bar(solves, shown=not request.quiet, loggers=()) as progress:
         request.with_room(str(out))
-        yield out, workers, progress.move
+        yield out, Runner(workers, request.choices, request.solvers, request.at_most, out, progress.move)
 
 
 def _put(request: Request, scene: Scene, out: Path, result: Section, numbers: str) -> None:

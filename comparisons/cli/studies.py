@@ -1,31 +1,36 @@
-"""``cprbm bench`` and ``study``: run times and calibration, with output after every step."""
+"""``cprbm bench`` and ``study``: run times and calibration, with output after every step.
+
+After every step the page and the JSON file are whole: an interrupted command leaves all finished work.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Literal
+from typing import Literal, TypeVar
 
 import click
 
 from comparisons import provenance, workshop
-from comparisons.bench import contenders, measures, running
-from comparisons.bench.contenders import OURS
-from comparisons.bench.section import bench_section
-from comparisons.bench.tables import size_text
+from comparisons.bench import measures, running
+from comparisons.bench.running import OURS, Session
+from comparisons.bench.section import bench_section, size_text
 from comparisons.choices import Count, check
-from comparisons.cli import bars, pipeline
-from comparisons.cli.declarations import OPTIMISERS
+from comparisons.cli import output
 from comparisons.cli.errors import INCOMPLETE
+from comparisons.cli.main import OPTIMISERS
 from comparisons.cli.request import Request
-from comparisons.present.page import own_folder
+from comparisons.present.columns import Section
+from comparisons.present.page import Page, own_folder, put_page, put_section
 from comparisons.store import run_into
 from comparisons.studies import calibration as calibrations
 from comparisons.studies import table1 as timings
 from comparisons.verdict import Word
 from cprbm_scene.frozendict import frozendict
 
-Session = running.Session
+Study = TypeVar("Study")
+Step = TypeVar("Step")
 
 
 def bench(
@@ -49,7 +54,7 @@ def bench(
     for n in counts:
         check(replace(request.choices, links=n), opened)
     asked = [
-        *(each for each in contenders.contenders(request.solvers, request.choices) if each.name in (methods or OURS)),
+        *(each for each in running.contenders(request.solvers, request.choices) if each.name in (methods or OURS)),
         *(
             workshop.load(f"bench --method {name}").contender()
             for name in OPTIMISERS
@@ -67,11 +72,11 @@ def bench(
     request = request.with_room()
     if request.out is not None:
         request = replace(request, out=own_folder(request.out, opened.name))
-    with bars.status(shown=not request.quiet) as say:
+    with output.status(shown=not request.quiet) as say:
         say("reference of the errors")
         known = measures.reference(question, request.solvers)
     session = Session(opened if whole else question, plan, taking, provenance.machine(), known, absent)
-    pipeline.take_steps(request, session, session.jobs(), Session.do, bench_section)
+    take_steps(request, session, session.jobs(), Session.do, bench_section)
     failed = [row for row in session.rows() if row.contender.name in OURS and not row.outcome.completed]
     for row in failed:
         who = f"{row.contender.label} at N = {size_text(row.count)}"
@@ -79,7 +84,7 @@ def bench(
     return INCOMPLETE if failed else 0
 
 
-def _absence(contender: contenders.Contender, *, whole: bool) -> str:
+def _absence(contender: running.Contender, *, whole: bool) -> str:
     """Reason against a method; empty for a possible method."""
     alone = whole and contender.is_peer
     return "an optimiser solves the last station only" if alone else contender.absence
@@ -90,9 +95,7 @@ def calibration(request: Request) -> int:
     request = request.with_room()
     with run_into(request.out, request.solvers, processes=request.processes) as run:
         take = partial(calibrations.with_case, solvers=run.solvers, crew=run.crew)
-        found = pipeline.take_steps(
-            request, calibrations.Calibration(), calibrations.pieces(), take, calibrations.result_of
-        )
+        found = take_steps(request, calibrations.Calibration(), calibrations.pieces(), take, calibrations.result_of)
     verdicts = [trial.verdict for trial in found.trials]
     return INCOMPLETE if any(each.word is Word.DIFFER or not each.completed for each in verdicts) else 0
 
@@ -101,5 +104,41 @@ def table1(request: Request, repeat: int) -> int:
     """Time both solvers on the cells of the paper's Table 1; exit code 1 for an incomplete solve."""
     request = request.with_room()
     session = timings.session(request.solvers, provenance.machine(), repeat, request.at_most)
-    pipeline.take_steps(request, session, session.jobs(), Session.do, timings.result_of)
+    take_steps(request, session, session.jobs(), Session.do, timings.result_of)
     return 0 if timings.result_of(session).complete else INCOMPLETE
+
+
+def take_steps(
+    request: Request,
+    study: Study,
+    steps: Sequence[Step],
+    take: Callable[[Study, Step], Study],
+    section_of: Callable[[Study], Section],
+) -> Study:
+    """The finished study; every step writes the partial section, and an interrupted study shows its section."""
+    written: Section | None = None
+    with output.bar(len(steps), shown=not request.quiet) as progress:
+        try:
+            for step in progress.through(steps):
+                study, written = take(study, step), None
+                if request.out is not None or (request.json_file is not None and request.prints):
+                    written = _write_files(request, section_of(study))
+        finally:
+            section = written or _write_files(request, section_of(study))
+            progress.clear()
+            if not request.prints:
+                output.write_json(request.json_file, dict(section.data))
+            elif not request.quiet:
+                output.print_section(section)
+                output.print_folder(request, f"{section.name}.html")
+    return study
+
+
+def _write_files(request: Request, section: Section) -> Section:
+    """The section, whose files are written now."""
+    if request.prints:
+        output.write_json(request.json_file, dict(section.data))
+    if request.out is not None:
+        put_section(request.out, section)
+        put_page(request.out, Page(section.heading, "", further=(section,)), section.name)
+    return section

@@ -1,19 +1,22 @@
-"""``cprbm compare``, ``converge`` and ``report``: both solvers on questions, as tables, JSON and a page."""
+"""``cprbm compare``, ``converge`` and ``report``: both solvers on questions, as tables, JSON and a page.
+
+After every result the page and the JSON file are whole: an interrupted command leaves all finished work.
+"""
 
 from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import partial
 from logging import NOTSET
-from pathlib import Path
 
 import click
 
 from comparisons import case, cases, logs, offset_verdict, pairing, provenance
 from comparisons.case import Comparison
-from comparisons.cli import bars, output, pipeline
+from comparisons.cli import output
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
 from comparisons.cli.request import Request
 from comparisons.present import brief, case_tables, csv_table, figures, offset, page
@@ -39,13 +42,24 @@ def compare_all(request: Request) -> int:
     questions = request.questions()
     request = request.with_room("report" if "all" in request.arguments else "")
     # with a tolerance a status line with N replaces the bar
-    progress = bars.bar(len(questions), shown=not request.quiet and request.tol is None, noun="case")
-    ends = _put_case, page.report_page, _document, partial(_show, request)
-    finished = pipeline.answer_all(request, questions, partial(_comparisons, request, questions), progress, *ends)
+    progress = output.bar(len(questions), shown=not request.quiet and request.tol is None, noun="case")
+    finished, chapters, documents = list[Compared](), list[page.Chapter](), list[Plain]()
+    with _run(request, questions) as run, progress as shown:
+        for compared in _comparisons(request, questions, run, shown):
+            finished.append(compared)
+            documents.append(page.document_of(compared))
+            if request.out is not None:
+                chapters.append(page.put_case(request.out, compared, page.figures_of(compared)))
+            _keep(request, run, questions[: len(finished)], page.report_page(chapters), {"cases": documents})
+            shown.clear()
+            if request.prints:
+                _show(request, compared)
+    if not request.prints:
+        output.write_json(request.json_file, {"cases": documents})
     _export(request, [found for found in finished if isinstance(found, Comparison)])
     if request.prints and not request.quiet and len(finished) > 1:
         output.print_tables([brief.summary(finished)], brief.WIDTH)
-    pipeline.print_folder(request)
+    output.print_folder(request)
     verdicts = [found.verdict for found in finished]
     if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):
         return INCOMPLETE
@@ -53,7 +67,7 @@ def compare_all(request: Request) -> int:
     return UNDECIDED if undecided or any(map(_failed_searches, finished)) else 0
 
 
-def _comparisons(request: Request, questions: Sequence[Question], run: Run, progress: bars.Bar) -> Iterator[Compared]:
+def _comparisons(request: Request, questions: Sequence[Question], run: Run, progress: output.Bar) -> Iterator[Compared]:
     """Comparisons of all questions; the next question is solved while the caller draws and prints the last."""
     begun = partial(_begin, request, [] if request.tol else questions, run)
     following = begun(0)
@@ -65,7 +79,7 @@ def _comparisons(request: Request, questions: Sequence[Question], run: Run, prog
             yield case.compare(question, pending())
         else:
             assert request.tol is not None
-            with bars.status(shown=not request.quiet) as say:
+            with output.status(shown=not request.quiet) as say:
                 runs, searches = runs_within(question, request.choices, request.tol, run.solvers, run.crew, say)
             yield replace(case.compare(question, runs), tolerances=searches)
 
@@ -78,21 +92,27 @@ def _begin(request: Request, questions: Sequence[Question], run: Run, place: int
     return pairing.begin(question, request.choices, run.solvers, run.crew)
 
 
-def _put_case(out: Path, question: Question, compared: Compared) -> page.Chapter:
-    figures = page.figures_of(compared)
-    page.put_case(out, compared, figures)
-    return page.case_chapter(compared, figures)
+def _run(request: Request, questions: Sequence[Question]) -> AbstractContextManager[Run]:
+    """Context with the run of the questions into the folder of the request."""
+    names = tuple(question.name for question in questions)
+    return run_into(request.out, request.solvers, names, request.processes)
 
 
-def _document(finished: Sequence[Compared]) -> Plain:
-    return {"cases": [page.document_of(compared) for compared in finished]}
+def _keep(request: Request, run: Run, shown: Sequence[Question], whole: page.Page, document: Plain) -> None:
+    """Write the page and the JSON of the questions ``shown``, unless they would replace more; the last one is new."""
+    run.mark_shown(shown[-1].name)
+    if run.covers([question.name for question in shown]):
+        if request.out is not None:
+            page.put_page(request.out, whole)
+        if request.prints:
+            output.write_json(request.json_file, document)
 
 
-def _show(request: Request, question: Question, compared: Compared) -> None:
+def _show(request: Request, compared: Compared) -> None:
     """Print a case: in brief, with ``-v`` with all tables, or quietly with the verdict alone."""
     if not request.quiet and logs.level() == NOTSET:
         values = [text for name, value in request.values.items() for text in ("--set", f"{name}={value}")]
-        click.echo(brief.brief(compared, shlex.join([cases.argument(question), *values]), request.out) + "\n")
+        click.echo(brief.brief(compared, shlex.join([cases.argument(compared.question), *values]), request.out) + "\n")
         return
     if not request.quiet:
         for section in (
@@ -101,9 +121,9 @@ def _show(request: Request, question: Question, compared: Compared) -> None:
             else offset.offset_sections(compared)
         ):
             output.print_section(section)
-    click.echo(brief.headline(question.name, compared.verdict, compared.verdict.sentence))
+    click.echo(brief.headline(compared.question.name, compared.verdict, compared.verdict.sentence))
     for sentence in _failed_searches(compared):
-        click.echo(f"{question.name}: {sentence}")
+        click.echo(f"{compared.question.name}: {sentence}")
 
 
 def _failed_searches(compared: Compared) -> list[str]:
@@ -128,27 +148,26 @@ def converge_all(request: Request, sizes: tuple[int, ...]) -> int:
     questions = request.questions()
     request = request.with_room("convergence" if "all" in request.arguments else "")
 
-    def results(run: Run, progress: bars.Bar) -> Iterator[Section]:
-        for question in progress.through(questions):
-            yield convergence.convergence_section(question, sizes, request.choices, run.solvers, run.crew)
-
-    def chapter(out: Path, question: Question, section: Section) -> page.Chapter:
-        page.put_section(page.own_folder(out, question.name), section)
-        return page.section_chapter(question, [section])
-
-    def document(finished: Sequence[Section]) -> Plain:
-        return dict(finished[0].data) if len(questions) == 1 else {"cases": [each.data for each in finished]}
-
-    def show(question: Question, section: Section) -> None:
-        output.print_tables(() if request.quiet else section.tables)
-        for sentence in section.sentences:
-            click.echo(f"{question.name}: {sentence}")
-
-    progress = bars.bar(len(questions), shown=not request.quiet, share=0.8)
-    finished = pipeline.answer_all(
-        request, questions, results, progress, chapter, page.convergence_page, document, show
-    )
-    pipeline.print_folder(request)
+    progress = output.bar(len(questions), shown=not request.quiet, share=0.8)
+    finished, chapters, document = list[Section](), list[page.Chapter](), dict[str, object]()
+    with _run(request, questions) as run, progress as shown:
+        for question in shown.through(questions):
+            section = convergence.convergence_section(question, sizes, request.choices, run.solvers, run.crew)
+            finished.append(section)
+            data = [each.data for each in finished]
+            document = {"cases": data} if len(questions) > 1 else dict(*data)
+            if request.out is not None:
+                page.put_section(page.own_folder(request.out, question.name), section)
+                chapters.append(page.section_chapter(question, [section]))
+            _keep(request, run, questions[: len(finished)], page.convergence_page(chapters), document)
+            shown.clear()
+            if request.prints:
+                output.print_tables(() if request.quiet else section.tables)
+                for sentence in section.sentences:
+                    click.echo(f"{question.name}: {sentence}")
+    if not request.prints:
+        output.write_json(request.json_file, document)
+    output.print_folder(request)
     return 0 if all(section.complete for section in finished) else INCOMPLETE
 
 
@@ -161,11 +180,8 @@ def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -
     counts = () if "convergence" in without else sizes
     parts = Parts(request.choices, counts, "times" not in without, request.exact)
     found = Report(request.out, questions, parts, request.solvers, provenance.page_origin())
-    missing, names = found.missing(), tuple(question.name for question in questions)
-    with (
-        run_into(request.out, request.solvers, names, request.processes) as run,
-        bars.bar(len(missing), shown=not request.quiet) as progress,
-    ):
+    missing = found.missing()
+    with _run(request, questions) as run, output.bar(len(missing), shown=not request.quiet) as progress:
         pending = _begin(request, missing, run, 0)
         for place, question in enumerate(progress.through(missing)):
             content = found.content_of(question, pending, run)
@@ -173,8 +189,7 @@ def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -
             pending = _begin(request, missing, run, place + 1)
             found.add(question, *content)
         found.add_table()
-    if request.json_file is not None:
-        output.write_json(request.json_file, found.document())
+    output.write_json(request.json_file, found.document() if request.json_file else {})
     for chapter in found.chapters.values() if request.prints else ():
         click.echo(f"{chapter.name}: {chapter.word}. {chapter.sentence}")
-    pipeline.print_folder(request)
+    output.print_folder(request)

@@ -68,6 +68,14 @@ def canvas(width: float, height: float) -> Iterator[Drawing]:
         yield Drawing(figsize=(width, height), layout="constrained")
 
 
+def panels(drawing: Drawing, count: int, height: float) -> list[Axes]:
+    """Axes of ``count`` panels of a ``height``, inches, in at most two columns; the drawing takes their size."""
+    columns = min(count, 2)
+    rows = -(-count // columns)
+    drawing.set_size_inches(4.2 * columns, height * rows)
+    return [drawing.add_subplot(rows, columns, place + 1) for place in range(count)]
+
+
 def finished(drawing: Drawing, name: str, caption: str) -> Figure:
     """The figure of a drawing."""
     layout = drawing.get_layout_engine()

@@ -8,7 +8,7 @@ files of further sections, and all figures as SVG and PNG.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from errno import EPERM
 from importlib.resources import files
@@ -236,14 +236,17 @@ def own_folder(folder: Path, name: str) -> Path:
     return own
 
 
-def put_case(folder: Path, compared: Comparison | OffsetComparison, figures: Iterable[Figure]) -> None:
-    """Write numbers, answers and figures of a case into a folder of a report.
+def put_case(
+    folder: Path, compared: Comparison | OffsetComparison, figures: Sequence[Figure], further: Sequence[Section] = ()
+) -> Chapter:
+    """The chapter of a case, with numbers, answers, figures and further sections written into a folder of a report.
 
     Raises:
         OSError: the folder cannot be written to.
     """
     own, name = own_folder(folder, compared.question.name), "comparison"
-    put_section(own, Section("", figures=tuple(figures), name=name, data={"cases": [document_of(compared)]}))
+    for section in (Section("", (), tuple(figures), (), name, {"cases": [document_of(compared)]}), *further):
+        put_section(own, section)
     if isinstance(compared, Comparison):
         runs = compared.runs
         others = {
@@ -255,6 +258,7 @@ def put_case(folder: Path, compared: Comparison | OffsetComparison, figures: Ite
         found = {name: each for name, each in others.items() if each is not None}
         write(own / "answers.json.gz", packed({**dict(runs.everything()), **found}))
         write(own / _CONTACT_FORCES, contact_csv(compared.scene, (runs.cprbm[0], runs.reference)))
+    return case_chapter(compared, figures, further)
 
 
 def put_section(folder: Path, section: Section) -> None:

@@ -18,9 +18,8 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic_core import to_json
 
 from comparisons import cases, provenance
-from comparisons.bench.contenders import OURS, contenders
 from comparisons.bench.measures import benchmark_scene, reference
-from comparisons.bench.running import Plan, Session, refusal_text
+from comparisons.bench.running import OURS, Plan, Session, contenders, refusal_text
 from comparisons.bench.section import bench_section
 from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
@@ -29,7 +28,6 @@ from comparisons.pairing import Solvers, paired
 from comparisons.present.columns import Section
 from comparisons.present.page import (
     Chapter,
-    case_chapter,
     figures_of,
     light,
     put_case,
@@ -153,11 +151,7 @@ class Report:
         Raises:
             OSError: the folder cannot be written to.
         """
-        own, figures = self.folder / question.name, figures_of(compared)
-        put_case(self.folder, compared, figures)
-        for section in further:
-            put_section(own, section)
-        chapter = case_chapter(compared, figures, further)
+        own, chapter = self.folder / question.name, put_case(self.folder, compared, figures_of(compared), further)
         chapter = replace(chapter, files=("scene.toml", *chapter.files))
         write(own / "scene.toml", chapter.scene)
         # the last of all files: with it all are there

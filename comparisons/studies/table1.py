@@ -14,9 +14,8 @@ from functools import partial
 from typing import Literal
 
 from comparisons import cases
-from comparisons.bench.contenders import Contender, Run, outcome_of
 from comparisons.bench.measures import at_last_loads
-from comparisons.bench.running import Plan, Session, Timing
+from comparisons.bench.running import Contender, Plan, Run, Session, Timing, outcome_of
 from comparisons.choices import Choices, Count
 from comparisons.formats import number
 from comparisons.pairing import Solvers

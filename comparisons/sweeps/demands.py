@@ -31,8 +31,8 @@ from cprbm_scene.reading import toml_data
 from cprbm_scene.units import Reading, Record
 
 
-class Goal(Record):
-    """Number of a probe to minimise, to maximise or to bring to a ``value``.
+class _Asked(Record):
+    """Number of a probe.
 
     ``component`` belongs to a probe with two components, ``stage`` is the last stage of the probe unless stated, and
     ``at`` selects the last or every station of the stage.
@@ -42,6 +42,11 @@ class Goal(Record):
     component: str = ""
     stage: str = ""
     at: Literal["last", "every"] = "last"
+
+
+class Goal(_Asked):
+    """Number of a probe to minimise, to maximise or to bring to a ``value``."""
+
     aim: Literal["minimise", "maximise", "reach"] = "minimise"
     value: float | None = None
 
@@ -51,13 +56,9 @@ class Goal(Record):
             yield Mistake("value", str(self.value), "a value with aim = 'reach' only")
 
 
-class Limit(Record):
-    """The ``least`` and the ``most`` of a number of a probe; further keys as of :class:`Goal`."""
+class Limit(_Asked):
+    """The ``least`` and the ``most`` of a number of a probe."""
 
-    probe: str
-    component: str = ""
-    stage: str = ""
-    at: Literal["last", "every"] = "last"
     least: float | None = None
     most: float | None = None
 
@@ -171,7 +172,7 @@ def bounds_of(scene: Scene, demands: Demands, file: str) -> tuple[Bound, ...]:
     )
 
 
-def measure_of(scene: Scene, wanted: Goal | Limit, key: str, file: str) -> Measure:
+def measure_of(scene: Scene, wanted: _Asked, key: str, file: str) -> Measure:
     """The number of a goal or of a limit in a ``file``.
 
     Raises:

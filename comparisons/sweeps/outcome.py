@@ -78,16 +78,21 @@ def outcome_of(line: str) -> tuple[str, Outcome]:
     return data.pop("key"), Outcome(**{**data, "numbers": tuple(data["numbers"])})
 
 
+def crashed(asked: Asked, cause: str) -> Outcome:
+    """The outcome at a point whose process died."""
+    return Outcome(asked, "CRASHED", f"{cause}; the same command tries again")
+
+
 def solve_limited(scene: Scene, choices: Choices, asked: Asked, solvers: Solvers, seconds: float) -> Outcome:
     """The outcome at a point, solved in the child of this thread; a crash or a time-out is tried again."""
-    found = Outcome(asked, "CRASHED", "")
-    for _ in range(ATTEMPTS):
+    for attempt in range(1, ATTEMPTS + 1):
         try:
             return call_limited(seconds, solve, scene, choices, asked, solvers)
         except TimeLimitError:
-            found = Outcome(asked, "TIME_LIMIT", f"{ATTEMPTS} solves took more than {seconds:g} s", limit=seconds)
+            late = f"{attempt} solves took more than {seconds:g} s; a longer --at-most tries again"
+            found = Outcome(asked, "TIME_LIMIT", late, limit=seconds)
         except WorkerDiedError as error:
-            found = Outcome(asked, "CRASHED", f"{ATTEMPTS} solves crashed: {error}", limit=seconds)
+            found = crashed(asked, f"{attempt} solves crashed: {error}")
     return found
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
@@ -35,7 +35,7 @@ _DIGITS = 12
 """Digits of a value in a grid: equal values of two grids are equal numbers."""
 
 _VARIED = re.compile(r"\s*(?P<name>\w+)\s*=\s*(?P<low>.+?)\s*\.\.\s*(?P<high>.+?)\s*(?::\s*(?P<count>\d{1,6})\s*)?")
-_UNIT = re.compile(r"[-+.\d]*(?:[eE][-+]?\d+)?\s*(.*)")
+_QUANTITY = re.compile(r"(?P<number>[-+.\d]*\d\.?(?:[eE][-+]?\d+)?)\s*(?P<unit>[^-+.\deE\s].*)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,9 +60,23 @@ class Axis:
         """The equally spaced values, SI."""
         return [float(f"{value:.{_DIGITS}g}") for value in np.linspace(self.low, self.high, self.count)]
 
+    @property
+    def label(self) -> str:
+        """Name and unit."""
+        return f"{self.name}, {self.unit}".rstrip(", ")
+
+    def of(self, point: Point) -> float:
+        """Value of a point in the displayed unit."""
+        return point[self.name] / self.size
+
     def text(self, value: float) -> str:
         """An SI value with name and unit."""
         return f"{self.name} = {value / self.size:.6g} {self.unit}".rstrip()
+
+
+def place_text(axes: Iterable[Axis], point: Point) -> str:
+    """Values of a point with names and units."""
+    return ", ".join(axis.text(point[axis.name]) for axis in axes)
 
 
 def axis_of(text: str, in_si: InSI) -> Axis:
@@ -75,14 +89,13 @@ def axis_of(text: str, in_si: InSI) -> Axis:
     if found is None or found["count"] in ("0", "1"):
         raise _refused("--vary", repr(text), "NAME=FIRST..LAST:COUNT with two values or more, as t=1.8mm..2.2mm:11")
     name, last = found["name"], found["high"]
-    unit = _UNIT.fullmatch(last)
     low, high = in_si(name, found["low"]), in_si(name, last)
-    named = unit is not None and unit[1] != ""
-    number = float(last.removesuffix(unit[1])) if unit is not None and named else 0.0
     if low == high:
         raise _refused("--vary", repr(text), "two different values")
-    size = high / number if number else 1.0
-    return Axis(name, low, high, int(found["count"] or 0), unit[1] if unit is not None and number else "", size)
+    parts = _QUANTITY.fullmatch(last)
+    number, unit = (float(parts["number"]), parts["unit"]) if parts else (0.0, "")
+    count = int(found["count"] or 0)
+    return Axis(name, low, high, count, unit, high / number) if number else Axis(name, low, high, count)
 
 
 def grid(axes: Sequence[Axis]) -> tuple[Point, ...]:

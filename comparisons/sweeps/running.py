@@ -1,30 +1,33 @@
-"""A sweep: points, keys, known outcomes, and the solves of unknown points by an executor."""
+"""A sweep: points, keys, known outcomes, the solves of unknown points by an executor, and sweeps from Python."""
 
 from __future__ import annotations
 
 import logging
+import os
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
 
-from comparisons.choices import Choices, check
+from comparisons.choices import Choices
+from comparisons.choices import check as check_choices
 from comparisons.pairing import Solvers
 from comparisons.store import digest, relevant
-from comparisons.sweeps.outcome import Asked, Outcome, outcome_of, solve_limited
-from comparisons.sweeps.points import Axis, Point
-from comparisons.sweeps.workers import Workers
+from comparisons.sweeps.outcome import Asked, Outcome, crashed, outcome_of, solve_limited
+from comparisons.sweeps.points import Axis, Point, chosen_for_check, in_file_units
+from comparisons.sweeps.tables import write_tables
+from comparisons.sweeps.workers import Workers, workers_on
 from comparisons.writing import append_line, whole_lines
 from cprbm_scene import Mistake, Scene, SceneError
+from cprbm_scene.frozendict import frozendict
 
 _LOG = logging.getLogger(__name__)
 
 JOURNAL = "outcomes.jsonl"
 """File of all outcomes: a line per solved point, written by the asking process alone."""
-
-_AGAIN = ("CRASHED", "TIME_LIMIT")
-"""Endings that a larger time limit may change."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +63,7 @@ class Sweep:
     scene: Scene
     axes: tuple[Axis, ...]
     tasks: tuple[Task, ...]
-    outcomes: Mapping[str, Outcome]
+    outcomes: Mapping[str, Outcome] = frozendict()
 
     def points(self) -> Iterator[tuple[Task, Outcome]]:
         """Solved points in order."""
@@ -107,7 +110,7 @@ def tasks_of(
     Raises:
         SceneError: the scene at a point is invalid.
     """
-    check(choices, scene)
+    check_choices(choices, scene)
     found, refused = [], []
     for place in range(shard[0] - 1, len(points), shard[1]):
         point = points[place]
@@ -135,7 +138,7 @@ def _key(asked: Asked, scene: str, choices: Choices) -> str:
 
 
 def known_outcomes(folders: Sequence[Path]) -> dict[str, Outcome]:
-    """Outcomes by key in the journals of folders; a damaged line is ignored with a note.
+    """Outcomes in the journals of ``folders`` by key; a line that a kill cut short is dropped.
 
     Raises:
         OSError: a journal cannot be read.
@@ -152,77 +155,110 @@ def known_outcomes(folders: Sequence[Path]) -> dict[str, Outcome]:
     return outcomes
 
 
-def run(
-    sweep: Sweep,
-    workers: Workers,
-    choices: Choices,
-    solvers: Solvers,
-    limit: float,
-    out: Path | None,
-    moved: Callable[[int], None] = lambda done: None,
-) -> Sweep:
-    """The sweep with outcomes of all points; each outcome is written into the journal of ``out`` at once.
+@dataclass(frozen=True, slots=True)
+class Runner:
+    """Solver of the points of a sweep.
 
-    Args:
-        sweep: points and known outcomes.
+    Attributes:
         workers: solve the points.
         choices: how finely, and by which variants.
         solvers: the functions that answer.
         limit: time limit per solve, s.
         out: folder of the journal; None for no journal.
         moved: called with the number of finished points.
-
-    Raises:
-        OSError: the journal cannot be written.
     """
-    journal = None if out is None else out / JOURNAL
-    if journal is not None and journal.is_symlink():  # outcomes belong into the folder
-        journal.unlink()
-    tasks = tuple(task.known(sweep.outcomes) for task in sweep.tasks)
-    wanted = {task.key: task for task in tasks}
-    known = {key: sweep.outcomes[key] for key in wanted if key in sweep.outcomes}
-    outcomes = {key: found for key, found in known.items() if not _again(found, limit)}
-    moved(len(outcomes))
-    unknown = [task for key, task in wanted.items() if key not in outcomes]
-    for task, outcome in _solved(unknown, workers, choices, solvers, limit):
-        outcomes[task.key] = outcome
-        if journal is not None:
-            append_line(journal, outcome.line(task.key))
-        moved(len(outcomes))
-    return replace(sweep, tasks=tasks, outcomes=outcomes)
+
+    workers: Workers
+    choices: Choices
+    solvers: Solvers
+    limit: float
+    out: Path | None = None
+    moved: Callable[[int], None] = lambda done: None
+
+    def run(self, sweep: Sweep, merged: Sequence[Path] = ()) -> Sweep:
+        """The sweep with outcomes of all points; each outcome is written into the journal at once.
+
+        A point that crashed is solved again, and a point that took too long if the time limit is larger.
+
+        Args:
+            sweep: points and known outcomes.
+            merged: folders with further journals.
+
+        Raises:
+            OSError: a journal cannot be read or written.
+        """
+        folders = merged if self.out is None else (self.out, *merged)
+        every = {**sweep.outcomes, **known_outcomes(folders)}
+        journal = None if self.out is None else self.out / JOURNAL
+        if journal is not None and journal.is_symlink():  # outcomes belong into the folder
+            journal.unlink()
+        tasks = tuple(task.known(every) for task in sweep.tasks)
+        wanted = {task.key: task for task in tasks}
+        outcomes = {key: every[key] for key in wanted if key in every and not self._again(every[key])}
+        self.moved(len(outcomes))
+        for task, outcome in self._solved([task for key, task in wanted.items() if key not in outcomes]):
+            outcomes[task.key] = outcome
+            if journal is not None:
+                append_line(journal, outcome.line(task.key))
+            self.moved(len(outcomes))
+        return replace(sweep, tasks=tasks, outcomes=outcomes)
+
+    def _again(self, outcome: Outcome) -> bool:
+        """Whether a further solve may change the outcome."""
+        return outcome.ending == "CRASHED" or (outcome.ending == "TIME_LIMIT" and self.limit > outcome.limit)
+
+    def _solved(self, tasks: Sequence[Task]) -> Iterator[tuple[Task, Outcome]]:
+        """Points with outcomes in the order of their ends.
+
+        A point whose workers died is solved once more, last and alone.
+        """
+        queue, suspects = deque(tasks), deque[Task]()
+        pending: dict[Future[Outcome], Task] = {}
+        executor, settings = self.workers.executor, (self.solvers, self.limit)
+
+        def submit(task: Task) -> None:
+            pending[executor.submit(solve_limited, task.scene, self.choices, task.asked, *settings)] = task
+
+        try:
+            while queue or pending or suspects:
+                for _ in range(min(self.workers.window() - len(pending), len(queue))):
+                    submit(queue.popleft())
+                alone = not pending
+                if alone:
+                    submit(suspects.popleft())
+                for future in wait(pending, return_when=FIRST_COMPLETED).done:
+                    task = pending.pop(future)
+                    try:
+                        yield task, future.result()
+                    except self.workers.lost as error:
+                        if alone:
+                            yield task, crashed(task.asked, f"the workers died: {error}")
+                        else:  # an other point of the same worker may be the reason
+                            suspects.append(task)
+        finally:
+            for future in pending:
+                future.cancel()
 
 
-def _solved(
-    tasks: Sequence[Task], workers: Workers, choices: Choices, solvers: Solvers, limit: float
-) -> Iterator[tuple[Task, Outcome]]:
-    """Points with outcomes in the order of their ends; a point whose workers died is solved once more, last, alone."""
-    queue, suspects = deque(tasks), deque[Task]()
-    pending: dict[Future[Outcome], Task] = {}
-
-    def submit(task: Task) -> None:
-        pending[workers.executor.submit(solve_limited, task.scene, choices, task.asked, solvers, limit)] = task
-
-    try:
-        while queue or pending or suspects:
-            for _ in range(min(workers.window() - len(pending), len(queue))):
-                submit(queue.popleft())
-            alone = not pending
-            if alone:
-                submit(suspects.popleft())
-            for future in wait(pending, return_when=FIRST_COMPLETED).done:
-                task = pending.pop(future)
-                try:
-                    yield task, future.result()
-                except workers.lost as error:
-                    if alone:
-                        yield task, Outcome(task.asked, "CRASHED", f"the workers died: {error}", limit=limit)
-                    else:  # an other point of the same worker may be the reason
-                        suspects.append(task)
-    finally:
-        for future in pending:
-            future.cancel()
-
-
-def _again(outcome: Outcome, limit: float) -> bool:
-    """Whether a larger time limit may change the outcome."""
-    return outcome.ending in _AGAIN and limit > outcome.limit
+def start(
+    scene: Scene,
+    vary: Mapping[str, Sequence[float]],
+    asked: Asked,
+    check: int,
+    choices: Choices | None,
+    executor: Executor | str | None,
+    limit: float,
+    out: Path | None,
+) -> Sweep:
+    """The finished sweep of a grid; arguments and errors as of :func:`comparisons.sweep`."""
+    points = tuple(dict(zip(vary, map(float, values), strict=True)) for values in product(*vary.values()))
+    axes = [Axis(name, min(each), max(each), len(each)) for name, each in vary.items()]
+    chosen, place = choices or Choices(), executor or f"local:{os.cpu_count() or 1}"
+    tasks = tasks_of(scene, points, asked, chosen_for_check(points, axes, check), chosen)
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+    with workers_on(place) if isinstance(place, str) else nullcontext(Workers(place)) as workers:
+        sweep = Runner(workers, chosen, Solvers(), limit, out).run(Sweep(scene, in_file_units(scene, axes), tasks))
+    if out is not None:
+        write_tables(out, sweep)
+    return sweep

@@ -8,9 +8,15 @@ N       links or elements per beam, of the solid elements along each beam
 f       stated uncertainty of a row (a probe at a station) over the denominator of the row
 ======  ==========================================================================================
 
-Values and uncertainties at an N follow from the answers at N/4, N/2 and N, of the CPRBM also at N/2 + N/14
-(:mod:`comparisons.tolerances.limits`).  No answer is solved twice.  A doubling of N divides f by 2⁴ at most, the
-highest order of all methods: the search ends early where even this order does not reach τ at the largest N.
+Values and uncertainties at an N follow from the answers at N/4, N/2 and N, of the CPRBM also at N/2 + N/14.  No answer
+is solved twice.  A doubling of N divides f by 2⁴ at most, the highest order of all methods: the search ends early where
+even this order does not reach τ at the largest N.
+
+A value is a limit by Richardson's extrapolation (:mod:`comparisons.verdict.uncertainty`) or the finest value, whichever
+has the smaller uncertainty, and of two grids the limit.  A coarser N takes part where the branch, the closed contacts
+and the number of values are those of the finest answer.  Shapes, events and certificates are the finest answer's.  The
+ends of a zone keep the finest values where the limits would change places: the zone is then no longer than the ends are
+uncertain.
 
 The finite elements come first, in the theory of the CPRBM.  Their values are the denominators of the other
 solvers' f; where a solver is asked alone, its own values are.  The solid has an element across the thickness for every
@@ -23,18 +29,22 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from comparisons.choices import Choices
 from comparisons.executor import Crew
 from comparisons.pairing import Solvers, exact_or_why, in_other_theory, paired, with_solid
 from comparisons.reactions import perturbed_scene
 from comparisons.sentences import problem_sentences
+from comparisons.stations import station_of
 from comparisons.store import AnswerMemory
-from comparisons.tolerances.limits import Limits, limits_of
 from comparisons.tolerances.result import SolverName, Tolerance, WorstRow
 from comparisons.verdict.events import Place
 from comparisons.verdict.rows import Row, rows_of
-from comparisons.verdict.runs import Runs
-from cprbm_scene import Answer, Scene, SceneError
+from comparisons.verdict.runs import Runs, Uncertainties
+from comparisons.verdict.uncertainty import Error, error, limit
+from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer
+from cprbm_scene.answer import Array, PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict
 
 FIRST: Mapping[SolverName, int] = {"cprbm": 10, "fea": 10, "solid": 20}
@@ -56,6 +66,73 @@ PATIENCE = 160
 
 Say = Callable[[str], None]
 """Called with a description of the next solve."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """The finest answer with limits as values.
+
+    Attributes:
+        answer: the answer; coarse: the answer at half the finest N.
+        uncertainties: of all values at which both follow one law.
+        probes: names of the probes with a limit.
+    """
+
+    answer: Answer
+    coarse: Answer
+    uncertainties: Uncertainties
+    probes: tuple[str, ...]
+
+
+def limits_of(scene: Scene, answers: Mapping[int, Answer]) -> Limits:
+    """Limits of answers by N: complete answers at the finest N, at half of it, and at any further N."""
+    n = max(answers)
+    fine, stations, uncertainties, names = answers[n], list[StationAnswer](), {}, set[str]()
+    for station in fine.stations:
+        by_size = {size: station_of(answers[size], station.stage, station.value) for size in sorted(answers)}
+        values = {}
+        for probe in scene.probes_in(station.stage):
+            values[probe.name], stated, extrapolated = _value(probe, by_size)
+            names |= {probe.name} if extrapolated else set()
+            if stated is not None:
+                uncertainties[station.stage, station.value, probe.name] = stated
+        # limits belong to no state: no forces are in balance with them
+        stations.append(replace(station, values=frozendict(values), beams={}, forces=PointForces()))
+    answer = replace(fine, stations=tuple(stations), seconds=sum(each.seconds for each in answers.values()))
+    if names:
+        answer = replace(
+            answer,
+            settings=frozendict({**fine.settings, "extrapolated_from": [n // 2, n]}),
+            notes=(
+                *fine.notes,
+                f"Extrapolated from N = {n // 2}, {n}: {', '.join(sorted(names))}; all other values, shapes and "
+                f"certificates are of N = {n}.",
+            ),
+        )
+    probes = tuple(probe.name for probe in scene.probes if probe.name in names)
+    return Limits(answer, answers[n // 2], frozendict(uncertainties), probes)
+
+
+def _value(probe: Probe, by_size: Mapping[int, StationAnswer]) -> tuple[Array, Error | None, bool]:
+    """Value (k,) at a station, its uncertainty (None without a law), and whether the value is a limit."""
+    fine = by_size[n := max(by_size)]
+    value = fine.values[probe.name]
+    values = {
+        size: station.values[probe.name]
+        for size, station in by_size.items()
+        if station.branch == fine.branch
+        and station.touching.keys() == fine.touching.keys()
+        and station.values[probe.name].shape == value.shape
+    }
+    if value.size == 0 or n // 2 not in values:
+        return value, None, False
+    sizes, series = list(values), list(values.values())
+    own, found = error(sizes, series, at=len(sizes) - 1), limit(sizes, series)
+    ordered = probe.quantity != "ends" or bool(np.all(np.diff(found.value) >= 0.0))
+    surer = len(sizes) < 3 or found.uncertainty.sum() <= (own.even + own.uneven).sum()  # two grids show no order
+    if not (ordered and surer):
+        return value, own, False
+    return frozen_array(found.value), Error(found.uncertainty, np.zeros_like(found.uncertainty)), True
 
 
 @dataclass(frozen=True, slots=True)

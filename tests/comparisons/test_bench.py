@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from comparisons import cases, geometry, provenance
-from comparisons.bench import measures, section, tables
-from comparisons.bench.contenders import Contender, Outcome, Run, contenders
-from comparisons.bench.running import Plan, Session, sizes_of, trend
-from comparisons.bench.standings import TARGETS, ratios, seconds_at, standings
+from comparisons.bench import measures, section
+from comparisons.bench.running import Contender, Outcome, Plan, Run, Session, contenders, sizes_of, trend
+from comparisons.bench.section import TARGETS, ratios, seconds_at, standings
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
@@ -151,9 +150,9 @@ def test_what_does_not_complete_is_shown_with_its_reason_and_counts_for_nothing(
     ends = lambda n: (0.0, 1e-6, 5, "GAVE_UP", 0.0) if n == 80 else power(1.0)(n)  # noqa: E731
     found = Clock(bent, paper=power(1.0), ipopt=ends).benchmark(repeat=2)
     assert trend(found.rows("ipopt"))[0] == (40, 160)
-    row = next(row for row in tables.document(found)["rows"] if (row["method"], row["n"]) == ("ipopt", 80))
+    row = next(row for row in section.document(found)["rows"] if (row["method"], row["n"]) == ("ipopt", 80))
     assert (row["ended"], row["why"], row["counts"]) == ("GAVE_UP", "why not", False)
-    assert any("GAVE_UP" in line for line in tables.tables_of(found)[0].rows)
+    assert any("GAVE_UP" in line for line in section.tables_of(found)[0].rows)
     assert [one["n"] for one in ratios(found)] == [40, 160]
 
 
@@ -162,7 +161,7 @@ def test_a_peer_with_a_worse_error_on_the_same_problem_does_not_count(bent):
     found = Clock(bent, paper=power(1.0), ipopt=wrong, fea=power(1.0, error=lambda n: 1.0)).benchmark(repeat=1)
     assert [timing.counts for timing in found.rows("ipopt")] == [True, False, True]
     assert [timing.counts for timing in found.rows("fea")] == [True, True, True]
-    assert [tables.ending_of(timing) for timing in found.rows("ipopt")] == ["COMPLETED", "WORSE", "COMPLETED"]
+    assert [section.ending_of(timing) for timing in found.rows("ipopt")] == ["COMPLETED", "WORSE", "COMPLETED"]
 
 
 def test_what_takes_too_long_is_not_repeated_and_not_exceeded(bent):
@@ -178,7 +177,7 @@ def test_a_size_that_is_refused_is_left_out_and_the_rest_goes_on(bent):
     assert [timing.n for timing in found.rows()] == [80, 160]
     why = "contacts.contact.paper: found 2 joints; allowed: 3"
     assert [(one.count, one.why) for one in found.omissions()] == [(40, why)]
-    assert ("paper", "40", why) in tables.tables_of(found)[-1].rows
+    assert ("paper", "40", why) in section.tables_of(found)[-1].rows
 
 
 def test_what_everybody_refuses_is_refused(bent):
@@ -198,8 +197,8 @@ def test_an_interrupted_session_has_what_was_done(bent):
 def test_numbers_by_beam_are_a_size_like_another(bent):
     found = Clock(bent, auto=power(1.0), paper=power(1.0)).benchmark(sizes=(20, FEW), repeat=1)
     assert [timing.n for timing in found.rows("auto")] == [20.0, 35.0]
-    assert tables.size_text(FEW) == "30, 40"
-    assert tables.document(found)["rows"][1]["n"] == {"beam1": 30, "beam2": 40}
+    assert section.size_text(FEW) == "30, 40"
+    assert section.document(found)["rows"][1]["n"] == {"beam1": 30, "beam2": 40}
 
 
 def test_the_usual_sizes_end_where_a_method_does():
@@ -254,9 +253,9 @@ def test_ratios_are_of_solves_and_of_both(bent):
     (one,) = ratios(found)
     expected = {"auto_both": 1.5, "slsqp_both": 400.0, "ipopt_solve": 3.0, "ipopt_both": 10.0}
     assert one == {"n": 40, **expected, "iterations_per_station": 5.0}
-    assert tables.document(found)["ratios"] == [one]
+    assert section.document(found)["ratios"] == [one]
     headers = next(
-        sheet.headers for sheet in tables.tables_of(found) if sheet.title.startswith("How many times longer")
+        sheet.headers for sheet in section.tables_of(found) if sheet.title.startswith("How many times longer")
     )
     assert headers == ("N", "AUTO", "SLSQP", "IPOPT, solve", "IPOPT, both", "iterations per station")
 
@@ -312,7 +311,7 @@ def test_a_question_keeps_the_last_loads_and_what_errors_are_told_by():
 
 
 def test_the_document_has_the_documented_keys(bent):
-    data = json.loads(text_of(tables.document(Clock(bent, auto=power(1.2), fea=power(0.9)).benchmark(repeat=2))))
+    data = json.loads(text_of(section.document(Clock(bent, auto=power(1.2), fea=power(0.9)).benchmark(repeat=2))))
     assert {"case", "machine", "rows", "trends", "fastest", "ratios", "left_out", "reference", "tolerance"} <= set(data)
     assert data["machine"]["cpu"] == "made up"
     assert len(data["rows"]) == 6

@@ -12,8 +12,7 @@ from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.opinions import contact_model
 from comparisons.pairing import Solvers, paired
-from comparisons.present.answer_tables import answer_tables, branch_table
-from comparisons.present.case_tables import case_sections
+from comparisons.present.case_tables import answer_tables, branch_table, case_sections
 from comparisons.present.row_tables import paper_table
 from comparisons.verdict.events import NO_EVENTS
 from cprbm_scene import Ending

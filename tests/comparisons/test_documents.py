@@ -17,7 +17,7 @@ from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers, paired
 from comparisons.present import json_document
-from comparisons.present.answer_tables import answer_tables
+from comparisons.present.case_tables import answer_tables
 from comparisons.present.csv_table import contact_csv, csv_of, numbers
 from comparisons.writing import plain, text_of
 from cprbm_scene import Answer, Certificate, Ending, Scene, StationAnswer, scene_from

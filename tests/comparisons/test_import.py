@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import cprbm
+from comparisons.cli.doctor import trouble_with
 from comparisons.cli.main import run
 from comparisons.importing.curves import fit
-from comparisons.starting.libraries import trouble_with
 from cprbm_scene import Arc, Line, Spline, read
 
 needs_ezdxf = pytest.mark.skipif(bool(trouble_with("ezdxf")), reason="ezdxf cannot be imported here")

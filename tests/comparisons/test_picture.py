@@ -15,7 +15,7 @@ from comparisons.present import figures
 from comparisons.present.curves import curve_figures
 from comparisons.present.picture import bounds_of, carried, outline_of, view_of, views_of
 from comparisons.present.strips import left_of, with_stresses
-from comparisons.present.vtu import force_block
+from comparisons.present.view import force_block
 from cprbm_scene import (
     Certificate,
     CircleContact,

@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from comparisons.cli.bars import Rounds, bar
 from comparisons.cli.main import run
+from comparisons.cli.output import Rounds, bar
 from comparisons.logs import PACKAGES, RUNS, level, steps_from
 
 ROOT = Path(__file__).parents[2]

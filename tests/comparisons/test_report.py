@@ -385,6 +385,16 @@ def test_a_case_that_did_not_complete_has_a_chapter_too(right):
     assert "UNDECIDED" in page.html(page.report_page([chapter]))
 
 
+def test_a_percentage_stays_on_the_line_of_its_number(comparison):
+    """The texts that fold: paragraphs, captions of tables and figures, and long cells."""
+    text = page.html(page.report_page([page.case_chapter(comparison, page.figures_of(comparison))]))
+    folding = re.findall(
+        r'<(?:p|caption|figcaption|td class="[^"]*long)\b[^>]*>.*?</(?:p|caption|figcaption|td)>', text, re.DOTALL
+    )
+    assert sum("\u00a0%" in part for part in folding) > 3
+    assert not [part for part in folding if re.search(r"\d %", part)]
+
+
 def test_a_page_has_all_chapters_or_the_section_of_a_study_alone(comparison):
     other = replace(comparison, scene=comparison.scene.model_copy(update={"name": "other"}))
     text = page.html(page.report_page([page.case_chapter(each, ()) for each in (comparison, other)]))

@@ -14,9 +14,9 @@ import pytest
 
 import cprbm
 from comparisons import cases
+from comparisons.cli import doctor as libraries
+from comparisons.cli.files import SCHEMA, first_scene
 from comparisons.cli.main import run
-from comparisons.starting import libraries
-from comparisons.starting.template import SCHEMA, text
 from cprbm_scene import read
 from cprbm_scene.reading import schema
 
@@ -68,7 +68,7 @@ def test_the_schema_refuses_what_reading_refuses():
         (("stages",), []),
         (("file",), "somewhere"),
     ):
-        data = tomllib.loads(text("strip"))
+        data = tomllib.loads(first_scene("strip"))
         jsonschema.validate(data, schema())
         *path, last = place
         table = data

@@ -13,12 +13,12 @@ from PIL import Image
 
 import cprbm
 from comparisons import cases
+from comparisons.cli.doctor import trouble_with
 from comparisons.cli.main import run
-from comparisons.present import animation, space
+from comparisons.present import view as pictures
 from comparisons.present.picture import views_of
 from comparisons.present.strips import SECTIONS, with_stresses
-from comparisons.present.vtu import ACROSS, beam_block, force_block, obstacle_block
-from comparisons.starting.libraries import trouble_with
+from comparisons.present.view import ACROSS, beam_block, force_block, obstacle_block
 
 needs_meshio = pytest.mark.skipif(bool(trouble_with("meshio")), reason="meshio, of the extra 'view', is not there")
 needs_pyvista = pytest.mark.skipif(bool(trouble_with("pyvista")), reason="pyvista, of the extra 'view', is not there")
@@ -37,8 +37,8 @@ def tapered():
 
 
 def written(asked, tmp_path, name, quantity="bending_stress"):
-    kind = animation.kind_of(tmp_path / name)
-    return dict(animation.files(*asked, tmp_path / name, kind, quantity))
+    kind = pictures.kind_of(tmp_path / name)
+    return dict(pictures.files(*asked, tmp_path / name, kind, quantity))
 
 
 def volume(places, cells):
@@ -128,7 +128,7 @@ def test_an_animation_rests_at_its_end(kind):
         picture = Image.new("RGB", (31, 17), "white")
         picture.putpixel((5 + 7 * place, 9), (200, 10, 10))
         picture.save(stream, "PNG")
-    made = Image.open(io.BytesIO(animation.animation([stream.getvalue() for stream in streams], kind)))
+    made = Image.open(io.BytesIO(pictures.animation([stream.getvalue() for stream in streams], kind)))
     assert made.n_frames == 3
     stays = []
     for place in range(3):
@@ -178,7 +178,7 @@ def test_what_reads_vtk_files_sees_the_same_volume(tapered, tmp_path):
 
 @needs_pyvista
 def test_a_picture_in_space_shows_both_edges(tapered, tmp_path):
-    if space.tried():
+    if pictures.tried():
         pytest.skip("no library of the system draws here")
     (content,) = written(tapered, tmp_path, "t.3d.png").values()
     picture = np.asarray(Image.open(io.BytesIO(content)).convert("RGB")).astype(int)
@@ -190,15 +190,15 @@ def test_a_picture_in_space_shows_both_edges(tapered, tmp_path):
 
 
 def test_a_process_that_ends_as_it_draws_is_told_of():
-    with pytest.raises(space.DrawingError, match="VTK ended"):
-        space.apart(os._exit, 139)
+    with pytest.raises(pictures.DrawingError, match="VTK ended"):
+        pictures.apart(os._exit, 139)
 
 
 def test_where_nothing_draws_the_line_that_helps_is_told(tmp_path, monkeypatch, capsys):
     def cannot(*_):
-        raise space.DrawingError("VTK ended as it began to draw")
+        raise pictures.DrawingError("VTK ended as it began to draw")
 
-    monkeypatch.setattr(space, "apart", cannot)
+    monkeypatch.setattr(pictures, "apart", cannot)
     assert run(["view", "tapered", "-n", "10", "--out", str(tmp_path / "t.3d.png")]) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1

@@ -59,7 +59,7 @@ def test_the_wheel_holds_every_file_of_every_room_and_nothing_else(made, opened)
     found = {name for name in opened.namelist() if ".dist-info/" not in name}
     assert expected - found == set()
     assert found - expected == set()
-    for kind in ("comparisons/cases/hinge.toml", "comparisons/pages/page.html", "comparisons/starting/scene.toml"):
+    for kind in ("comparisons/cases/hinge.toml", "comparisons/pages/page.html", "comparisons/importing/scene.toml"):
         assert kind in found
 
 

@@ -9,10 +9,9 @@ from pathlib import Path
 import click
 
 from comparisons.cases import opened
-from comparisons.cli.bars import bar
 from comparisons.cli.commands import SolvingCommand
 from comparisons.cli.options import OUTPUT, folder, positive, whole
-from comparisons.cli.output import print_tables, write_json
+from comparisons.cli.output import bar, print_tables, write_json
 from comparisons.cli.request import Request
 from comparisons.pairing import solvers_of
 from tests.robustness import tables

@@ -10,9 +10,9 @@ from scipy.stats import lognorm, norm
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
-from comparisons.scatter.statistics import indices
-from comparisons.scatter.study import solved, study, values_of
 from comparisons.sweeps.outcome import solve
+from comparisons.sweeps.running import Runner
+from comparisons.sweeps.scatter import indices, study, values_of
 from comparisons.sweeps.workers import workers_on
 from cprbm_scene import read
 from tests.sweeps.scenes import CANTILEVER, table
@@ -44,7 +44,7 @@ def test_indices_of_a_stiffness_are_the_squares_of_the_exponents(scene):
     choices = Choices(links=4)
     asked = study(question, distributions, 256, "cprbm", choices, indexed=True)
     with workers_on("local:2") as workers:
-        scatter = solved(asked, workers, choices, Solvers(), 60.0, None)
+        scatter = replace(asked, sweep=Runner(workers, choices, Solvers(), 60.0).run(asked.sweep))
     (deflection,) = [each for each in scatter.scattering() if each.component == "y"]
     stiffness = np.log(1e-3 / scatter.rows(deflection))
     assert stiffness.shape == (6, 256)

@@ -166,6 +166,11 @@ def test_poisoned_points_are_rows_and_are_tried_twice(scene, tmp_path):
     assert "a beam of no length" in rows[3]["sentence"]
     assert len(marks.read_text()) == 5 + 2
     assert "3 of 5 points failed (1 CRASHED, 1 FAULT, 1 TIME_LIMIT)" in done.stdout
+    assert "the same command tries again" in rows[1]["sentence"]
+    assert "a longer --at-most tries again" in rows[2]["sentence"]
+    assert swept(scene, tmp_path / "s", *options[1:]) == 1, "the crash has passed, the other failures stand"
+    rows = table(tmp_path / "s", "last.csv")
+    assert [row["ending"] for row in rows] == ["COMPLETED", "COMPLETED", "TIME_LIMIT", "FAULT", "COMPLETED"]
 
 
 def test_kills_of_the_parent_end_in_the_same_table(scene, tmp_path):

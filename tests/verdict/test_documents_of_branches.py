@@ -16,7 +16,7 @@ from comparisons.executor import ALONE
 from comparisons.opinions import standings
 from comparisons.pairing import Solvers
 from comparisons.present import json_document
-from comparisons.present.answer_tables import answer_tables
+from comparisons.present.case_tables import answer_tables
 from comparisons.studies import convergence_tables as tables
 from comparisons.studies.convergence import convergence_of
 from comparisons.writing import text_of

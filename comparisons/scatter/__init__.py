@@ -1,1 +1,0 @@
-"""Scatter: the numbers of a scene whose parameters scatter within their tolerances."""
