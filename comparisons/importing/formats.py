@@ -14,8 +14,8 @@ import numpy as np
 
 from comparisons.importing import dxf_reader, gmsh_reader
 from comparisons.importing.drawing import Drawing, DrawnCurve
+from cprbm_scene.files import read_points
 from cprbm_scene.mistakes import Mistake, SceneError
-from cprbm_scene.point_table import read_points
 
 _BEGIN = 4096
 """Bytes of a file that decide on the format."""
