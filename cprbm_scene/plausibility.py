@@ -34,7 +34,7 @@ def notes(scene: Scene) -> Iterator[str]:
         scene: a scene without mistakes.
     """
     for name, load in scene.loads.items():
-        stages = (stage for stage in scene.stages if name in (stage.steps, *stage.together))
+        stages = (stage for stage in scene.stages if name in stage.stepped)
         largest = max((abs(value) for stage in stages for value in stage.stations), default=0.0)
         beams = scene.beams if isinstance(load, BodyLoad) else [load.beam]
         ratio, beam = min((largest * _per_unit(scene, load, beam), beam) for beam in beams)

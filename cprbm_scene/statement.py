@@ -302,6 +302,17 @@ class Scene(Record):
         names = [each.name for each in self.stages]
         return drive.begins not in names[names.index(stage) + 1 :]
 
+    def values_at(self, stage: str, value: float) -> dict[str, float]:
+        """Values of loads and drives at a station, the ``value`` of a stage; later stages keep the last value.
+
+        A drive with ``from`` has no value before the first stage of its own stations.
+        """
+        first, names = self.stages[0].name, [each.name for each in self.stages]
+        values = dict.fromkeys((*self.loads, *(k for k, v in self.drives.items() if self.holds(v, first))), 0.0)
+        for each in self.stages[: names.index(stage) + 1]:
+            values |= dict.fromkeys(each.stepped, value if each.name == stage else each.stations[-1])
+        return values
+
     def stepped(self, stage: Stage) -> Load | Drive:
         """The stepped load or drive of a stage.
 

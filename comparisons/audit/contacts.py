@@ -154,8 +154,8 @@ def crossings(scene: Scene, states: Sequence[StationState]) -> Iterator[str]:
             known.add(pair)
             one, other = sorted(pair, key=[*scene.beams, *scene.contacts].index)
             yield (
-                f"{one} and {other} pass through each other from {stage} {load} on ({state.stepped} = {load}), and no "
-                f"contact names them: add a contact of {one} and {other}, or "
+                f"{one} and {other} pass through each other from {stage} {load} on "
+                f"({state.stage.steps} = {load}), and no contact names them: add a contact of {one} and {other}, or "
                 f'may_cross = [["{one}", "{other}"]] if they lie in different planes.'
             )
 

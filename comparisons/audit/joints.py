@@ -42,6 +42,7 @@ def _errors(state: StationState) -> Iterator[tuple[str, float]]:
     for name, drive in scene.drives.items():
         if isinstance(drive, DisplacementDrive):
             moved = (state.moved(drive.point) * np.conj(unit(drive.direction))).real
-            yield f"the drive {name}", moved - state.values[name]
+            yield f"the drive {name}", moved - state.values.get(name, moved)
         else:
-            yield f"the drive {name}", arm * (state.rotation(drive.body) - state.values[name])
+            turned = state.rotation(drive.body)
+            yield f"the drive {name}", arm * (turned - state.values.get(name, turned))

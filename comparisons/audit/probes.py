@@ -4,7 +4,7 @@
 symbol  meaning
 ======  ==========================================================================
 Π       strain energy less the work of the loads
-g, x    dΠ/dx and x of the stepped load or drive: -u and P, or F and d
+g, x    dΠ/dx and x of the stepped loads or drive: -u and P, or F and d
 h       step between two stations
 ======  ==========================================================================
 
@@ -163,9 +163,10 @@ def path(answer: Answer, states: Sequence[StationState]) -> Iterator[Finding]:
 
 
 def _driving(state: StationState) -> float:
-    """g of the stepped load or drive."""
-    if state.stepped in state.scene.loads:
-        return -state.load(state.stepped)[1]
-    drive, forces = state.scene.drives[state.stepped], state.forces[state.forces["source"] == state.stepped]
+    """g of the stepped loads or drive."""
+    name = state.stage.steps
+    if name in state.scene.loads:
+        return -sum(state.load(load)[1] for load in state.stage.stepped)
+    drive, forces = state.scene.drives[name], state.forces[state.forces["source"] == name]
     way = unit(drive.direction) if isinstance(drive, DisplacementDrive) else 0j
     return float((forces["force"].sum() * np.conj(way)).real + (0.0 if way else forces["moment"].sum()))
