@@ -49,8 +49,9 @@ def text_of(path: str | Path, content: str, readable: str, name: str = "") -> st
     except UnicodeDecodeError as error:
         raise mistake(f"{name}bytes that are no UTF-8 text (at byte {error.start})", readable) from None
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise mistake(f"{name}a file that cannot be read ({reason})", readable) from None
+        raise mistake(
+            f"{name}a file that cannot be read ({getattr(error, 'strerror', None) or error})", readable
+        ) from None
     raise mistake(f"{name}a file that is larger", f"at most {LONGEST // 1_000_000} MB of {content} in UTF-8")
 
 

@@ -9,6 +9,7 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
@@ -69,7 +70,20 @@ from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.parameters import Parameter, Tolerance, register
 from cprbm_scene.question_records import CRITICAL, STRESSES, Claim, Probe, Quantity, Stage
-from cprbm_scene.units import Name, Named, NamedByWords, Of, Point, PositiveShare, Reading, Record, Text, Title, Units
+from cprbm_scene.units import (
+    NAME,
+    Name,
+    Named,
+    NamedByWords,
+    Of,
+    Point,
+    PositiveShare,
+    Reading,
+    Record,
+    Text,
+    Title,
+    Units,
+)
 
 __all__ = [
     "CRITICAL",
@@ -277,9 +291,13 @@ class Scene(Record):
         return self._origin.units
 
     def left_out(self, *tables: str) -> list[str]:
-        """Names of the parts of ``tables`` with mistakes that the reader left out."""
+        """Names, but for forbidden names, of the parts of ``tables`` with mistakes that the reader left out."""
         keys = (key.partition(".") for key in sorted(self._origin.left_out))
-        return [name for table, _, name in keys if table in tables]
+        return [
+            name
+            for table, _, name in keys
+            if table in tables and all(re.search(f"{NAME}|^$", part) for part in name.split("."))
+        ]
 
     def lacks(self, name: str, *tables: str) -> bool:
         """True if the reader left out a part of this name, or parts of unknown names, of the ``tables``."""

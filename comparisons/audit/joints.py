@@ -41,8 +41,7 @@ def _errors(state: StationState) -> Iterator[tuple[str, float]]:
         yield f"the pin {name}", abs(state.point(pin.points[0]) - state.point(pin.points[1]))
     for name, drive in scene.drives.items():
         if isinstance(drive, DisplacementDrive):
-            moved = (state.moved(drive.point) * np.conj(unit(drive.direction))).real
-            yield f"the drive {name}", moved - state.values.get(name, moved)
+            lever, moved = 1.0, (state.moved(drive.point) * np.conj(unit(drive.direction))).real
         else:
-            turned = state.rotation(drive.body)
-            yield f"the drive {name}", arm * (turned - state.values.get(name, turned))
+            lever, moved = arm, state.rotation(drive.body)
+        yield f"the drive {name}", lever * (moved - state.values.get(name, moved))

@@ -266,13 +266,15 @@ def unit(direction: tuple[float, float]) -> complex:
 
 def states_of(scene: Scene, answer: Answer) -> Iterator[StationState]:
     """Every station that states internal forces of all beams; loads and drives keep their last value."""
-    kinematics = str(answer.settings.get("kinematics", scene.theory))
     stages = {stage.name: stage for stage in scene.stages}
     for station in answer.stations:
         if station.beams.keys() >= scene.beams.keys():
-            values = scene.values_at(station.stage, station.value)
             beams = {
                 name: DeformedBeam(beam, scene.materials[beam.material], length(beam.curve), station.beams[name])
                 for name, beam in scene.beams.items()
             }
-            yield StationState(scene, station, beams, values, stages[station.stage], kinematics)
+            theory, values = (
+                answer.settings.get("kinematics", scene.theory),
+                scene.values_at(station.stage, station.value),
+            )
+            yield StationState(scene, station, beams, values, stages[station.stage], str(theory))

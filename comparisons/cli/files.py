@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from shlex import quote
 
 import click
 
@@ -13,6 +14,7 @@ from comparisons.importing.scene_text import Choices, Unit, scene_text
 from comparisons.starting import template
 from comparisons.starting.libraries import line_for
 from comparisons.writing import write
+from cprbm_scene.units import NAME
 
 
 def new(name: str, out: Path, quiet: bool) -> None:  # noqa: FBT001 - click passes a keyword
@@ -22,10 +24,10 @@ def new(name: str, out: Path, quiet: bool) -> None:  # noqa: FBT001 - click pass
         click.UsageError: the name is wrong, or the file exists.
     """
     path = _free_path(out, name, "NAME", "another name")
-    write(path, template.text(name))
+    write(path, template.text(name, quote(f"{name}.toml")))
     write(out / template.SCHEMA, template.schema_text())
     if not quiet:
-        click.echo(f"{path}: change the scene, then run 'cprbm compare {path}'.")
+        click.echo(printable(f"{path}: change the scene, then run: cprbm compare {quote(str(path))}"))
 
 
 def import_drawing(
@@ -49,7 +51,7 @@ def import_drawing(
     write(path, text)
     for note in notes:
         click.echo(printable(f"{drawing}: {note}"), err=True)
-    click.echo(printable(f"{path}: change load and probes, then run 'cprbm compare {path}'."))
+    click.echo(printable(f"{path}: change load and probes, then run: cprbm compare {quote(str(path))}"))
 
 
 def schema() -> None:
@@ -63,8 +65,8 @@ def _free_path(out: Path, name: str, hint: str, remedy: str) -> Path:
     Raises:
         click.UsageError: the name is wrong, or the file exists.
     """
-    if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_-]{0,63}", name):
-        allowed = "letters, digits, '_' and '-', a letter or '_' first, 64 at most"
+    if not re.search(NAME, name) or len(name) > 64:
+        allowed = "letters, digits, '_', '-' and single spaces inside, a letter or '_' first, 64 at most"
         raise click.BadParameter(f"found {name!r}; allowed: {allowed}", param_hint=hint)
     path = out / f"{name}.toml"
     if path.exists():

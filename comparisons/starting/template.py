@@ -11,10 +11,10 @@ SCHEMA = "scene.schema.json"
 """Name of the schema's file, beside the scene that refers to it."""
 
 
-def text(name: str) -> str:
-    """The first scene, commented, under a ``name`` of letters, digits, ``_`` and ``-``."""
+def text(name: str, file: str) -> str:
+    """The first scene, commented, under a ``name``, with commands for a ``file``."""
     template = files("comparisons.starting").joinpath("scene.toml").read_text(encoding="utf-8")
-    return template.replace("{schema}", SCHEMA).replace("{name}", name).replace("{file}", f"{name}.toml")
+    return template.replace("{schema}", SCHEMA).replace("{name}", name).replace("{file}", file)
 
 
 def schema_text() -> str:
