@@ -62,7 +62,12 @@ _FORMATS: tuple[tuple[str, tuple[str, ...], bytes, Callable[[Path, str], Drawing
     ("BREP", (".brep",), rb"\s*(DBRep_DrawableShape|CASCADE Topology)", gmsh_reader.read),
     ("IGES", (".iges", ".igs"), rb".{72}S\s*1", gmsh_reader.read),
     ("DXF", (".dxf",), rb"(\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION|AutoCAD Binary DXF", dxf_reader.read),
-    ("table", (".csv",), rb"(\xef\xbb\xbf)?(\s*#[^\n]*\n|\s)*([^\n]*[,;\t])?[\s\"']*[xy][^,;\t\n]*[,;\t]", _read_table),
+    (
+        "table",
+        (".csv",),
+        rb"(\xef\xbb\xbf)?(\s*#[^\n]*\n|\s)*([^\n]*[,;\t])?[\s\"']*[xyXY][^,;\t\n]*[,;\t]",
+        _read_table,
+    ),
     ("gmsh geometry", (".geo",), b"", gmsh_reader.read),
 )
 """Names, endings, patterns of the beginnings, and readers of all formats; the first fitting pattern counts."""
