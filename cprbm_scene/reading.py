@@ -31,7 +31,6 @@ from cprbm_scene.names import (
     wrong_claims,
     wrong_paper,
     wrong_probes,
-    wrong_spacings,
     wrong_stages,
 )
 from cprbm_scene.offset import OffsetQuestion
@@ -46,7 +45,6 @@ _BY_PLACE = (
     wrong_stops,
     wrong_mobility,
     wrong_actions,
-    wrong_spacings,
     wrong_clearance,
 )
 _FIRST = ("units", "parameters")
@@ -90,12 +88,8 @@ def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) 
     """
     question = read_question(path, parameters)
     if isinstance(question, OffsetQuestion):
-        raise _refused(
-            path,
-            repr(question.question),
-            "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it",
-            "question",
-        )
+        allowed = "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it"
+        raise SceneError([Mistake("question", repr(question.question), allowed, str(path))])
     return question
 
 
@@ -116,12 +110,9 @@ def read_question(path: str | Path, parameters: Mapping[str, float | str] | None
     if "question" not in data:
         return scene_from(data, file=str(path), parameters=parameters)
     if parameters:
-        raise _refused(path, f"values of {', '.join(parameters)}", "a scene of beams", "parameters")
+        found = f"values of {', '.join(parameters)}"
+        raise SceneError([Mistake("parameters", found, "a scene of beams", str(path))])
     return offset_from(data, file=str(path))
-
-
-def _refused(path: str | Path, found: str, allowed: str, key: str = "") -> SceneError:
-    return SceneError([Mistake(key, found, allowed, str(path))])
 
 
 _PART = re.compile(r"([^.\[]*)\W?([^.\[\]]*)")

@@ -349,8 +349,8 @@ class Scene(Record):
 
     @property
     def owners(self) -> dict[str, str]:
-        """Names of bodies by their points; for a repeated point the first body."""
-        return {point: name for name, body in reversed(list(self.bodies.items())) for point in body.points}
+        """Names of bodies by their points; for a repeated point the last body."""
+        return {point: name for name, body in self.bodies.items() for point in body.points}
 
     def body_of(self, point: str) -> str:
         """Name of the body of a ``point``.

@@ -12,7 +12,7 @@ from comparisons.geometry import edge_places, is_free_on_the_left, longest
 from comparisons.present.strips import Coloured, Strip, left_of, strip_of
 from cprbm_scene import Answer, FreeEnd, PinnedEnd, Scene, StationAnswer
 from cprbm_scene.answer import Array
-from cprbm_scene.freedoms import unit
+from cprbm_scene.curves import unit_vector as unit
 from cprbm_scene.statement import (
     BeamMoment,
     CircleContact,
