@@ -49,7 +49,7 @@ import numpy as np
 from comparisons.quantities import VANISHING
 from comparisons.stations import find_station, kept, station_of
 from cprbm_scene import Answer, Drive, Probe, Scene, Stage, StationAnswer
-from cprbm_scene.freedoms import unit
+from cprbm_scene.curves import unit_vector as unit
 from cprbm_scene.statement import DisplacementDrive
 
 PERTURBATION = 2e-3

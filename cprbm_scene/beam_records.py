@@ -17,9 +17,9 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag
 
-from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, shape_of, with_half_waves
+from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, NeutralLine, shape_of, with_half_waves
 from cprbm_scene.curves import SAMPLES, Array
-from cprbm_scene.mistakes import Mistake, SceneError, first_broken, written_place
+from cprbm_scene.mistakes import Mistake, SceneError, broken, first_broken, written_place
 from cprbm_scene.units import NUMBER, STRESS, Length, Measured, Name, Number, Of, Point, PositiveLength, Record
 
 THINNEST, THICKEST = 1e-5, 0.2
@@ -27,6 +27,10 @@ MOST_CURVED = 0.5
 CLOSEST = 1e-6
 MOST_PLACES = 1001
 LARGEST_RATIO = 1e5
+BACKWARDS = 1e-9
+"""Component of a unit tangent that counts as zero."""
+LEAST_EXTENT = 1e-3
+"""Extent of a beam along an axis, of the length, below which the beam does not run along the axis."""
 
 
 class Material(Record):
@@ -202,9 +206,18 @@ class Beam(Record):
         return self.thinnest < self.thickest
 
     def rules(self) -> Iterator[Mistake]:
-        """Thickness out of proportion to the length or the curvature."""
+        """Thickness out of proportion to the length or the curvature; elements along an axis with reversals."""
         length = shape_of(self.curve).length
-        return first_broken(
+        yield from broken(
+            self.paper is not None
+            and not _runs_along(self.curve, "xy".index(self.paper.uniform))
+            and Mistake(
+                "paper.uniform",
+                f"{self.paper.uniform!r}, along which the curve turns back or does not run",
+                "an axis along which the curve runs one way",
+            )
+        )
+        yield from first_broken(
             *(
                 not THINNEST <= size / length <= THICKEST
                 and Mistake(
@@ -216,6 +229,13 @@ class Beam(Record):
             ),
             _too_curved(self),
         )
+
+
+def _runs_along(curve: NeutralLine, axis: int) -> bool:
+    """True if a curve has an extent along an axis, without reversals."""
+    shape, extent = shape_of(curve), curve.end[axis] - curve.start[axis]
+    forwards = np.sign(extent) * shape.tangent(np.linspace(0.0, 1.0, SAMPLES))[:, axis]
+    return abs(extent) >= LEAST_EXTENT * shape.length and bool(np.all(forwards >= -BACKWARDS))
 
 
 def _too_curved(beam: Beam) -> Mistake | bool:

@@ -21,8 +21,8 @@ import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
 
 from cprbm_scene.curves import Curve, circular_arc, graph, slowest, spline, steepest, straight_line
+from cprbm_scene.files import read_points
 from cprbm_scene.mistakes import Mistake, broken, written_place
-from cprbm_scene.point_table import read_points
 from cprbm_scene.units import OR_EXPRESSION, Coefficients, Direction, Length, Point, Reading, Record
 
 SHORTEST = 1e-6

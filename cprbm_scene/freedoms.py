@@ -34,7 +34,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cprbm_scene.curve_records import MEETING
-from cprbm_scene.curves import unit_vector
+from cprbm_scene.curves import unit_vector as unit
 from cprbm_scene.mistakes import Mistake, broken, first_broken, written_place
 from cprbm_scene.names import connected
 from cprbm_scene.statement import (
@@ -63,7 +63,6 @@ DEPENDENT = 1.5 * NEGLIGIBLE
 
 TURN = np.array([0.0, 0.0, 1.0])
 AXES = ((1.0, 0.0), (0.0, 1.0))
-unit = unit_vector
 
 
 class Freedoms:

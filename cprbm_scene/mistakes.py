@@ -121,6 +121,7 @@ _LONGEST = 80
 """Longest value found that a message shows in full."""
 
 _ALLOWED = {
+    "missing": "a value: this key is required",
     "finite_number": "a finite number",
     "float_type": "a number",
     "int_type": "a whole number",
@@ -178,14 +179,15 @@ def _mistake(details: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Mistake:
             allowed = "a name of letters, digits, '_' and '-' that starts with a letter or '_'"
         case "missing":
             found = "nothing"
-            allowed = "an item here" if isinstance(loc[-1], int) else "a value: this key is required"
+            allowed = "an item here: the list is too short" if isinstance(loc[-1], int) else allowed
         case "too_long" if context["max_length"] == len(("x", "y")):
             allowed = allowed.removeprefix("at most ")
         case "literal_error":
             found += hint(given, re.findall("'([^']*)'", context["expected"])) if isinstance(given, str) else ""
         case "float_type":
             allowed += ", or a table with the keys 'at' and 'values'" if loc[-1] == "number" else ""
-            allowed += _NUMBERS if isinstance(given, str) and _MEASURED.fullmatch(given) else ""
+            if isinstance(given, str):
+                allowed += _NUMBERS if _MEASURED.fullmatch(given) else ", or an expression that begins with '='"
         case "union_tag_invalid" | "union_tag_not_found":
             key = context["discriminator"].strip("'")
             value, tags = details["input"].get(key), _tags(fields[str(loc[0])].annotation, key)

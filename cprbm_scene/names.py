@@ -5,16 +5,11 @@ from __future__ import annotations
 from bisect import bisect
 from collections.abc import Collection, Container, Iterator, Mapping
 
-import numpy as np
-
-from cprbm_scene.curve_records import shape_of
-from cprbm_scene.curves import SAMPLES
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import LISTED, Mistake, broken, unknown_name
 from cprbm_scene.statement import (
     CRITICAL,
     STRESSES,
-    Beam,
     BeamContact,
     DisplacementDrive,
     EdgeContact,
@@ -37,25 +32,24 @@ _TABLES = ("beams", "loads", "drives", "contacts", "stops", "pins")
 """Tables whose names are unique, together with the bodies and the points of all bodies."""
 
 
-def records(value: object, key: str = "") -> Iterator[tuple[str, Record]]:
-    """All records within a ``value`` at a ``key``, the value included, with their keys."""
+def references(value: object, key: str = "", of: Of | None = None) -> Iterator[tuple[Of, str, str]]:
+    """Kinds, keys and names of all references within a ``value`` at a ``key``, itself a reference if ``of`` a kind."""
     match value:
         case Record():
-            yield key, value
-            inner = [(f".{name}", each) for name, each in value]
+            metadata = {name: info.metadata for name, info in type(value).model_fields.items()}
+            kinds = {name: next((of for of in each if isinstance(of, Of)), None) for name, each in metadata.items()}
+            inner = [(f".{(of and of.key) or name}", getattr(value, name), of) for name, of in kinds.items()]
         case Mapping():
-            inner = [(f".{name}", each) for name, each in value.items()]
+            # the names of a mapping with a kind are references
+            inner = [(f".{name}", name if of else each, of) for name, each in value.items()]
         case tuple():
-            inner = [(f"[{i}]", each) for i, each in enumerate(value)]
+            inner = [(f"[{i}]", each, of) for i, each in enumerate(value) if not isinstance(each, float)]
         case _:
-            return
-    for part, each in inner:
-        yield from records(each, f"{key}{part}".removeprefix("."))
-
-
-def point_names(scene: Scene) -> list[str]:
-    """Names of the points of all bodies."""
-    return [point for body in scene.bodies.values() for point in body.points]
+            inner = []
+    if of is not None and isinstance(value, str):
+        yield of, key.removeprefix("."), value
+    for part, each, kind in inner:
+        yield from references(each, f"{key}{part}", kind)
 
 
 def repeated_names(scene: Scene) -> Iterator[Mistake]:
@@ -132,33 +126,18 @@ _KINDS: Mapping[str, tuple[str, ...]] = frozendict(
 def unknown_names(scene: Scene, kinds: Collection[str] = tuple(_KINDS)) -> Iterator[Mistake]:
     """References to parts of some kinds without a definition; without words if the reader left the part out."""
     tables = {table: list(getattr(scene, table)) for table in ("materials", "bodies", "beams", "loads", "drives")} | {
-        "points": point_names(scene),
+        "points": list(scene.owners),
         "stages": [stage.name for stage in scene.stages],
         "edges": [name for name, contact in scene.contacts.items() if isinstance(contact, RigidContact)],
     }
     known = {kind: [name for table in _KINDS[kind] for name in tables[table]] for kind in kinds}
     return (
-        Mistake(place, "", "")
+        Mistake(key, "", "")
         if scene.lacks(name, *_KINDS[of.kind])
-        else unknown_name(place, name, of.kind, [*known[of.kind], *scene.left_out(*_KINDS[of.kind])])
-        for key, record in records(scene)
-        for field, info in type(record).model_fields.items()
-        for of in info.metadata
-        if isinstance(of, Of) and of.kind in kinds
-        for part, name in _named(getattr(record, field))
-        if name not in known[of.kind]
-        for place in [f"{key}.{of.key or field}{part}".removeprefix(".")]
+        else unknown_name(key, name, of.kind, [*known[of.kind], *scene.left_out(*_KINDS[of.kind])])
+        for of, key, name in references(scene)
+        if of.kind in kinds and name not in known[of.kind]
     )
-
-
-def _named(value: object) -> Iterator[tuple[str, str]]:
-    """Names in the value of a field, with places below the field's key."""
-    if isinstance(value, str):
-        yield "", value
-    if isinstance(value, Mapping):
-        yield from ((f".{name}", name) for name in value)
-    if isinstance(value, tuple):
-        yield from ((f"[{i}]{part}", name) for i, each in enumerate(value) for part, name in _named(each))
 
 
 _OF: Mapping[Quantity, str] = frozendict(
@@ -186,11 +165,6 @@ _OF_JOINTS: Container[Quantity] = ("reaction", "reaction_moment", "moment")
 
 _SEVERAL = STRESSES | {"displacement", "reaction", "ends"}
 """Quantities of more than one number."""
-
-_BACKWARDS = 1e-9
-"""Component of a unit tangent that counts as zero."""
-_LEAST_EXTENT = 1e-3
-"""Extent of a beam along an axis, of the length, below which the beam does not run along the axis."""
 
 
 def wrong_probes(scene: Scene) -> Iterator[Mistake]:
@@ -276,20 +250,6 @@ def wrong_stages(scene: Scene) -> Iterator[Mistake]:
         )
 
 
-def wrong_spacings(scene: Scene) -> Iterator[Mistake]:
-    """Elements of the formulation ``paper`` along an axis with reversals or without extent of the beam."""
-    for name, beam in scene.beams.items():
-        yield from broken(
-            beam.paper is not None
-            and not _runs_along(beam, "xy".index(beam.paper.uniform))
-            and Mistake(
-                f"beams.{name}.paper.uniform",
-                f"{beam.paper.uniform!r}, along which the curve turns back or does not run",
-                "an axis along which the curve runs one way",
-            )
-        )
-
-
 def wrong_paper(scene: Scene) -> Iterator[Mistake]:
     """Data of contacts for the formulation ``paper`` on beams outside the contact."""
     for name, contact in scene.contacts.items():
@@ -304,12 +264,6 @@ def wrong_paper(scene: Scene) -> Iterator[Mistake]:
                 for beam in related
             ),
         )
-
-
-def _runs_along(beam: Beam, axis: int) -> bool:
-    shape, extent = shape_of(beam.curve), beam.curve.end[axis] - beam.curve.start[axis]
-    forwards = np.sign(extent) * shape.tangent(np.linspace(0.0, 1.0, SAMPLES))[:, axis]
-    return abs(extent) >= _LEAST_EXTENT * shape.length and bool(np.all(forwards >= -_BACKWARDS))
 
 
 def _beside(ascending: Mapping[str, list[float]], value: float) -> Iterator[tuple[str, float]]:
@@ -331,7 +285,7 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
     turned = [drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive)]
     edges = [name for name, each in scene.contacts.items() if isinstance(each, EdgeContact) and _pinned(scene, each)]
     return {
-        _OF["displacement"]: point_names(scene),
+        _OF["displacement"]: list(scene.owners),
         _OF["rotation"]: list(scene.bodies),
         _OF["force"]: list(scene.contacts),
         _OF["bending_stress"]: list(scene.beams),

@@ -33,7 +33,7 @@ class Value(NamedTuple):
     unit: Unit | None = None
 
 
-class ExpressionError(ValueError):
+class ExpressionError(Exception):
     """An expression without a value; the message completes ``found EXPRESSION``."""
 
 
@@ -46,32 +46,27 @@ Rule = Callable[[Callable[..., float], Sequence[Value], Units], Value]
 """Value of a function of values, with the file's units for numbers without unit."""
 
 
-def _numbers(values: Sequence[Value], units: Units) -> tuple[list[float], Unit | None]:
-    """Numbers in SI of values of one dimension, and their unit."""
-    unit = next((value.unit for value in values if value.unit is not None), None)
-    if unit is None:
-        return [value.number for value in values], None
-    _refuse(
-        any(value.unit is not None and value.unit.dimension != unit.dimension for value in values),
-        "different units in one sum or function",
-    )
-    return [value.number if value.unit is not None else unit.in_si(value.number, units) for value in values], unit
-
-
 def _alike(function: Callable[..., float], values: Sequence[Value], units: Units) -> Value:
     """Sum, extremum or length of values of one dimension."""
-    numbers, unit = _numbers(values, units)
+    unit = next((value.unit for value in values if value.unit is not None), None)
+    _refuse(
+        any(value.unit is not None and value.unit.dimension != unit.dimension for value in values if unit is not None),
+        "different units in one sum or function",
+    )
+    numbers = (
+        value.number if unit is None or value.unit is not None else unit.in_si(value.number, units) for value in values
+    )
     return Value(float(function(*numbers)), unit)
 
 
 def _angle(function: Callable[..., float], values: Sequence[Value], units: Units) -> Value:
     """Angle from values of one dimension."""
-    return Value(function(*_numbers(values, units)[0]), ANGLE)
+    return Value(_alike(function, values, units).number, ANGLE)
 
 
 def _of_angle(function: Callable[..., float], values: Sequence[Value], units: Units) -> Value:
     """Sine, cosine or tangent of an angle."""
-    return Value(function(*_numbers([Value(0.0, ANGLE), *values], units)[0][1:]))
+    return Value(_alike(lambda _, angle: function(angle), [Value(0.0, ANGLE), *values], units).number)
 
 
 def _product(function: Callable[..., float], values: Sequence[Value], units: Units) -> Value:
@@ -148,12 +143,12 @@ def evaluated(text: str, named: Callable[[str], Value], units: Units) -> Value:
         return rule(function, [of(each) for each in nodes], units)
 
     try:
-        body = ast.parse(text.strip(), mode="eval").body
-    except (SyntaxError, ValueError):
+        value = of(ast.parse(text.strip(), mode="eval").body)
+    except SyntaxError:
         raise ExpressionError("no arithmetic") from None
-    try:
-        value = of(body)
-    except ArithmeticError as error:
+    except SceneError:
+        raise
+    except (ArithmeticError, ValueError) as error:
         raise ExpressionError(f"without a value ({error.args[-1]})") from None
     _refuse(not math.isfinite(value.number), "without a finite value")
     return value
@@ -240,7 +235,6 @@ class _Resolved:
     def __init__(self, reading: Reading, parameters: Mapping[str, Parameter]) -> None:
         self._reading, self._parameters = reading, parameters
         self._values: dict[str, Value | None] = {}  # None during the evaluation, and without a value
-        self._open: list[str] = []
 
     def left_out(self, name: str) -> bool:
         """True if the file states a parameter of this name, with a mistake."""
@@ -260,9 +254,9 @@ class _Resolved:
             )
         return number
 
-    def _expression(self, text: str, key: str) -> Value:
+    def _expression(self, text: str, key: str, users: tuple[str, ...] = ()) -> Value:
         try:
-            return evaluated(text.removeprefix("="), self._named, self._reading.units)
+            return evaluated(text.removeprefix("="), lambda name: self._named(name, users), self._reading.units)
         except ExpressionError as error:
             raise mistake(
                 f"{text!r}: {error}",
@@ -285,20 +279,17 @@ class _Resolved:
         scatter = given.tolerance and Tolerance(**{kind: each and each * size for kind, each in given.tolerance})
         return Parameter(value=number, unit=str(own if given.unit else unit or NUMBER), range=span, tolerance=scatter)
 
-    def _named(self, name: str) -> Value:
+    def _named(self, name: str, users: tuple[str, ...] = ()) -> Value:
+        """Value of a parameter that its ``users`` refer to, from the first parameter to the last."""
         if name not in self._parameters and not self.left_out(name):
             raise ExpressionError(unknown_name("", name, "parameter", self._parameters).found)
-        _refuse(name in self._open, f"a cycle: {' -> '.join((*self._open, name))}")
+        _refuse(name in users, f"a cycle: {' -> '.join((*users, name))}")
         if name in self._parameters and name not in self._values:
             self._values[name] = None
-            self._open.append(name)
-            try:
-                self._values[name] = self._computed(name, self._parameters[name])
-            finally:
-                self._open.pop()
+            self._values[name] = self._computed(name, self._parameters[name], (*users, name))
         return self._values.get(name) or silent()
 
-    def _computed(self, name: str, given: Parameter) -> Value:
+    def _computed(self, name: str, given: Parameter, users: tuple[str, ...]) -> Value:
         setting = self._reading.settings.get(name)
         if isinstance(given.value, str):
             if given.unit or setting is not None:
@@ -307,7 +298,7 @@ class _Resolved:
                     "a number with a unit, or an expression alone; an expression takes no other value",
                     name,
                 )
-            return self._expression(given.value, f"{name}.value")
+            return self._expression(given.value, f"{name}.value", users)
         size, unit = _unit_of(given.unit, f"{name}.unit")
         number = given.value if setting is None else setting
         if isinstance(number, str):

@@ -18,13 +18,13 @@ from collections.abc import Iterator
 
 from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import BodyLoad, Load, Scene
-from cprbm_scene.units import FORCE, LENGTH, SIZES, STRESS, Units
+from cprbm_scene.units import SIZES, Units
 
 LARGE = 1000.0
 """r above which a load is implausible: a cantilever under r = 1000 is straight but for 3 % of its length."""
 SOFTEST, STIFFEST = 1e6, 1.5e12
 """Young's moduli of rubber and diamond, rounded outwards, Pa."""
-_POWERS = {"stress": -1, "force": 1, "length": -2}
+_POWERS = {"stress": -1, "length": -2, "force": 1}
 
 
 def notes(scene: Scene) -> Iterator[str]:
@@ -34,7 +34,7 @@ def notes(scene: Scene) -> Iterator[str]:
         scene: a scene without mistakes.
     """
     for name, load in scene.loads.items():
-        stages = (stage for stage in scene.stages if name in (stage.steps, *stage.together))
+        stages = (stage for stage in scene.stages if name in stage.stepped)
         largest = max((abs(value) for stage in stages for value in stage.stations), default=0.0)
         beams = scene.beams if isinstance(load, BodyLoad) else [load.beam]
         ratio, beam = min((largest * _per_unit(scene, load, beam), beam) for beam in beams)
@@ -50,19 +50,22 @@ def notes(scene: Scene) -> Iterator[str]:
 def _per_unit(scene: Scene, load: Load, name: str) -> float:
     """The ratio r of a load of 1 in SI units on a beam."""
     beam = scene.beams[name]
-    width = max(beam.width.values) if not isinstance(beam.width, float) else beam.width
+    width = float(beam.width_at(beam.knots).max())
     stiffness = scene.materials[beam.material].youngs_modulus * width * beam.thickest**3 / 12.0
     return float(shape_of(beam.curve).length ** (2 - load.unit.length) / stiffness)
 
 
 def _explanation(ratio: float, modulus: float, units: Units) -> str:
     """The question about the mix-up of units that brings r and E closest to ordinary values; empty without any."""
-    found = []
-    for quantity, unit in (("stress", STRESS), ("length", LENGTH), ("force", FORCE)):
+    found = list[tuple[float, str]]()
+    for quantity, power in _POWERS.items():
         own = getattr(units, quantity)
-        for other in Units.model_fields[quantity].annotation.__args__:  # type: ignore[union-attr]
-            factor = float(SIZES[other] / SIZES[own])
-            true, stiff = ratio * factor ** _POWERS[quantity], modulus * (factor if unit == STRESS else 1.0)
-            if other != own and true <= LARGE and SOFTEST <= stiff <= STIFFEST:
-                found.append((abs(math.log10(true)), f" Is a {quantity} in {other} written as {own}?"))
+        others = Units.model_fields[quantity].annotation.__args__  # type: ignore[union-attr]
+        factors = {other: float(SIZES[other] / SIZES[own]) for other in others if other != own}
+        found += [
+            (abs(math.log10(true)), f" Is a {quantity} in {other} written as {own}?")
+            for other, factor in factors.items()
+            if (true := ratio * factor**power) <= LARGE
+            and SOFTEST <= modulus * (factor if quantity == "stress" else 1.0) <= STIFFEST
+        ]
     return min(found, default=(0.0, ""))[1]

@@ -129,6 +129,11 @@ class Stage(Record):
     beyond: Literal["stop", "jump"] | None = None
     """Search for the end of the branch: the answer ends there, or jumps to the next minimum of the energy."""
 
+    @property
+    def stepped(self) -> tuple[str, ...]:
+        """Names of the loads, or of the drive, with the values of the stations."""
+        return self.together or (self.steps,)
+
     @model_validator(mode="before")
     @classmethod
     def _first(cls, data: object) -> object:

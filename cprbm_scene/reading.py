@@ -7,10 +7,9 @@ between records need the reader.
 from __future__ import annotations
 
 import re
-import tomllib
-from codecs import BOM_UTF8
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from difflib import get_close_matches
 from functools import partial
 from itertools import islice
 from pathlib import Path
@@ -19,8 +18,9 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from cprbm_scene.clearance import wrong_clearance
-from cprbm_scene.drafts import Draft, PartialScene
+from cprbm_scene.files import toml_data
 from cprbm_scene.freedoms import wrong_actions, wrong_mobility
+from cprbm_scene.frozendict import frozendict
 from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
 from cprbm_scene.mistakes import MOST, Mistake, SceneError, first_of, mistakes_of, unknown_name
 from cprbm_scene.names import (
@@ -31,13 +31,12 @@ from cprbm_scene.names import (
     wrong_claims,
     wrong_paper,
     wrong_probes,
-    wrong_spacings,
     wrong_stages,
 )
 from cprbm_scene.offset import OffsetQuestion
 from cprbm_scene.parameters import register
-from cprbm_scene.statement import Origin, Scene
-from cprbm_scene.units import Reading
+from cprbm_scene.statement import Beam, Body, Material, Origin, Probe, Scene, Stage
+from cprbm_scene.units import Name, Named, Reading
 
 _BY_NAME = (repeated_names, unknown_names, repeated_contacts, wrong_paper, wrong_stages, wrong_probes, wrong_claims)
 _BY_PLACE = (
@@ -46,7 +45,6 @@ _BY_PLACE = (
     wrong_stops,
     wrong_mobility,
     wrong_actions,
-    wrong_spacings,
     wrong_clearance,
 )
 _FIRST = ("units", "parameters")
@@ -66,14 +64,6 @@ def mistakes_in(scene: Scene) -> Iterator[Mistake]:
 
 Question = Scene | OffsetQuestion
 Asked = TypeVar("Asked", Scene, OffsetQuestion)
-
-LARGEST = 1_000_000
-"""Largest size of a file in bytes: a hundred times the longest built-in case."""
-
-DEEPEST = 32
-_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+"""
-_DEEP_KEY = re.compile(rf"(?<![\w-])(?:{_PART}){{{DEEPEST}}}", re.ASCII)
-"""A dotted key deeper than any scene's: the parser's time and memory grow with the square of the parts."""
 
 
 def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) -> Scene:
@@ -98,12 +88,8 @@ def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) 
     """
     question = read_question(path, parameters)
     if isinstance(question, OffsetQuestion):
-        raise _refused(
-            path,
-            repr(question.question),
-            "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it",
-            "question",
-        )
+        allowed = "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it"
+        raise SceneError([Mistake("question", repr(question.question), allowed, str(path))])
     return question
 
 
@@ -124,39 +110,86 @@ def read_question(path: str | Path, parameters: Mapping[str, float | str] | None
     if "question" not in data:
         return scene_from(data, file=str(path), parameters=parameters)
     if parameters:
-        raise _refused(path, f"values of {', '.join(parameters)}", "a scene of beams", "parameters")
+        found = f"values of {', '.join(parameters)}"
+        raise SceneError([Mistake("parameters", found, "a scene of beams", str(path))])
     return offset_from(data, file=str(path))
 
 
-def toml_data(path: str | Path) -> dict[str, Any]:
-    """Plain data of a TOML file in UTF-8, with or without a byte-order mark.
+_PART = re.compile(r"([^.\[]*)\W?([^.\[\]]*)")
+"""Begin of a key: a table with the name of a part, or a list with the number of a part."""
+_NUMBER = re.compile(r"^(\w+)\[(\d+)")
+"""Begin of a key: a list with the number of a part."""
 
-    Raises:
-        SceneError: the file cannot be read, is too large or too deep, or is no TOML.
+
+class PartialScene(Scene):
+    """A scene that may lack parts."""
+
+    name: Name = "scene"
+    materials: Named[Material] = frozendict()
+    beams: Named[Beam] = frozendict()
+    bodies: Named[Body] = frozendict()
+    stages: tuple[Stage, ...] = ()
+    probes: tuple[Probe, ...] = ()
+
+
+class Draft:
+    """Data of a scene, from which parts are left out.
+
+    ``left_out`` has keys of the parts, of the points of such bodies and beams, and of whole tables with unknown names.
     """
-    readable = "a readable TOML file in UTF-8"
-    try:
-        with Path(path).open("rb") as stream:
-            content = stream.read(LARGEST + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise _refused(path, f"a file that cannot be read ({reason})", readable) from None
-    if len(content) > LARGEST:
-        raise _refused(path, "a file that is larger", f"at most {LARGEST // 1_000_000} MB of TOML in UTF-8")
-    try:
-        text = content.removeprefix(BOM_UTF8).decode("utf-8")
-        if not _DEEP_KEY.search(text):
-            return tomllib.loads(text)
-    except UnicodeDecodeError as error:
-        raise _refused(path, f"bytes that are no UTF-8 text (at byte {error.start})", readable) from None
-    except (RecursionError, ValueError) as error:
-        # nested too deeply, or an integer with too many digits
-        raise _refused(path, f"text that is no TOML ({error})", readable) from None
-    raise _refused(path, f"a key of more than {DEEPEST} parts", "the keys of a scene")
+
+    def __init__(self, data: Mapping[str, Any]) -> None:
+        self._lists = {key for key, value in data.items() if isinstance(value, list | tuple)}
+        # parts of a list are known by their numbers in the file, as texts
+        self._parts: dict[str, Any] = {
+            **data,
+            **{key: {str(i): part for i, part in enumerate(data[key])} for key in self._lists},
+        }
+        self.left_out: set[str] = set()
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """The data without the parts."""
+        return {key: list(value.values()) if key in self._lists else value for key, value in self._parts.items()}
+
+    def of_file(self, mistake: Mistake) -> Mistake:
+        """A mistake of the present data, with the number in the file of a part of a list."""
+        key = _NUMBER.sub(lambda place: f"{place[1]}[{[*self._parts[place[1]]][int(place[2])]}", mistake.key)
+        return replace(mistake, key=key)
+
+    def leave_out(self, key: str) -> None:
+        """Leave out the part of the file with a mistake at a ``key``; a whole table if the part is unknown."""
+        table, part = re.findall(_PART, key)[0]
+        parts = self._parts.get(table)
+        if isinstance(parts, dict) and part in parts:
+            self._parts[table] = {name: value for name, value in parts.items() if name != part}
+            self.left_out.update(_names(table, part, parts[part]))
+        elif f"{table}.{part}" not in self.left_out:
+            self._parts.pop(table, None)
+            table = next(iter(get_close_matches(table, Scene.model_fields, n=1)), table)
+            # bodies have points, and free ends of beams are points of bodies
+            self.left_out.update({table, *{"bodies": ["points"], "beams": ["points", "bodies"]}.get(table, [])})
 
 
-def _refused(path: str | Path, found: str, allowed: str, key: str = "") -> SceneError:
-    return SceneError([Mistake(key, found, allowed, str(path))])
+def _names(table: str, part: str, item: object) -> Iterator[str]:
+    """Keys of the names that a part defines; the key of the table without readable names."""
+    yield f"{table}.{part}"
+    match table, item:
+        case "bodies", {"points": dict() as points}:
+            yield from (f"points.{point}" for point in points)
+        case "beams", dict():
+            # an end with another joint may be a free end with a mistake
+            ends = [item.get(side) for side in ("start", "end")]
+            new = (
+                end.get("point") for end in ends if isinstance(end, dict) and end.get("joint") not in ("weld", "pin")
+            )
+            yield from (key for point in new for key in (f"points.{point}", f"bodies.{point}-body"))
+        case "stages", {"name": name}:
+            yield f"stages.{name}"
+        case "probes", {"of": of, "quantity": quantity}:
+            yield f"probes.{of}.{quantity}"
+        case (("bodies" | "stages" | "probes"), _):
+            yield {"bodies": "points"}.get(table, table)
 
 
 def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str, float | str] | None = None) -> Scene:
@@ -175,8 +208,7 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
         SceneError: the data are no valid scene. The error names every mistake with its key.
 
     Example:
-        >>> import tomllib
-        >>> from pathlib import Path
+        >>>         >>> from pathlib import Path
         >>> from cprbm_scene import scene_from
         >>> data = tomllib.loads(Path("comparisons/cases/hinge.toml").read_text(encoding="utf-8"))
         >>> data["beams"]["beam1"]["thickness"] = 0.003

@@ -7,7 +7,7 @@ from typing import Literal
 
 from cprbm_scene.clearance import overlap_at_rest
 from cprbm_scene.freedoms import Freedoms, unsupported
-from cprbm_scene.mistakes import Mistake, SceneError
+from cprbm_scene.mistakes import Mistake, SceneError, broken
 from cprbm_scene.statement import BeamContact, CircleContact, EllipseContact, Scene, SplineContact
 
 Requirement = Literal["theory", "overlap at rest", "from", "together", "support", "edge"]
@@ -15,47 +15,52 @@ Requirement = Literal["theory", "overlap at rest", "from", "together", "support"
 
 def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
     """Kinds of requirements, with keys, values found, and values for a solver without the feature."""
-    if scene.theory != "bending":
-        yield "theory", Mistake("theory", repr(scene.theory), "'bending'", scene.file)
-    for name, drive in scene.drives.items():
-        if not scene.holds(drive, scene.stages[0].name):
-            yield (
-                "from",
-                Mistake(
-                    f"drives.{name}.from",
-                    f"a drive that is free before the stage {drive.begins!r}",
-                    "drives that hold from the start",
-                    scene.file,
-                ),
+    first, file, contacts = scene.stages[0].name, scene.file, [*scene.contacts.items()]
+    overlaps = ((name, overlap_at_rest(scene, each)) for name, each in contacts if isinstance(each, BeamContact))
+    rules: dict[Requirement, Iterator[Mistake]] = {
+        "theory": broken(scene.theory != "bending" and Mistake("theory", repr(scene.theory), "'bending'", file)),
+        "from": (
+            Mistake(
+                f"drives.{name}.from",
+                f"a drive that is free before the stage {drive.begins!r}",
+                "drives that hold from the start",
+                file,
             )
-    for i, stage in enumerate(scene.stages):
-        if stage.together:
-            yield "together", Mistake(f"stages[{i}].steps", f"{list(stage.together)}", "one name", scene.file)
-    for mistake, _ in unsupported(scene, Freedoms(scene)):
-        yield "support", Mistake(mistake.key, mistake.found, "joints, guides and drives that hold it", scene.file)
-    for name, contact in scene.contacts.items():
-        if isinstance(contact, SplineContact | EllipseContact) or (
-            isinstance(contact, CircleContact) and contact.side == "inside"
-        ):
-            yield (
-                "edge",
-                Mistake(
-                    f"contacts.{name}",
-                    f"{contact.kind!r}, {contact.side}",
-                    "a circle from outside, a line, a half-plane or a function",
-                    scene.file,
-                ),
+            for name, drive in scene.drives.items()
+            if not scene.holds(drive, first)
+        ),
+        "together": (
+            Mistake(f"stages[{i}].steps", f"{list(stage.together)}", "one name", file)
+            for i, stage in enumerate(scene.stages)
+            if stage.together
+        ),
+        "support": (
+            Mistake(mistake.key, mistake.found, "joints, guides and drives that hold it", file)
+            for mistake, _ in unsupported(scene, Freedoms(scene))
+        ),
+        "edge": (
+            Mistake(
+                f"contacts.{name}",
+                f"{each.kind!r}, {each.side}",
+                "a circle from outside, a line, a half-plane or a function",
+                file,
             )
-        if isinstance(contact, BeamContact) and (overlap := overlap_at_rest(scene, contact)):
-            yield (
-                "overlap at rest",
-                Mistake(
-                    f"contacts.{name}",
-                    f"beams that overlap at the start by {overlap:.3g} m",
-                    "beams that touch or are apart",
-                    scene.file,
-                ),
+            for name, each in contacts
+            if isinstance(each, SplineContact | EllipseContact)
+            or (isinstance(each, CircleContact) and each.side == "inside")
+        ),
+        "overlap at rest": (
+            Mistake(
+                f"contacts.{name}",
+                f"beams that overlap at the start by {overlap:.3g} m",
+                "beams that touch or are apart",
+                file,
             )
+            for name, overlap in overlaps
+            if overlap
+        ),
+    }
+    return ((kind, mistake) for kind, mistakes in rules.items() for mistake in mistakes)
 
 
 def refuse(scene: Scene, solver: str, *met: Requirement) -> None:

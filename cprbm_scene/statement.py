@@ -9,6 +9,7 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
@@ -69,7 +70,20 @@ from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.parameters import Parameter, Tolerance, register
 from cprbm_scene.question_records import CRITICAL, STRESSES, Claim, Probe, Quantity, Stage
-from cprbm_scene.units import Name, Named, NamedByWords, Of, Point, PositiveShare, Reading, Record, Text, Title, Units
+from cprbm_scene.units import (
+    NAME,
+    Name,
+    Named,
+    NamedByWords,
+    Of,
+    Point,
+    PositiveShare,
+    Reading,
+    Record,
+    Text,
+    Title,
+    Units,
+)
 
 __all__ = [
     "CRITICAL",
@@ -279,9 +293,13 @@ class Scene(Record):
         return self._origin.units
 
     def left_out(self, *tables: str) -> list[str]:
-        """Names of the parts of ``tables`` with mistakes that the reader left out."""
+        """Names, but for forbidden names, of the parts of ``tables`` with mistakes that the reader left out."""
         keys = (key.partition(".") for key in sorted(self._origin.left_out))
-        return [name for table, _, name in keys if table in tables]
+        return [
+            name
+            for table, _, name in keys
+            if table in tables and all(re.search(f"{NAME}|^$", part) for part in name.split("."))
+        ]
 
     def lacks(self, name: str, *tables: str) -> bool:
         """True if the reader left out a part of this name, or parts of unknown names, of the ``tables``."""
@@ -304,6 +322,17 @@ class Scene(Record):
         names = [each.name for each in self.stages]
         return drive.begins not in names[names.index(stage) + 1 :]
 
+    def values_at(self, stage: str, value: float) -> dict[str, float]:
+        """Values of loads and drives at a station, the ``value`` of a stage; later stages keep the last value.
+
+        A drive with ``from`` has no value before the first stage of its own stations.
+        """
+        first, names = self.stages[0].name, [each.name for each in self.stages]
+        values = dict.fromkeys((*self.loads, *(k for k, v in self.drives.items() if self.holds(v, first))), 0.0)
+        for each in self.stages[: names.index(stage) + 1]:
+            values |= dict.fromkeys(each.stepped, value if each.name == stage else each.stations[-1])
+        return values
+
     def stepped(self, stage: Stage) -> Load | Drive:
         """The stepped load or drive of a stage.
 
@@ -322,8 +351,8 @@ class Scene(Record):
 
     @property
     def owners(self) -> dict[str, str]:
-        """Names of bodies by their points; for a repeated point the first body."""
-        return {point: name for name, body in reversed(list(self.bodies.items())) for point in body.points}
+        """Names of bodies by their points; for a repeated point the last body."""
+        return {point: name for name, body in self.bodies.items() for point in body.points}
 
     def body_of(self, point: str) -> str:
         """Name of the body of a ``point``.

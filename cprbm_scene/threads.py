@@ -9,10 +9,7 @@ from __future__ import annotations
 import sys
 from contextlib import AbstractContextManager, nullcontext
 from functools import lru_cache
-from typing import TYPE_CHECKING, cast
-
-if TYPE_CHECKING:
-    from threadpoolctl import ThreadpoolController
+from typing import Any, cast
 
 
 def one_thread() -> AbstractContextManager[object]:
@@ -25,7 +22,7 @@ def one_thread() -> AbstractContextManager[object]:
 
 
 @lru_cache(maxsize=1)
-def _loaded(modules: int) -> ThreadpoolController:
+def _loaded(modules: int) -> Any:  # noqa: ANN401 - threadpoolctl has no types
     """Controller of the loaded libraries, cached: threadpoolctl reads the process's map of memory, which takes long.
 
     Libraries are loaded with Python modules, so that an equal number of ``modules`` means equal libraries.

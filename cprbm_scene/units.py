@@ -52,8 +52,9 @@ T = TypeVar("T")
 _LETTERS = "A-Za-z_À-ÖØ-öø-ɏΑ-Ωα-ω"
 Word = Annotated[str, StringConstraints(pattern=f"^[{_LETTERS}][{_LETTERS}0-9-]*$", max_length=64)]
 """Latin and Greek letters, digits, '_' and '-': the name of a parameter in an expression."""
-Name = Annotated[str, StringConstraints(pattern=f"^[{_LETTERS}][{_LETTERS}0-9-]*( [{_LETTERS}0-9-]+)*$", max_length=64)]
-"""Words with a single space between them: names are parts of keys, of file names and of options."""
+NAME = f"^[{_LETTERS}][{_LETTERS}0-9-]*( [{_LETTERS}0-9-]+)*$"
+"""Pattern of words with a single space between words: names are parts of keys, of file names and of options."""
+Name = Annotated[str, StringConstraints(pattern=NAME, max_length=64)]
 Text = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x08\x0b-\x1f\x7f-\x9f]*$")]
 """Text without control characters, but for tabs and line ends."""
 Title = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]

@@ -158,7 +158,7 @@ def crossings(scene: Scene, states: Sequence[StationState]) -> Iterator[str]:
         for pair in _overlaps(state, 1.0 - DEEP) - known:
             known.add(pair)
             one, *others = sorted(pair, key=[*scene.beams, *scene.contacts].index)
-            where = f"from {stage} {load} on ({state.stepped} = {load}), and no"
+            where = f"from {stage} {load} on ({state.stage.steps} = {load}), and no"
             if others:
                 yield (
                     f"{one} and {others[0]} pass through each other {where} contact names them: add a contact of {one} "

@@ -9,7 +9,7 @@ N, Q    stated normal force and shear force
 γ       shear angle ψ - φ, with ψ of the tangent and φ of the section
 h       distance of two neighbouring stated places; step between two stations
 Π       strain energy less the work of the loads
-g, x    dΠ/dx and x of the stepped load or drive: -u and P, or F and d
+g, x    dΠ/dx and x of the stepped loads or drive: -u and P, or F and d
 ======  ===============================================================================
 
 *Joints.*  Ends stand at their points, welded ends at their angles; guides, pivots, pins, drives and drawn shapes hold.
@@ -201,10 +201,10 @@ def _errors(state: StationState) -> Iterator[tuple[str, float]]:
         yield f"the pin {name}", abs(state.point(pin.points[0]) - state.point(pin.points[1]))
     for name, drive in scene.drives.items():
         if isinstance(drive, DisplacementDrive):
-            moved = (state.moved(drive.point) * np.conj(unit(drive.direction))).real
-            yield f"the drive {name}", moved - state.values[name]
+            lever, moved = 1.0, (state.moved(drive.point) * np.conj(unit(drive.direction))).real
         else:
-            yield f"the drive {name}", arm * (state.rotation(drive.body) - state.values[name])
+            lever, moved = arm, state.rotation(drive.body)
+        yield f"the drive {name}", lever * (moved - state.values.get(name, moved))
 
 
 def probes(state: StationState) -> Iterator[Finding]:
@@ -320,9 +320,10 @@ def path(answer: Answer, states: Sequence[StationState]) -> Iterator[Finding]:
 
 
 def _driving(state: StationState) -> float:
-    """g of the stepped load or drive."""
-    if state.stepped in state.scene.loads:
-        return -state.load(state.stepped)[1]
-    drive, forces = state.scene.drives[state.stepped], state.forces[state.forces["source"] == state.stepped]
+    """g of the stepped loads or drive."""
+    name = state.stage.steps
+    if name in state.scene.loads:
+        return -sum(state.load(load)[1] for load in state.stage.stepped)
+    drive, forces = state.scene.drives[name], state.forces[state.forces["source"] == name]
     way = unit(drive.direction) if isinstance(drive, DisplacementDrive) else 0j
     return float((forces["force"].sum() * np.conj(way)).real + (0.0 if way else forces["moment"].sum()))

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from comparisons.geometry import length
 from cprbm_scene.answer import Answer, Array, BeamState, StationAnswer
 from cprbm_scene.curve_records import shape_of
-from cprbm_scene.statement import Beam, BeamMoment, DistributedLoad, Force, Material, Moment, Scene, WeldedEnd
+from cprbm_scene.statement import Beam, BeamMoment, DistributedLoad, Force, Material, Moment, Scene, Stage, WeldedEnd
 
 Complex = NDArray[np.complex128]
 Forces = NDArray[np.void]
@@ -127,7 +127,7 @@ class DeformedBeam:
 
 @dataclass(frozen=True)
 class StationState:
-    """One station of a stage that steps ``stepped``, with the ``values`` of all loads and drives there.
+    """A station of a ``stage``, with the ``values`` of all loads, and of the drives that hold a known value.
 
     ``kinematics`` is the solver's theory.
     """
@@ -136,7 +136,7 @@ class StationState:
     station: StationAnswer
     beams: dict[str, DeformedBeam]
     values: dict[str, float]
-    stepped: str
+    stage: Stage
     kinematics: str
 
     @cached_property
@@ -266,16 +266,15 @@ def unit(direction: tuple[float, float]) -> complex:
 
 def states_of(scene: Scene, answer: Answer) -> Iterator[StationState]:
     """Every station that states internal forces of all beams; loads and drives keep their last value."""
-    kinematics, names = str(answer.settings.get("kinematics", scene.theory)), [stage.name for stage in scene.stages]
+    stages = {stage.name: stage for stage in scene.stages}
     for station in answer.stations:
         if station.beams.keys() >= scene.beams.keys():
-            before = scene.stages[: names.index(station.stage)]
-            values = dict.fromkeys((*scene.loads, *scene.drives), 0.0) | {
-                each.steps: each.stations[-1] for each in before
-            }
-            stepped = scene.stages[len(before)].steps
             beams = {
                 name: DeformedBeam(beam, scene.materials[beam.material], length(beam.curve), station.beams[name])
                 for name, beam in scene.beams.items()
             }
-            yield StationState(scene, station, beams, values | {stepped: station.value}, stepped, kinematics)
+            theory, values = (
+                answer.settings.get("kinematics", scene.theory),
+                scene.values_at(station.stage, station.value),
+            )
+            yield StationState(scene, station, beams, values, stages[station.stage], str(theory))

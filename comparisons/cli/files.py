@@ -6,6 +6,7 @@ import json
 import re
 from importlib.resources import files
 from pathlib import Path
+from shlex import quote
 
 import click
 
@@ -15,6 +16,7 @@ from comparisons.importing.drawing import read_drawing
 from comparisons.importing.scene_text import Choices, Unit, scene_text
 from comparisons.writing import write
 from cprbm_scene.reading import schema as schema_of_scenes
+from cprbm_scene.units import NAME
 
 SCHEMA = "scene.schema.json"
 """Name of the schema's file, beside the scene that refers to it."""
@@ -27,10 +29,10 @@ def new(name: str, out: Path, quiet: bool) -> None:  # noqa: FBT001 - click pass
         click.UsageError: the name is wrong, or the file exists.
     """
     path = _free_path(out, name, "NAME", "another name")
-    write(path, first_scene(name))
+    write(path, first_scene(name, quote(f"{name}.toml")))
     write(out / SCHEMA, _schema_text())
     if not quiet:
-        click.echo(f"{path}: change the scene, then run 'cprbm compare {path}'.")
+        click.echo(printable(f"{path}: change the scene, then run: cprbm compare {quote(str(path))}"))
 
 
 def import_drawing(
@@ -54,7 +56,7 @@ def import_drawing(
     write(path, text)
     for note in notes:
         click.echo(printable(f"{drawing}: {note}"), err=True)
-    click.echo(printable(f"{path}: change load and probes, then run 'cprbm compare {path}'."))
+    click.echo(printable(f"{path}: change load and probes, then run: cprbm compare {quote(str(path))}"))
 
 
 def schema() -> None:
@@ -62,10 +64,10 @@ def schema() -> None:
     click.echo(_schema_text(), nl=False)
 
 
-def first_scene(name: str) -> str:
-    """The first scene, commented, under a ``name`` of letters, digits, ``_`` and ``-``."""
+def first_scene(name: str, file: str) -> str:
+    """The first scene, commented, under a ``name``, with commands for a ``file``."""
     template = files("comparisons.importing").joinpath("scene.toml").read_text(encoding="utf-8")
-    return template.replace("{schema}", SCHEMA).replace("{name}", name).replace("{file}", f"{name}.toml")
+    return template.replace("{schema}", SCHEMA).replace("{name}", name).replace("{file}", file)
 
 
 def _schema_text() -> str:
@@ -79,8 +81,8 @@ def _free_path(out: Path, name: str, hint: str, remedy: str) -> Path:
     Raises:
         click.UsageError: the name is wrong, or the file exists.
     """
-    if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_-]{0,63}", name):
-        allowed = "letters, digits, '_' and '-', a letter or '_' first, 64 at most"
+    if not re.search(NAME, name) or len(name) > 64:
+        allowed = "letters, digits, '_', '-' and single spaces inside, a letter or '_' first, 64 at most"
         raise click.BadParameter(f"found {name!r}; allowed: {allowed}", param_hint=hint)
     path = out / f"{name}.toml"
     if path.exists():

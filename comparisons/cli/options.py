@@ -65,8 +65,8 @@ def _share(text: str) -> float:
 
 def _values(texts: tuple[str, ...]) -> dict[str, str]:
     pairs = {name.strip(): text.strip() for name, _, text in (each.partition("=") for each in texts)}
-    if not all((*pairs, *pairs.values())):
-        raise click.BadParameter(f"found {', '.join(texts)}; allowed: NAME=VALUE, such as t=1.9mm")
+    if not all((*pairs, *pairs.values())) or len(pairs) < len(texts):
+        raise click.BadParameter(f"found {', '.join(texts)}; allowed: NAME=VALUE, such as t=1.9mm, once for each name")
     return pairs
 
 

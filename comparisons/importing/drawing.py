@@ -17,8 +17,8 @@ import shapely
 
 from comparisons.executor import WorkerDiedError, call_fresh
 from cprbm_scene.answer import Array
+from cprbm_scene.files import read_points
 from cprbm_scene.mistakes import Mistake, SceneError
-from cprbm_scene.point_table import read_points
 
 _BEGIN = 4096
 """Bytes of a file that decide on the format."""
@@ -213,7 +213,12 @@ _FORMATS: tuple[tuple[str, tuple[str, ...], bytes, Callable[[Path, str], Drawing
     ("BREP", (".brep",), rb"\s*(DBRep_DrawableShape|CASCADE Topology)", _with_gmsh),
     ("IGES", (".iges", ".igs"), rb".{72}S\s*1", _with_gmsh),
     ("DXF", (".dxf",), rb"(\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION|AutoCAD Binary DXF", _with_ezdxf),
-    ("table", (".csv",), rb"(\xef\xbb\xbf)?(\s*#[^\n]*\n|\s)*([^\n]*[,;\t])?[\s\"']*[xy][^,;\t\n]*[,;\t]", _read_table),
+    (
+        "table",
+        (".csv",),
+        rb"(\xef\xbb\xbf)?(\s*#[^\n]*\n|\s)*([^\n]*[,;\t])?[\s\"']*[xyXY][^,;\t\n]*[,;\t]",
+        _read_table,
+    ),
     ("gmsh geometry", (".geo",), b"", _with_gmsh),
 )
 """Names, endings, patterns of the beginnings, and readers of all formats; the first fitting pattern counts."""

@@ -20,7 +20,7 @@ from comparisons.reactions import ENERGY, MESH_ALLOWANCE, WorkEnergyReaction, mu
 from comparisons.stations import begins_at, station_of
 from cprbm_scene import Answer, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array
-from cprbm_scene.freedoms import unit
+from cprbm_scene.curves import unit_vector as unit
 from cprbm_scene.statement import DisplacementDrive, Force, Probe, Quantity, RotationDrive
 
 Look = Mapping[str, Any]

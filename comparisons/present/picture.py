@@ -12,7 +12,7 @@ from comparisons.geometry import edge_places, is_free_on_the_left, longest
 from comparisons.present.strips import Coloured, Strip, left_of, strip_of
 from cprbm_scene import Answer, FreeEnd, PinnedEnd, Scene, StationAnswer
 from cprbm_scene.answer import Array
-from cprbm_scene.freedoms import unit
+from cprbm_scene.curves import unit_vector as unit
 from cprbm_scene.statement import (
     BeamMoment,
     CircleContact,
@@ -301,10 +301,9 @@ def _loads(scene: Scene, station: StationAnswer, strips: Mapping[str, Strip]) ->
             yield Arrow(
                 "load", at.source, at.target, at.place[None], at.force[None], float(at.moment) if turns else 0.0
             )
-    before = scene.stages[: [stage.name for stage in scene.stages].index(station.stage)]
-    values = {stage.steps: stage.stations[-1] for stage in before} | {scene.stages[len(before)].steps: station.value}
+    values = scene.values_at(station.stage, station.value)
     for name, load in scene.loads.items():
-        value, (on, places) = values.get(name, 0.0), _loaded(scene, station, load, strips)
+        value, (on, places) = values[name], _loaded(scene, station, load, strips)
         way = None if isinstance(load, Moment | BeamMoment) else np.array(unit(load.direction))
         force = np.zeros(2) if way is None else value * way
         if isinstance(load, DistributedLoad):

@@ -197,6 +197,8 @@ def move_places(
 ) -> float:  # pragma: no cover
     """Move places by a share of their linear change; the largest whole change, in pieces.
 
+    A place that a change leads beyond an end of the place's curve stays at the end, without a change.
+
     Args:
         z, curves, places: the state whose row was eliminated; piece and parameter of moving places are changed.
         change: of the unknowns.
@@ -216,10 +218,10 @@ def move_places(
         slope = row.slope + row.slope_by_force * by_force[k]
         for i in range(LOCAL):
             slope += vectors[SHIFT, i] * change[index[i]]
-        step = -slope / abs(row.curvature)
-        largest = max(largest, abs(step))
-        step = min(limit, max(-limit, step)) * share
-        places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], step)
+        whole, piece, at = -slope / abs(row.curvature), places.piece[k], places.xi[k]
+        step = min(limit, max(-limit, whole)) * share
+        places.piece[k], places.xi[k], ended = moved_along(curves, places.curve[k], piece, at, step)
+        largest = max(largest, 0.0 if ended and places.xi[k] == at and places.piece[k] == piece else abs(whole))
     return largest
 
 

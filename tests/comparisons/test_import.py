@@ -129,7 +129,7 @@ def test_lines_arcs_and_polylines_of_a_dxf_drawing(tmp_path, capsys):
 
 
 def test_a_table_of_points_is_a_curve(tmp_path, capsys):
-    (tmp_path / "arch.csv").write_text("x [mm],y [cm]\n0,0\n30,0.8\n70,0.4\n100,0\n", encoding="utf-8")
+    (tmp_path / "arch.csv").write_text("nr;X [mm];Y [cm]\n1;0;0\n2;30;0.8\n3;70;0.4\n4;100;0\n", "utf-8-sig")
     assert import_of(tmp_path / "arch.csv") == 0
     curve = read(tmp_path / "arch.toml").beams["arch"].curve
     assert curve.points == ((0.0, 0.0), (0.03, 0.008), (0.07, 0.004), (0.1, 0.0))

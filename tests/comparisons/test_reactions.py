@@ -30,7 +30,7 @@ from comparisons.reactions import (
 from comparisons.writing import text_of
 from cprbm_scene import Ending, Stage
 from cprbm_scene.answer import frozen_array
-from cprbm_scene.freedoms import unit
+from cprbm_scene.curves import unit_vector as unit
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import DisplacementDrive
 from tests.tables import tables_of

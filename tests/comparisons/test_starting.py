@@ -42,6 +42,14 @@ def test_what_is_there_is_kept(tmp_path, capsys):
     assert path.read_text(encoding="utf-8") == "my own"
 
 
+def test_a_name_has_umlauts_and_spaces(tmp_path, capsys):
+    assert run(["new", "große Feder", "--out", str(tmp_path)]) == 0
+    path = tmp_path / "große Feder.toml"
+    assert f"cprbm compare '{path}'" in capsys.readouterr().out
+    assert read(path).name == "große Feder"
+    assert "cprbm compare 'große Feder.toml'" in path.read_text("utf-8")
+
+
 def test_the_schema_is_one_and_stands_beside_the_scene(tmp_path, capsys):
     run(["new", "one", "--out", str(tmp_path)])
     capsys.readouterr()
@@ -68,7 +76,7 @@ def test_the_schema_refuses_what_reading_refuses():
         (("stages",), []),
         (("file",), "somewhere"),
     ):
-        data = tomllib.loads(first_scene("strip"))
+        data = tomllib.loads(first_scene("strip", "strip.toml"))
         jsonschema.validate(data, schema())
         *path, last = place
         table = data

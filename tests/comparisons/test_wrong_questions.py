@@ -43,12 +43,13 @@ WORDS = [
     (["compare", "hinge", "--penetration", "nan"], "found 'nan'"),
     (["compare", "hinge", "--kinematics", "timoshenko"], "timoshenko", "'stretch'"),
     (["compare", "hinge", "--set", "a"], "found a; allowed: NAME=VALUE"),
+    (["compare", "hinge", "--set", "t=2mm", "--set", "t=1.9mm"], "found t=2mm, t=1.9mm", "once for each name"),
     (["compare", "hinge", "mine-hinge.toml"], "Several scenes have the name hinge"),
     (["compare", "hinge", "no/such/file.toml"], "no/such/file.toml", "'cprbm new NAME'"),
     (["solve", "bytes.toml"], "bytes.toml"),
     (["solve", "."], "built-in case"),
     (["new", "9lives"], "found '9lives'; allowed: letters"),
-    (["new", "über"], "found 'über'; allowed: letters"),
+    (["new", "a  b"], "found 'a  b'; allowed: letters"),
     (["new", "a/b"], "found 'a/b'; allowed: letters"),
     (["new", ""], "found ''; allowed: letters"),
 ]
@@ -83,7 +84,7 @@ FILES = [
         "the key 'units', as units",
     ),
     ("radius = 0.006", 'radius = "6mm"', "found '6mm'; allowed: a number; numbers have no units", "units = { length"),
-    ("radius = 0.006", 'radius = "six"', "found 'six'; allowed: a number\n"),
+    ("radius = 0.006", 'radius = "six"', "found 'six'; allowed: a number, or an expression that begins with '='\n"),
 ]
 SCENES = {
     "no TOML": (HINGE.replace("[bodies.AC]", "[bodies.AC"), "TOML"),

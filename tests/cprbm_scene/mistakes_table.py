@@ -35,6 +35,7 @@ SECTIONS["records of the hinge"] = (
         ("beams/beam1/width", NAN, "finite"),
         ("beams/beam1/width", "8 mm", "'8 mm'; a number"),
         ("beams/beam1/width", True, "true; a number"),
+        ("beams/beam1/width", "t/2", "an expression that begins with '='"),
         ("beams/beam1/curve", 3, "a table"),
         ("beams/beam1/curve/kind", "spiral", "one of 'line', 'arc'"),
         ("beams/beam1/curve/kind", REMOVED, "nothing; one of 'line', 'arc'"),
@@ -467,7 +468,7 @@ SECTIONS["pins"] = (
     False,
     (
         ("pins/at_A/points", ["A", "A2"], "pins.at_A.points[1]", "which names no point"),
-        ("pins/at_A/points", ["A"], "pins.at_A.points[1]", "an item here"),
+        ("pins/at_A/points", ["A"], "pins.at_A.points[1]", "an item here: the list is too short"),
         ("pins/at_A/points", ["A1", "B"], "both of the body 'coupler'"),
         ("pins/at_A/points", ["A", "B"], "0.158 m apart"),
         ("pins/at_A/stiffness", 1.0, "which names no key here"),

@@ -109,6 +109,13 @@ def test_a_name_near_that_of_a_wrong_record_has_a_hint():
     assert "is 'steel' meant" in mistakes(*edits, base=TWO)["beams.lower.material"]
 
 
+def test_a_forbidden_name_is_no_suggestion():
+    edits = ("bodies/a  b", {"motion": "free", "points": {"S": [0.1, 0.0]}}), ("probes/0/of", "ab")
+    found = mistakes(*edits, base=TWO)
+    assert set(found) == {"bodies.a  b", "probes[0].of"}
+    assert "a  b" not in found["probes[0].of"]
+
+
 def test_a_message_lists_a_repeated_name_once():
     edits = ("bodies/block/points/O", [0.1, 0.0]), ("beams/upper/start/point", "Z")
     assert mistakes(*edits, base=TWO)["beams.upper.start.point"].count("'O'") == 1

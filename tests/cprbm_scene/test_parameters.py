@@ -89,6 +89,7 @@ WITHOUT_VALUE = [
     ("= 1/0", "without a value"),
     ("= 9.0**9**9", "without a value"),
     ("= 1e308*10", "without a finite value"),
+    ("= sin(1e308*10)", "without a value"),
     ("= (t", "no arithmetic"),
     ("=", "no arithmetic"),
     ("= " + "-" * 400 + "t", "an expression of 40"),

@@ -12,10 +12,10 @@ from pydantic import BaseModel, ValidationError
 
 from comparisons import cases
 from cprbm_scene import OffsetQuestion, Scene, SceneError, read, read_question, scene_from, statement
+from cprbm_scene.files import DEEPEST, LONGEST
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import MOST
 from cprbm_scene.plausibility import notes
-from cprbm_scene.reading import DEEPEST, LARGEST
 from cprbm_scene.statement import Record, Units
 from cprbm_scene.units import Measured
 from tests.cprbm_scene.conftest import HINGE as FILE
@@ -117,8 +117,8 @@ def refused(tmp_path, text):
 
 
 def test_a_file_is_read_no_further_than_it_may_be_long(tmp_path):
-    assert "a file that is larger; allowed: at most 1 MB" in refused(tmp_path, b"#" * (LARGEST + 1))
-    assert "larger" not in refused(tmp_path, b"#" * LARGEST)
+    assert "a file that is larger; allowed: at most 1 MB" in refused(tmp_path, b"#" * (LONGEST + 1))
+    assert "larger" not in refused(tmp_path, b"#" * LONGEST)
 
 
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="the system has no file without end")
@@ -224,8 +224,8 @@ WRONG_TABLES = [
     (b"x,y\n0,nan\n", "'nan' in p.csv, row 2, column y"),
     (b"x,y\n0,0\n1,1e400\n", "'1e400' in p.csv, row 3, column y"),
     (b"x,y\n0,0\n1,1\n", "at least 3 of them"),
-    (b"\xff\xfe", "p.csv', which cannot be read (no text in UTF-8)"),
-    (b"x,y\n" + b"0,0\n" * 300_000, "'p.csv', a longer file; allowed: at most 1 MB"),
+    (b"\xff\xfe", "p.csv', bytes that are no UTF-8 text (at byte 0); allowed: a table of points"),
+    (b"x,y\n" + b"0,0\n" * 300_000, "p.csv', a file that is larger; allowed: at most 1 MB of points"),
 ]
 
 
@@ -235,7 +235,7 @@ def test_a_wrong_table_is_named_with_row_and_column(tmp_path):
         assert mistake.key == "beams.lower.curve.points"
         assert words in str(mistake)
     missing = through_a_table(tmp_path / "p.csv", b"", ("beams/lower/curve/points", "q.csv"))
-    assert "q.csv', which is no file" in missing.found
+    assert "q.csv', a file that cannot be read (No such file or directory)" in missing.found
 
 
 def test_a_named_free_end_is_a_weld_to_a_body_of_one_point():

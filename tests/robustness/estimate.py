@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from cprbm_scene import Beam, Drive, FreeEnd, Load, Scene
 from cprbm_scene.curve_records import shape_of
-from cprbm_scene.freedoms import unit
+from cprbm_scene.curves import unit_vector as unit
 from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cprbm_scene import FreeEnd
-from cprbm_scene.freedoms import unit
+from cprbm_scene.curves import unit_vector as unit
 from cprbm_scene.statement import BeamForce, DistributedLoad
 from tests.robustness.chance import RedrawError, rounded
 from tests.robustness.draft import Data, Draft

@@ -81,3 +81,19 @@ def test_the_cprbm_alone_answers(solver, data, key):
     with pytest.raises(SceneError) as refused:
         SOLVERS[solver](scene_from(data))
     assert [mistake.key for mistake in refused.value.mistakes] == [key]
+
+
+@pytest.mark.parametrize("data", [pressed_then_held(), stepped_together()], ids=["from", "together"])
+def test_the_audit_finds_nothing_wrong_in_the_answer(data, tmp_path, capsys):
+    """The audit has the loads of a list, and no value of a drive that is free."""
+    path = tmp_path / "scene.toml"
+    path.write_text(toml_of(data), encoding="utf-8")
+    assert run(["solve", str(path), "-n", "8", "--quiet"]) == 0
+    assert "audit" not in capsys.readouterr().err
+
+
+def test_a_station_has_values_of_all_loads_and_of_held_drives():
+    held, together = scene_from(pressed_then_held()), scene_from(stepped_together())
+    assert held.values_at("press", 2.0) == {"F": 2.0}
+    assert held.values_at("hold", 0.004) == {"F": FORCE, "d": 0.004}
+    assert together.values_at(together.stages[0].name, 3.0) == {"F": 3.0, "H": 3.0}

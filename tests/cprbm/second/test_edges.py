@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm_scene import Loss, read
+from cprbm_scene import Loss, read, scene_from
+from tests.cprbm_scene.editing import edited
 from tests.fea_reference.on_an_edge import T, cantilever_over
 from tests.references.cornered import Cornered
 from tests.scenes.rare_scenes import scene as rare_scene
+from tests.together.features import CIRCLE, held_by
 
 AT, FORCE = (0.5, -0.02), 3.0
 DEAD_WEIGHT = """
@@ -150,3 +152,16 @@ def test_a_load_away_from_all_contacts_leaves_a_body_neutral(tmp_path):
     found = cprbm.answer(read(path), cprbm.Settings(links=10))
     assert not found.completed
     assert "body 'slider' is neutral" in found.sentence
+
+
+def test_a_flat_ellipse_has_a_sharp_tip_that_no_place_leaves():
+    """A place at the end of the tip's bend stays there; the values of 10 and 40 links agree within 1e-4."""
+    base = held_by(CIRCLE)
+    lower = 0.5 * base["beams"]["beam"]["thickness"] + 0.0005
+    ellipse = {"kind": "beam-ellipse", "beam": "beam", "body": "wall", "semi_axes": [0.01, 0.002]}
+    scene = scene_from(edited(("contacts/c", ellipse | {"center": [0.06, -0.002 - lower]}), base=base))
+    few, many = (cprbm.answer(scene, cprbm.Settings(links=links)) for links in (10, 40))
+    assert few.completed
+    assert many.completed
+    for probe in ("T.displacement", "c.force"):
+        assert few.stations[-1].values[probe] == pytest.approx(many.stations[-1].values[probe], rel=1e-4)
