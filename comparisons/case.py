@@ -9,7 +9,7 @@ from comparisons import sentences as said
 from comparisons.audit import Audit, audit
 from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.stations import complete_part, ends_at_critical
-from comparisons.tolerances.result import Tolerance
+from comparisons.tolerances import Tolerance
 from comparisons.verdict import SEVERITY, Reason, Word, worst_of
 from comparisons.verdict.events import CriticalRow, Place, critical_rows, far_closings, station_events
 from comparisons.verdict.judge import Judged, judge_case, judge_rows

@@ -8,12 +8,14 @@ prefix for the largest value, one prefix in a table.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from comparisons.quantities import COMPONENTS, load_unit
-from cprbm_scene import Scene, Stage
+from cprbm_scene import Answer, Scene, Stage
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES, Quantity
 from cprbm_scene.units import ANGLE, FORCE, LENGTH, LINE_LOAD, MOMENT, STRESS
@@ -90,9 +92,7 @@ def _component(value: float, factor: float, floor: float) -> str:
 
 def display_unit(scene: Scene, unit: str, size: float) -> tuple[float, str]:
     """Size in SI and name of the unit in which values of about ``size`` of the SI ``unit`` are displayed."""
-    if not _stated(scene, unit):
-        return scaled_unit(unit, abs(size))
-    return _with_symbols(*file_unit(scene, unit))
+    return _with_symbols(*file_unit(scene, unit)) if _stated(scene, unit) else scaled_unit(unit, abs(size))
 
 
 def display_units(scene: Scene, sizes: Iterable[tuple[str, float]]) -> Mapping[str, tuple[float, str]]:
@@ -157,6 +157,17 @@ def load_column(scene: Scene, stage: Stage, values: Sequence[float]) -> tuple[st
 def at_station(scene: Scene, stage: str, value: float) -> str:
     """Name of a stage, and the value of its load or drive with the displayed unit."""
     return f"{stage} {load_text(scene, stage, value)}"
+
+
+def in_file_units(scene: Scene, answer: Answer) -> Answer:
+    """An answer whose sentence and notes have the displayed units of the loads and drives that stages step."""
+    stages = {stage.steps: stage.name for stage in scene.stages}
+    value = re.compile(rf"\b({'|'.join(map(re.escape, stages))}) (=|is) ([-+]?\d[\d.]*(?:e[-+]\d+)?)\b")
+    sentence, *notes = (
+        value.sub(lambda found: f"{found[1]} {found[2]} {load_text(scene, stages[found[1]], float(found[3]))}", text)
+        for text in (answer.sentence, *answer.notes)
+    )
+    return replace(answer, sentence=sentence, notes=tuple(notes))
 
 
 def _with_symbols(size: float, name: str) -> tuple[float, str]:

@@ -25,7 +25,6 @@ use the reaction.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -36,6 +35,7 @@ from pydantic import ValidationError
 
 from comparisons.choices import Choices, check
 from comparisons.executor import ALONE, Crew, Job, Solver
+from comparisons.formats import in_file_units
 from comparisons.reactions import perturbed_scene
 from comparisons.verdict.runs import Runs, other_theory
 from cprbm_scene import Answer, Ending, Mistake, RigidContact, Scene, SceneError, Spacing
@@ -82,7 +82,9 @@ def cprbm_prepared(scene: Scene, choices: Choices) -> Prepared:
     theory = choices.theory_of(scene)
     run = cprbm.prepared(scene.model_copy(update={"theory": theory}), settings)
     # with the theory among the settings, as the finite elements state the theory
-    return lambda: replace(answer := run.answer(), settings=frozendict({**answer.settings, "kinematics": theory}))
+    return lambda: in_file_units(
+        scene, replace(answer := run.answer(), settings=frozendict({**answer.settings, "kinematics": theory}))
+    )
 
 
 def fea_answer(scene: Scene, choices: Choices) -> Answer:
@@ -108,7 +110,8 @@ def fea_prepared(scene: Scene, choices: Choices) -> Prepared:
             kinematics=choices.kinematics_of(scene),
             penetration=choices.penetration,
         )
-    return fea_reference.prepared(scene, settings).answer
+    run = fea_reference.prepared(scene, settings)
+    return lambda: in_file_units(scene, run.answer())
 
 
 def prepared(solver: Solver, scene: Scene, choices: Choices) -> Prepared:
@@ -235,11 +238,6 @@ def load_solvers() -> None:
     """Load both solvers here, so that forked workers have both loaded."""
     import cprbm  # noqa: F401
     import fea_reference  # noqa: F401
-
-
-def workers_for(planted: object) -> int:
-    """Number of processes for the runs; planted solvers stay in this process."""
-    return 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
 
 
 def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE, *, bare: bool = False) -> Runs:

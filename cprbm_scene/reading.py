@@ -208,7 +208,8 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
         SceneError: the data are no valid scene. The error names every mistake with its key.
 
     Example:
-        >>>         >>> from pathlib import Path
+        >>> import tomllib
+        >>> from pathlib import Path
         >>> from cprbm_scene import scene_from
         >>> data = tomllib.loads(Path("comparisons/cases/hinge.toml").read_text(encoding="utf-8"))
         >>> data["beams"]["beam1"]["thickness"] = 0.003

@@ -9,6 +9,7 @@ import numpy as np
 from comparisons.audit.contacts import contacts, crossings
 from comparisons.audit.laws import cuts, joints, path, probes, section_law, sums
 from comparisons.audit.state import states_of
+from comparisons.formats import at_station
 from cprbm_scene import Answer, Scene
 
 CHECKS = (joints, sums, cuts, section_law, contacts, probes)
@@ -43,7 +44,7 @@ def audit(scene: Scene, answer: Answer) -> Audit:
     complaints, sound, unbalances = [], [], [(0.0, 0.0)]
     states = list(states_of(scene, answer))
     for state in states:
-        where, forces = f"at {state.station.stage} {state.station.value:g}", state.station.forces
+        where, forces = f"at {at_station(scene, state.stage.name, state.station.value)}", state.station.forces
         numbers = [getattr(beam, field.name) for beam in state.station.beams.values() for field in fields(beam)]
         if np.isfinite(np.concatenate([*numbers, forces.force.ravel(), forces.moment, forces.place.ravel()])).all():
             sound.append(state)
@@ -52,6 +53,6 @@ def audit(scene: Scene, answer: Answer) -> Audit:
             unbalances.append((unbalance, unbalance / state.largest[1]))
         else:
             complaints.append(f"{where} a number is not finite")
-    complaints += [said for excess, said in path(answer, sound) if not excess <= 0.0]
+    complaints += [said for excess, said in path(scene, answer, sound) if not excess <= 0.0]
     worst, scaled = np.max(unbalances, axis=0)
     return Audit(tuple(complaints), tuple(crossings(scene, sound)), len(states), float(worst), float(scaled))

@@ -31,6 +31,7 @@ import numpy as np
 import shapely
 
 from comparisons.audit.state import PIECES, Complex, Finding, StationState
+from comparisons.formats import at_station
 from comparisons.geometry import RigidEdge, edge_places, is_free_on_the_left
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import CircleContact, Contact, RigidContact, Scene, SelfContact
@@ -154,11 +155,10 @@ def crossings(scene: Scene, states: Sequence[StationState]) -> Iterator[str]:
     named = (*scene.may_cross, *(beams[:2] for beams in touching))
     known = {frozenset(pair) for pair in named}.union(*(_overlaps(state.at_rest, 1.0 + DEEP) for state in states[:1]))
     for state in states:
-        stage, load = state.station.stage, f"{state.station.value:g}"
         for pair in _overlaps(state, 1.0 - DEEP) - known:
             known.add(pair)
             one, *others = sorted(pair, key=[*scene.beams, *scene.contacts].index)
-            where = f"from {stage} {load} on ({state.stage.steps} = {load}), and no"
+            where = f"from {at_station(scene, state.stage.name, state.station.value)} on, and no"
             if others:
                 yield (
                     f"{one} and {others[0]} pass through each other {where} contact names them: add a contact of {one} "

@@ -41,6 +41,7 @@ from itertools import groupby
 import numpy as np
 
 from comparisons.audit.state import BESIDE, Finding, StationState, about, gauss, unit
+from comparisons.formats import at_station, load_text
 from comparisons.quantities import arc_lengths
 from cprbm_scene.answer import Answer, Array
 from cprbm_scene.statement import (
@@ -296,7 +297,7 @@ def _energies(state: StationState) -> tuple[float, float, float]:
     return strain, sum(state.values[load] * state.load(load)[1] for load in state.scene.loads), even
 
 
-def path(answer: Answer, states: Sequence[StationState]) -> Iterator[Finding]:
+def path(scene: Scene, answer: Answer, states: Sequence[StationState]) -> Iterator[Finding]:
     """Changes of energy besides the work between stations of a branch, and energies gained at critical points."""
     branches = groupby(states, key=lambda state: (state.station.stage, state.station.branch))
     for (stage, _), of in ((key, list(group)) for key, group in branches):
@@ -309,13 +310,14 @@ def path(answer: Answer, states: Sequence[StationState]) -> Iterator[Finding]:
         for i, off in enumerate(np.abs(lost) if len(x) > 2 else -lost):
             yield (
                 off - allowed[i],
-                f"from {stage} {x[i]:g} to {x[i + 1]:g} the energy changes by {lost[i]:.3g} J more than the work",
+                f"from {at_station(scene, stage, x[i])} to {load_text(scene, stage, x[i + 1])} the energy changes by "
+                f"{lost[i]:.3g} J more than the work",
             )
     for critical in answer.critical:
         gained = 0.0 if critical.after is None else critical.after - critical.energy
         yield (
             gained - CONTINUOUS * abs(critical.energy) - (ENERGY_ROUND_OFF * states[0].natural if states else 0.0),
-            f"beyond {critical.stage} {critical.value:g} the energy is {gained:.3g} J larger",
+            f"beyond {at_station(scene, critical.stage, critical.value)} the energy is {gained:.3g} J larger",
         )
 
 

@@ -20,7 +20,7 @@ from comparisons.logs import SOLVERS
 from comparisons.pairing import Solvers, exact_answer, solid_answer, solvers_of
 from comparisons.present.strips import Coloured, with_stresses
 from comparisons.quantities import load_unit
-from comparisons.tolerances.result import Tolerance
+from comparisons.tolerances import Tolerance
 from comparisons.writing import write
 from cprbm_scene import Answer, Scene
 
@@ -65,7 +65,7 @@ def _answer_of(request: Request, scene: Scene, solver: SolverName) -> Found:
     """
     solvers = solvers_of(request.planted or Solvers(exact=exact_answer))  # a named solver has no rule on its size
     if request.tol is not None and solver != "exact":
-        from comparisons.tolerances.search import solve_within
+        from comparisons.tolerances import solve_within
 
         with output.status(shown=not request.quiet) as say:
             answer, search = solve_within(scene, solver, request.choices, request.tol, solvers, say)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -64,8 +65,8 @@ class Request:
 
     @property
     def processes(self) -> int:
-        """Number of processes for the runs."""
-        return pairing.workers_for(self.planted)
+        """Number of processes for the runs; planted solvers stay in this process."""
+        return 1 if isinstance(self.planted, pairing.Solvers) else min(2, os.cpu_count() or 1)
 
     def scene(self) -> Scene:
         """The scene of a command for a single scene; notes on implausible numbers go to standard error.

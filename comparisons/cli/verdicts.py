@@ -23,8 +23,8 @@ from comparisons.present import brief, case_tables, csv_table, figures, offset, 
 from comparisons.present.columns import Section
 from comparisons.store import Run, run_into
 from comparisons.studies import convergence
-from comparisons.studies.report import Parts, Report
-from comparisons.tolerances.search import runs_within
+from comparisons.studies.report import Report
+from comparisons.tolerances import runs_within
 from comparisons.verdict import Word
 from comparisons.verdict.runs import Runs
 from comparisons.writing import Plain, write
@@ -177,9 +177,8 @@ def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -
     questions = request.questions()
     request = request.with_room("full-report")
     assert request.out is not None
-    counts = () if "convergence" in without else sizes
-    parts = Parts(request.choices, counts, "times" not in without, request.exact)
-    found = Report(request.out, questions, parts, request.solvers, provenance.page_origin())
+    parts = request.choices, () if "convergence" in without else sizes, "times" not in without, request.exact
+    found = Report(request.out, questions, *parts, request.solvers, provenance.page_origin())
     missing = found.missing()
     with _run(request, questions) as run, output.bar(len(missing), shown=not request.quiet) as progress:
         pending = _begin(request, missing, run, 0)

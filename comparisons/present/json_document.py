@@ -11,7 +11,7 @@ from comparisons.present.columns import follow
 from comparisons.quantities import arc_lengths, unit_of
 from comparisons.reactions import WorkEnergyReaction
 from comparisons.stations import CERTIFICATE_NUMBERS
-from comparisons.tolerances.result import Tolerance
+from comparisons.tolerances import Tolerance
 from comparisons.verdict.events import CriticalRow, released
 from comparisons.verdict.rows import Row
 from comparisons.writing import Plain, plain

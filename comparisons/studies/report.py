@@ -57,23 +57,6 @@ Content = tuple[Comparison | OffsetComparison, tuple[Section, ...]]
 """The comparison of a question, and further sections: error against N, and run times."""
 
 
-@dataclass(frozen=True, slots=True)
-class Parts:
-    """Parts of a report for every question.
-
-    Attributes:
-        choices: of the comparison.
-        sizes: N of the error against N; empty without this part.
-        times: whether run times are measured.
-        exact: whether the exact reference is asked; with None a rule decides.
-    """
-
-    choices: Choices
-    sizes: tuple[int, ...]
-    times: bool
-    exact: bool | None
-
-
 @dataclass(slots=True)
 class Report:
     """A report in a folder; the page in the folder shows all finished chapters.
@@ -81,7 +64,10 @@ class Report:
     Attributes:
         folder: of page and chapters.
         questions: in the order of the chapters.
-        parts: of every chapter; a chapter with other parts is written anew.
+        choices: of the comparison.
+        sizes: N of the error against N; empty without this part.
+        times: whether run times are measured.
+        exact: whether the exact reference is asked; with None a rule decides.
         timed: solvers for run times, without kept answers.
         origin: the machine and the versions.
         table: the paper's Table 1 beside our run times; None before the measurement.
@@ -89,7 +75,10 @@ class Report:
 
     folder: Path
     questions: Sequence[Question]
-    parts: Parts
+    choices: Choices
+    sizes: tuple[int, ...]
+    times: bool
+    exact: bool | None
     timed: Solvers
     origin: Mapping[str, str | int]
     chapters: dict[str, Chapter] = field(default_factory=dict)
@@ -106,8 +95,9 @@ class Report:
         return [question for question in self.questions if question.name not in self.chapters]
 
     def _key(self, question: Question) -> str:
-        """Digest of the dependence of a chapter."""
-        return digest(question.model_dump_json(exclude={"file"}), repr(self.parts))
+        """Digest of the dependence of a chapter: a chapter with other choices or parts is written anew."""
+        parts = self.choices, self.sizes, self.times, self.exact
+        return digest(question.model_dump_json(exclude={"file"}), repr(parts))
 
     @property
     def _table_key(self) -> str:
@@ -118,7 +108,7 @@ class Report:
     def _has_table(self) -> bool:
         """Whether run times are measured, and the questions include all cases of the paper's Table 1, as built in."""
         names = {cell.case for cell in table1.CELLS}
-        return self.parts.times and all(cases.asked(name) in self.questions for name in names)
+        return self.times and all(cases.asked(name) in self.questions for name in names)
 
     def content_of(self, question: Question, pending: Callable[[], Runs] | None, run: Run) -> Content:
         """All numbers of a question; run times come last, when no other solve runs.
@@ -131,17 +121,17 @@ class Report:
         Raises:
             SceneError: a solver refuses the comparison; the report names other refusals.
         """
-        parts, further = self.parts, dict[str, Callable[[], Section]]()
-        if parts.sizes:
+        further = dict[str, Callable[[], Section]]()
+        if self.sizes:
             further["Error against N"] = lambda: convergence_section(
-                question, parts.sizes, parts.choices, run.solvers, run.crew
+                question, self.sizes, self.choices, run.solvers, run.crew
             )
         if isinstance(question, OffsetQuestion):
             found: Comparison | OffsetComparison = compared_offset(question, run.solvers.offset)
         else:
-            runs = paired(question, parts.choices, run.solvers, run.crew) if pending is None else pending()
+            runs = paired(question, self.choices, run.solvers, run.crew) if pending is None else pending()
             found = compare(question, runs)
-            if parts.times:
+            if self.times:
                 further["Run times"] = lambda: _run_times(question, self.timed, run.solvers)
         return found, tuple(_or_refusal(heading, section) for heading, section in further.items())
 

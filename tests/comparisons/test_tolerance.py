@@ -16,7 +16,7 @@ from comparisons.cli.options import tolerance
 from comparisons.executor import ALONE
 from comparisons.opinions import solid_limit
 from comparisons.pairing import Solvers, solid_answer, solvers_of
-from comparisons.tolerances.search import LARGEST, limits_of, runs_within, solve_within
+from comparisons.tolerances import LARGEST, limits_of, runs_within, solve_within
 from comparisons.verdict import Word
 from comparisons.verdict.rows import rows_of
 from comparisons.verdict.runs import Runs

@@ -17,7 +17,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers
 from comparisons.quantities import arc_lengths, denominator, norm, probe_scales
 from comparisons.stations import station_of
-from comparisons.tolerances.search import solve_within
+from comparisons.tolerances import solve_within
 from comparisons.verdict.point_forces import away_from_point_forces
 from cprbm_scene import Answer, Scene
 from tests.references import hinge as exact

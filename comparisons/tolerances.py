@@ -28,17 +28,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
 from comparisons.choices import Choices
 from comparisons.executor import Crew
+from comparisons.formats import at_station, percent
 from comparisons.pairing import Solvers, exact_or_why, in_other_theory, paired, with_solid
 from comparisons.reactions import perturbed_scene
 from comparisons.sentences import problem_sentences
 from comparisons.stations import station_of
 from comparisons.store import AnswerMemory
-from comparisons.tolerances.result import SolverName, Tolerance, WorstRow
 from comparisons.verdict.events import Place
 from comparisons.verdict.rows import Row, rows_of
 from comparisons.verdict.runs import Runs, Uncertainties
@@ -46,6 +47,8 @@ from comparisons.verdict.uncertainty import Error, error, limit
 from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer
 from cprbm_scene.answer import Array, PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict
+
+SolverName = Literal["cprbm", "fea", "solid"]
 
 FIRST: Mapping[SolverName, int] = {"cprbm": 10, "fea": 10, "solid": 20}
 """N of the first runs."""
@@ -66,6 +69,73 @@ PATIENCE = 160
 
 Say = Callable[[str], None]
 """Called with a description of the next solve."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorstRow:
+    """A row, by probe, stage and station, with its uncertainty as a fraction.
+
+    The fraction is infinite where the value exists at one N and not at another.
+    """
+
+    probe: str
+    stage: str
+    station: float
+    fraction: float
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerance:
+    """Result of a search for N.
+
+    Attributes:
+        asked: the tolerance, a fraction.
+        solver: the solver.
+        n: the last N.
+        worst: the row with the largest fraction; None without a row that states any.
+        trouble: why nothing is stated; else empty.
+        probes: names of the probes with limits as values.
+        solved: every solved N, ascending.
+        ended: why no larger N followed; empty where the tolerance is met.
+    """
+
+    asked: float
+    solver: SolverName
+    n: int
+    worst: WorstRow | None
+    trouble: str
+    probes: tuple[str, ...]
+    solved: tuple[int, ...] = ()
+    ended: str = ""
+
+    @property
+    def extrapolated(self) -> tuple[int, ...]:
+        """The two finest N, where values are limits of both; otherwise empty."""
+        return (self.n // 2, self.n) if self.probes else ()
+
+    @property
+    def fraction(self) -> float:
+        """The largest fraction: infinite in trouble, 0 without a row."""
+        return math.inf if self.trouble else 0.0 if self.worst is None else self.worst.fraction
+
+    @property
+    def met(self) -> bool:
+        """Whether every row is within the tolerance."""
+        return self.fraction <= self.asked
+
+    def sentence(self, scene: Scene) -> str:
+        """Result with the deciding row, with stations in the units of the scene's file."""
+        what = f"{self.n} {'links' if self.solver == 'cprbm' else 'elements'} per beam"
+        if self.probes:
+            what = f"{len(self.probes)} probes extrapolated from N = {', '.join(map(str, self.extrapolated))}"
+        found, row = self.trouble or "no row has a value", self.worst
+        if row is not None:
+            finite = math.isfinite(row.fraction)
+            stated = f"states {percent(row.fraction)}" if finite else "has a value at one N and none at another"
+            found = f"{row.probe} at {at_station(scene, row.stage, row.station)} {stated}"
+        ended = f"; {self.ended}" if self.ended else ""
+        met = "within" if self.met else "NOT within"
+        return f"{self.solver.upper()}: {met} {percent(self.asked)}: {what}; at worst {found}{ended}."
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,1 +1,0 @@
-"""N for a tolerance."""
