@@ -83,7 +83,7 @@ def panels_figure(
                 axes.plot(xs, ys, **look)
             for x, colour, _ in marks:
                 axes.axvline(x, color=colour, linewidth=0.7, linestyle=":")
-            axes.set_ylabel(panel.label)
+            axes.set_ylabel(panel.label.replace(" along", "\nalong"))  # a panel is 25 letters high
             axes.set_title(panel.title, loc="left")
             if panel.lines:
                 axes.legend(loc="best")
