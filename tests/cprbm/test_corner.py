@@ -105,8 +105,8 @@ def test_from_a_face_to_a_corner_nothing_jumps(thick):
 
 @pytest.mark.parametrize("turned_over", [False, True])
 def test_a_round_tip_meets_the_ramp_behind_a_concave_corner(turned_over):
-    # geometry: the tip's circle of the half thickness touches the ramp while the tip is still over the flat, which stays
-    # below the tip and nearer than the ramp until then
+    # geometry: the tip's circle of the half thickness touches the ramp while the tip is still over the flat; until then
+    # the flat, below the tip, is nearer than the ramp
     corner, ramp = (1.03, -0.0054), math.radians(30.0)
     closing = corner[0] - 1.0 + (-corner[1] * math.cos(ramp) - 0.5 * T) / math.sin(ramp)
     points = ((0.9, corner[1]), corner, (corner[0] + math.cos(ramp), corner[1] + math.sin(ramp)))
