@@ -190,7 +190,7 @@ def solid_answer(scene: Scene, choices: Choices) -> Answer:
 
     with _named("elements"):
         settings = solid.Settings(elements=choices.elements, across=choices.across)
-    return solid.answer(scene, settings)
+    return in_file_units(scene, solid.answer(scene, settings))
 
 
 Offsets: TypeAlias = "OffsetPoints"

@@ -11,6 +11,7 @@ from comparisons.choices import Choices
 from comparisons.verdict import Reason, Word
 from cprbm_scene import Answer, Ending, SceneError, Shape, StationAnswer, read, scene_from
 from cprbm_scene.answer import BeamState
+from tests.cprbm.scenes import LENGTH, MOMENT, RIGIDITY, cantilever_data
 from tests.verdict.made_up import CERTIFICATE
 
 SCENE = Path(__file__).parents[1] / "scenes" / "undeclared-contact.toml"
@@ -229,33 +230,7 @@ def test_an_edge_twice_is_a_mistake():
 
 def test_a_cantilever_that_a_moment_rolls_by_more_than_a_turn_is_undecided():
     # a moment of 2 pi E I/L rolls the cantilever to a full circle
-    ei, length = 2e9 * 0.01 * 0.0005**3 / 12.0, 0.1
-    scene = scene_from(
-        {
-            "name": "rolled",
-            "theory": "bending",
-            "materials": {"plastic": {"youngs_modulus": 2e9, "poisson_ratio": 0.36}},
-            "bodies": {
-                "ground": {"motion": "fixed", "points": {"A": [0.0, 0.0]}},
-                "tip": {"motion": "free", "points": {"P": [length, 0.0]}},
-            },
-            "beams": {
-                "b": {
-                    "curve": {"kind": "line", "start": [0.0, 0.0], "end": [length, 0.0]},
-                    "thickness": 0.0005,
-                    "width": 0.01,
-                    "material": "plastic",
-                    "start": {"joint": "weld", "point": "A"},
-                    "end": {"joint": "weld", "point": "P"},
-                }
-            },
-            "loads": {"M": {"kind": "moment", "body": "tip"}},
-            "stages": [
-                {"name": "roll", "steps": "M", "stations": [turns * 2.0 * np.pi * ei / length for turns in (0.9, 1.3)]}
-            ],
-            "probes": [{"of": "P", "quantity": "displacement"}],
-        }
-    )
+    scene = scene_from(cantilever_data(MOMENT, [turns * 2.0 * np.pi * RIGIDITY / LENGTH for turns in (0.9, 1.3)]))
     verdict = comparisons.compare(scene, Choices(links=20, elements=20)).verdict
     assert (verdict.word, verdict.reason) == (Word.UNDECIDED, Reason.UNDECLARED_CONTACT)
-    assert f"b passes through itself from roll {scene.stages[0].stations[1]:.6g} N·m on" in verdict.because
+    assert f"beam passes through itself from load {scene.stages[0].stations[1]:.6g} N·m on" in verdict.because
