@@ -34,6 +34,7 @@ import numpy as np
 from cprbm.contact import taken
 from cprbm.continuation.closing import Pressed, may_lift, pressing, without
 from cprbm.continuation.path import Reached, Way, tangent
+from cprbm.equilibrium.contact_set import NotConvergedError
 from cprbm.equilibrium.sharing import balanced_forces
 from cprbm.equilibrium.solving import Solved
 from cprbm.equilibrium.stability import Mode, softest
@@ -122,9 +123,14 @@ def contact_ends(trail: list[Reached], beyond: float) -> CriticalPoint | None:
     for ended, value, loss in ends + [(each, partial(_to_end, pair=each.pair), Loss.SLIP) for each in slips]:
         zero = _vanishes(value, earlier, last)
         if zero - last.t <= NEAR * width:
-            after = without(last.solved, ended)
+            name = geometry.pairs[ended.pair].name
+            try:
+                after = without(last.solved, ended)
+            except NotConvergedError:  # nothing but the contact holds a body
+                kept = softest(last.solved).curvature
+                return CriticalPoint(zero, width, loss, name, last.solved, last.solved, kept, 0.0)
             if after.lost or loss is Loss.SLIP:
-                return opened(last.solved, after, zero, loss, geometry.pairs[ended.pair].name, width)
+                return opened(last.solved, after, zero, loss, name, width)
     return None
 
 

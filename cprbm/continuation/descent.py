@@ -81,14 +81,15 @@ def descend(system: System, saddle: Solved, curvature: float, target: Array, act
         state, energy = step.state, potential(system, step.state)
         if (moved < NEAR and moved <= last) or moved < STILL:
             found = _step(system, state, 0.0, acting, iterations)
-            near = found is not None and _moved(system, state, found.state) < LONGEST
-            if found is not None and near and found.lost == 0:
-                return found
-            if found is not None and near and kicks < KICKS:
-                kicks += 1
-                state, strength = _kicked(system, found.state, softest(found).curvature, acting, iterations)
-                energy, last = potential(system, state), 0.0
-                continue
+            if found is not None and _moved(system, state, found.state) < LONGEST:
+                if found.lost == 0:
+                    return found
+                # a saddle above the state, such as the begin of the descent, is not on the way down
+                if kicks < KICKS and potential(system, found.state) <= energy + 1e-12 * abs(energy):
+                    kicks += 1
+                    state, strength = _kicked(system, found.state, softest(found).curvature, acting, iterations)
+                    energy, last = potential(system, state), 0.0
+                    continue
             if moved < STILL:
                 break
         strength *= SOFTER if moved < 0.5 * LONGEST else 1.0

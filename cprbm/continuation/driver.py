@@ -9,7 +9,9 @@ t        fraction of the way to the next station
 
 A step starts Newton's method at the last state under the next targets.  A step is accepted if the equilibrium has a
 certificate and loses no direction, no stop changes, and the test for jumps finds the same branch.  Otherwise the
-step is halved; after an accepted step the next step is twice as long.  A step ends where a stop closes or opens.
+step is halved; after an accepted step the next step is twice as long, but goes at most to the end of the last refused
+step.  Turns set a length too: a step aims at most at a part of the largest turn, and a step refused for its turn is
+cut in proportion.  A step ends where a stop closes or opens.
 
 A step refused at the smallest size marks the end of the branch.  The zero of κ then tells a fold from a
 bifurcation.  The stage chooses the end of the solve or a descent to a minimum.  Without a
@@ -57,6 +59,12 @@ from cprbm_scene.answer import Array, Flags
 CAREFUL_TURN = 0.2
 """Largest turn in a step, rad, where no critical point may be passed."""
 
+AIM = 0.9
+"""Part of the largest turn at which the next step aims: turns are nearly proportional to steps."""
+
+SHORTEST = 0.125
+"""Least part of a step that is too long, for the next step: the turn of a far state says little."""
+
 BESIDE = 0.3
 """Largest turn, rad, to a state beside a critical point that no stage asks for."""
 
@@ -77,11 +85,14 @@ Change = StopChange | ContactChange | None
 
 
 class StepError(Exception):
-    """No step leads on; ``ending`` and the sentence say why."""
+    """No step leads on; ``ending`` and the sentence say why.
 
-    def __init__(self, ending: Ending, sentence: str) -> None:
+    ``turn`` is the largest turn in a step that is too long, over the allowed turn; 0 for other reasons.
+    """
+
+    def __init__(self, ending: Ending, sentence: str, turn: float = 0.0) -> None:
         super().__init__(sentence)
-        self.ending = ending
+        self.ending, self.turn = ending, turn
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,14 +152,16 @@ class Driver:
         """
         self.passed, self.events, self.reached = [], [], 0.0
         trail = [Reached(0.0, self.solved)]
-        step, events = 1.0, 0
+        largest = min(CAREFUL_TURN, self.settings.largest_turn) if beyond is not None else self.settings.largest_turn
+        step, refused, events = 1.0, np.inf, 0
         while self.reached < 1.0:
             t = min(1.0, self.reached + step)
-            trial = self._trial(way, t, careful=beyond is not None)
+            trial = self._trial(way, t, largest)
             if isinstance(trial, StepError):
                 if self.spent > self.settings.iteration_limit:
                     raise StepError(Ending.STEP_TOO_SMALL, f"{self.spent} iterations did not lead to the next station")
-                step = 0.5 * (t - self.reached)
+                step = (t - self.reached) * (np.clip(AIM / trial.turn, SHORTEST, 0.5) if trial.turn else 0.5)
+                refused = refused if trial.turn else t
                 if step < self.settings.smallest_step:
                     trail = self._ended(way, trail, t, beyond, trial)
                     step = max(step, AHEAD[0])
@@ -157,15 +170,17 @@ class Driver:
             events = 0 if at > self.reached else events + 1
             if events > ENDLESS * (1 + len(self.acting)):
                 raise StepError(Ending.STEP_TOO_SMALL, "stops or contacts close and open again without a step")
-            step = 2.0 * (t - self.reached)
+            refused, turn = refused if refused > at else np.inf, turned(self.solved, solved) / largest
+            step = min(2.0 * (t - self.reached), refused - at)
+            if change is None and turn:  # a stop or a contact changes the turns of the next step
+                step = min(step, AIM * (at - self.reached) / turn)
             self._accept(way, at, solved, trail)
             if change is not None:
                 trail = self._changed(way, at, change, beyond)
 
-    def _trial(self, way: Way, t: float, *, careful: bool) -> tuple[float, Solved, Change] | StepError:
+    def _trial(self, way: Way, t: float, largest: float) -> tuple[float, Solved, Change] | StepError:
         """Fraction and state at the end of the next step, and the change there, or why there is no step."""
         begin = self.reached
-        largest = min(CAREFUL_TURN, self.settings.largest_turn) if careful else self.settings.largest_turn
 
         @cache  # events ask again for the states at the ends of the step and at the located share
         def solve(share: float, pairs: frozenset[int]) -> Solved:
@@ -183,6 +198,8 @@ class Driver:
                 opened = change.pairs if isinstance(change, ContactChange) and change.closes else frozenset()
                 solved = solve(change.share, opened) if change.share else self.solved
             self._check_turn(solved, largest)
+        except StepError as too_long:
+            return too_long
         except (NotConvergedError, ValueError) as failure:
             return StepError(Ending.STEP_TOO_SMALL, str(failure))
         certificate, ending = certify(solved, self.settings.tolerance, 0, self.acting, with_curvature=False)
@@ -196,11 +213,12 @@ class Driver:
         """Refuse a state too far from the present state.
 
         Raises:
-            NotConvergedError: a link turned by more than ``largest``.
+            StepError: a link turned by more than ``largest``.
         """
         turn = turned(self.solved, solved)
         if turn > largest:
-            raise NotConvergedError(f"a link turned by {turn:.2f} rad in one load step")
+            sentence = f"a link turned by {turn:.2f} rad in one load step"
+            raise StepError(Ending.STEP_TOO_SMALL, sentence, turn / largest)
 
     def _first_event(self, solved: Solved, solve: Callable[..., Solved]) -> Change:
         """The first stop or contact that changes in a step; None without any."""

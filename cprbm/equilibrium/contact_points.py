@@ -57,6 +57,12 @@ ROUNDS = 12
 RETRIES = 6
 """First solves, half of all, after which light joints open, and a moving place that became joints may move again."""
 
+STEEPEST = 0.02
+"""Largest turn of two overlapping curves against each other over a link, rad, where joints stand for a point.
+
+The joints on both sides of a small round edge hold like a valley, whatever the direction of the force.
+"""
+
 
 def touched_equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Touched:
     """Equilibrium near a state under the state's targets, with settled places of contact.
@@ -217,7 +223,11 @@ def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
 
 
 def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
-    """Contacts with moving places for lonely closed joints and for minima that overlap; None without any."""
+    """Contacts with moving places for lonely closed joints and for minima that overlap; None without any.
+
+    Raises:
+        NotConvergedError: joints stand for a given-up point, and the curves overlap steeply between the joints.
+    """
     contacts, places, z = solved.contacts, solved.contacts.places, solved.state.z
     curves, counters = geometry.arrays, contacts.counters
     runs = short_runs(z, curves, geometry.sites, places, contacts.closed, solved.gaps, counters)
@@ -230,11 +240,14 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
     for first, last in runs.tolist():
         # the joints of a run are neighbours
         run = np.array([first, last] if last > first else [first])
-        if any((int(places.pair[k]), int(places.piece[k])) in contacts.given_up for k in run):
-            continue
+        given_up = any((int(places.pair[k]), int(places.piece[k])) in contacts.given_up for k in run)
         best = run[int(np.argmax(places.force[run]))]
         run = np.flatnonzero(np.isin(np.arange(len(arcs)) + places.shares, run))
         trial, gap, curvature = as_point(z, curves, places, best, places.force[run].sum(), counters)
+        if given_up:
+            if gap < -OVERLAP and curvature * curves.span[trial.piece[0]] > STEEPEST:
+                raise NotConvergedError("a contact's curves overlap between two joints")
+            continue
         overlaps = contacts.closed[best] or gap < -OVERLAP - depth[best]
         if not overlaps or curvature <= 0.0 or not movable(curves, geometry.ends, trial)[0]:
             continue
