@@ -136,9 +136,10 @@ def _solid(state: StationState, contact: Rigid) -> shapely.Geometry:
 def _solid_at_rest(contact: Rigid, longest: float) -> shapely.Geometry:
     depth, smaller = BEHIND * longest, 0.0 if contact.thick else SUNK * longest
     if isinstance(contact, CircleContact):
-        return shapely.Point(contact.center).buffer(contact.radius - smaller, quad_segs=PIECES)
+        disc = shapely.Point(contact.center).buffer(contact.radius, quad_segs=PIECES)
+        return (disc.buffer(depth) - disc if contact.side == "inside" else disc).buffer(-smaller)
     places, left = edge_places(contact, FAR * longest, PIECES), is_free_on_the_left(contact)
-    if (places[0] == places[-1]).all():
+    if np.abs(places[0] - places[-1]).max() < SMALL * np.ptp(places, axis=0).max():
         disc = shapely.Polygon(places)
         return (disc.buffer(depth) - disc if disc.exterior.is_ccw == left else disc).buffer(-smaller)
     return shapely.LineString(places).buffer(-depth if left else depth, single_sided=True).buffer(-smaller)

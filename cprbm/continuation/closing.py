@@ -127,16 +127,19 @@ class Pressed(NamedTuple):
 
 def pressing_joints(solved: Solved) -> list[Pressed]:
     """Closed joints where all places are joints; else empty."""
-    geometry, contacts = solved.system.geometry, solved.state.contacts
-    if not geometry.joints_alone:
-        return []
+    return pressing_places(solved) if solved.system.geometry.joints_alone else []
+
+
+def pressing_places(solved: Solved) -> list[Pressed]:
+    """All closed places."""
+    contacts = solved.state.contacts
     pair, piece = contacts.places.pair[contacts.closed], contacts.places.piece[contacts.closed]
     return [Pressed(*each) for each in zip(pair.tolist(), piece.tolist(), strict=True)]
 
 
 def may_lift(solved: Solved) -> list[Pressed]:
-    """Closed pairs, and where all places are joints every closed joint."""
-    return [*(Pressed(pair) for pair in sorted(pressing(solved))), *pressing_joints(solved)]
+    """Closed pairs, and every closed place."""
+    return [*(Pressed(pair) for pair in sorted(pressing(solved))), *pressing_places(solved)]
 
 
 def without(solved: Solved, lifted: Pressed) -> Solved:

@@ -61,9 +61,8 @@ def largest_weight():
 
     for angle in -np.radians([10.0, 20.0, 30.0, 36.0]):
         weight(angle)
-    return -minimize_scalar(
-        lambda angle: -weight(angle), bounds=(-0.77, -0.63), method="bounded", options={"xatol": 1e-3}
-    ).fun
+    found = minimize_scalar(lambda angle: -weight(angle), bounds=(-0.77, -0.63), options={"xatol": 1e-3})
+    return -found.fun
 
 
 @pytest.mark.parametrize("links", [20, 40, 80])
