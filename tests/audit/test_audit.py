@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 
 import cprbm
@@ -16,6 +17,7 @@ from comparisons import cases
 from comparisons.audit import audit
 from cprbm_scene import Scene, scene_from
 from tests.audit.faults import FAULTS
+from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
 from tests.together import branches
 
 SOLVERS = {
@@ -96,6 +98,27 @@ def test_energy_that_a_silent_jump_loses_is_a_complaint(solver):
     assert audit(scene, answer).complaints == ()
     silent = replace(answer, critical=(), stations=tuple(replace(station, branch=0) for station in answer.stations))
     assert any("more than the work" in sentence for sentence in audit(scene, silent).complaints)
+
+
+@pytest.mark.parametrize(
+    "edge",
+    [
+        {"kind": "beam-ellipse", "center": [0.0, -0.3 - 0.5 * THICKNESS / LENGTH], "semi_axes": [1.0, 0.3]},
+        {"kind": "beam-circle", "center": [0.5, 0.5], "radius": 0.8, "side": "inside"},
+    ],
+    ids=["ellipse", "hole"],
+)
+def test_round_solids_stay_quiet(edge):
+    # the tangent at the ellipse's top is the clamped beam's; the tip presses on the lower side of the hole
+    data = cantilever_data(force(0.0, -1.0), [0.7 * RIGIDITY / LENGTH**2])
+    scaled = {key: (np.array(value) * LENGTH).tolist() for key, value in edge.items() if key not in ("kind", "side")}
+    data["contacts"] = {"edge": {**edge, **scaled, "beam": "beam", "body": "wall"}}
+    data["probes"].append({"of": "edge", "quantity": "force"})
+    scene = scene_from(data)
+    answer = SOLVERS["cprbm"](scene)
+    assert answer.completed, answer.sentence
+    assert answer.stations[-1].values["edge.force"][0] > 0.0
+    assert audit(scene, answer).complaints == ()
 
 
 def test_an_answer_without_internal_forces_is_not_audited():
