@@ -26,16 +26,16 @@ evenly to zero.  No force with a limit has this law.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from cprbm.contact import taken
-from cprbm.continuation.closing import Pressed, may_lift, pressing, without
-from cprbm.continuation.path import Reached, Way, tangent
+from cprbm.continuation.closing import Pressed, pressing
+from cprbm.continuation.path import Reached, Way, pressing_joints, tangent
 from cprbm.equilibrium.sharing import balanced_forces
-from cprbm.equilibrium.solving import Solved
+from cprbm.equilibrium.solving import Solved, at_state
 from cprbm.equilibrium.stability import Mode, softest
 from cprbm_scene import BeamContact, Loss, SelfContact
 from cprbm_scene.answer import Array
@@ -118,14 +118,30 @@ def contact_ends(trail: list[Reached], beyond: float) -> CriticalPoint | None:
     if earlier is None:
         return None
     slips = [Pressed(pair) for pair in sorted(pressing(last.solved))]
-    ends = [(each, each.force, Loss.CONTACT) for each in may_lift(last.solved)]
+    ends = [(each, each.force, Loss.CONTACT) for each in _may_lift(last.solved)]
     for ended, value, loss in ends + [(each, partial(_to_end, pair=each.pair), Loss.SLIP) for each in slips]:
         zero = _vanishes(value, earlier, last)
         if zero - last.t <= NEAR * width:
-            after = without(last.solved, ended)
+            after = _without(last.solved, ended)
             if after.lost or loss is Loss.SLIP:
                 return opened(last.solved, after, zero, loss, geometry.pairs[ended.pair].name, width)
     return None
+
+
+def _may_lift(solved: Solved) -> list[Pressed]:
+    """Closed pairs, and where all places are joints every closed joint."""
+    return [*map(Pressed, sorted(pressing(solved))), *(Pressed(*joint) for joint in pressing_joints(solved))]
+
+
+def _without(solved: Solved, lifted: Pressed) -> Solved:
+    """The state without closed places, of which the force is about zero.
+
+    Raises:
+        NotConvergedError: the Hessian is singular.
+    """
+    state, contacts = solved.state, solved.state.contacts
+    closed = contacts.closed & ~lifted.places(solved)
+    return at_state(solved.system, replace(state, contacts=replace(contacts, closed=closed)))
 
 
 def _vanishes(value: Callable[[Solved], float], earlier: Reached, last: Reached) -> float:
