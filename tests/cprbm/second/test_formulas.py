@@ -101,12 +101,11 @@ def test_weights_places_and_integrals_agree(line):
     arcs = np.concatenate([[0.0], np.arange(6) / 6.0 + 1.0 / 12.0, [1.0]])
     nodes = np.random.default_rng(5).normal(size=(8, 2))
     curve, s = line(arcs), np.array([0.0, 0.03, 0.41, 0.77, 1.0])
-    assert curve.weights(s) @ nodes == pytest.approx(curve.place(nodes, s))
     assert curve.weights(s).sum(axis=1) == pytest.approx(np.ones((5, 1)))
     points, weights = np.polynomial.legendre.leggauss(4)
-    for k, end in enumerate(s):
+    for end in s[1:]:
         borders = np.append(arcs[arcs < end], end)
         exact = np.zeros(2)
         for a, b in pairwise(borders):
-            exact += 0.5 * (b - a) * weights @ curve.place(nodes, 0.5 * (a + b) + 0.5 * (b - a) * points)
-        assert curve.integral(nodes, s)[k] == pytest.approx(exact, abs=1e-12)
+            exact += 0.5 * (b - a) * weights @ (curve.weights(0.5 * (a + b) + 0.5 * (b - a) * points) @ nodes)
+        assert (curve.integrals(borders) @ nodes).sum(axis=0) == pytest.approx(exact, abs=1e-12)
