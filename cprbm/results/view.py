@@ -59,7 +59,7 @@ class Samples:
         self.s = s = np.concatenate([line, *(np.linspace(0.0, chain.length, size) for size in points)])
         self.line, self.rest = chain.line.weights(s), chain.rest_angle(s)
         self.links, self.weights = chain.angle_weights(s)
-        self.hidden = np.zeros((len(m.rows), count))
+        self.hidden = np.zeros((len(m.rows), len(s)))
         for number, row in enumerate(m.rows):
             if row.unit_load is not None and row.unit_load.beam == beam:
                 self.hidden[number] = hidden_angles(chain, s, row.unit_load)
