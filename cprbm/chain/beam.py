@@ -189,7 +189,8 @@ def beam_chain(
         units: of the result.
         corrected: the corrections of fourth order, or the plain chain.
     """
-    length = shape_of(beam.curve).length / units.length
+    curve = shape_of(beam.curve)
+    length = curve.length / units.length
     axis = None if corrected or beam.paper is None else beam.paper.uniform
     borders, middles = _borders(beam, links, length, axis)
     arcs = np.concatenate([[0.0], middles, [length]])
@@ -197,16 +198,18 @@ def beam_chain(
     shearing = 0.5 * young / (1.0 + material.poisson_ratio) * SHEAR_COEFFICIENT
     section, knots = Section(beam, length, units.length, young, shearing), beam.knots * length
     per_area = _integrals(lambda s: 1.0 / section.area(s), arcs, knots) / np.diff(arcs)
-    tangents = shape_of(beam.curve).tangent(borders / length)
+    line, nodes = spline_line(arcs) if corrected else polygon_line(arcs), units.place(curve.point(arcs / length))
+    nodes = nodes_through(nodes, line.control) if corrected else nodes
+    (dx, dy), tangents = np.diff(nodes, axis=0).T, curve.tangent(borders / length)
     angles = np.unwrap(np.arctan2(tangents[:, 1], tangents[:, 0]))
-    plain = BeamChain(
+    chain = BeamChain(
         name=name,
         section=section,
         borders=borders,
         arcs=arcs,
-        nodes=units.place(shape_of(beam.curve).point(arcs / length)),
-        link_length=np.zeros(0),
-        link_angle=np.zeros(0),
+        nodes=nodes,
+        link_length=np.hypot(dx, dy),
+        link_angle=np.unwrap(np.arctan2(dy, dx)),
         stretch=per_area / young * (theory != "bending"),
         shear=per_area / shearing * (theory == "shear"),
         lean=np.zeros(links + 1),
@@ -216,47 +219,26 @@ def beam_chain(
         skew=np.zeros(links),
         growth=np.zeros((links, 2)),
         end_angles=(float(angles[0]), float(angles[-1])),
-        line=polygon_line(arcs),
+        line=line,
         knots=knots,
-        corrected=False,
+        corrected=corrected,
     )
-    return _corrected(plain) if corrected else _with_chords(plain, plain.nodes)
+    return _corrected(chain) if corrected else chain
 
 
 def _corrected(chain: BeamChain) -> BeamChain:
     """The chain with the corrections of fourth order."""
-    line = spline_line(chain.arcs)
-    chain = _with_chords(chain, nodes_through(chain.nodes, line.control))
     h, L = chain.borders[1] - chain.borders[0], chain.link_length
-    lean = h**2 / 12.0 * chain.flexibility(chain.arcs, np.ones_like) / np.diff(chain.arcs)
-    half_lean = np.zeros(len(lean))
-    half_lean[[0, -1]] = (lean * L)[[0, -1]]
-    lean[[0, -1]] = 0.0
-    middles = chain.arcs[1:-1]
-    first = chain.flexibility(chain.borders, lambda s: s)
+    lean, ends = h**2 / 12.0 * chain.flexibility(chain.arcs, np.ones_like) / np.diff(chain.arcs), np.zeros(len(L))
+    ends[[0, -1]] = 1.0
     # half of an inner link belongs to either joint, an end link to the only joint
-    share = np.ones(len(L))
-    share[1:-1] = 0.5
-    grown = share * L
+    grown = 0.5 * (1.0 + ends) * L
     return replace(
         chain,
-        lean=lean,
-        half_lean=half_lean,
-        skew=first - middles / chain.stiffness,
+        lean=lean * (1.0 - ends),
+        half_lean=lean * L * ends,
+        skew=chain.flexibility(chain.borders, lambda s: s) - chain.arcs[1:-1] / chain.stiffness,
         growth=np.column_stack([grown[:-1], grown[1:]]),
-        line=line,
-        corrected=True,
-    )
-
-
-def _with_chords(chain: BeamChain, nodes: Array) -> BeamChain:
-    """The chain with nodes at rest, and lengths and angles of links."""
-    chords = np.diff(nodes, axis=0)
-    return replace(
-        chain,
-        nodes=nodes,
-        link_length=np.hypot(*chords.T),
-        link_angle=np.unwrap(np.arctan2(chords[:, 1], chords[:, 0])),
     )
 
 

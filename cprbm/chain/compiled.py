@@ -2,7 +2,8 @@
 
 The machine code is stored beside the module or in the user's cache.  Where neither can be written, every process
 compiles anew.  A kernel contains called kernels of other modules, but Numba looks at the kernel's own module
-alone: here a change of any module with kernels makes all stored machine code out of date.  With the environment
+alone: here a change of any module with kernels makes all stored machine code out of date.  The stamp is a part of
+the version, which Numba reads first: an index of another stamp may name classes that are gone.  With the environment
 variable ``NUMBA_DISABLE_JIT=1`` the same functions are interpreted.  An installation without stored machine code
 compiles at the first solve, and says so once.
 """
@@ -62,7 +63,7 @@ def compiled(function: Function) -> Function:
         kernel = njit(cache=True, error_model="numpy")(function)
         stored = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
         if stored is not None:
-            stored._source_stamp = STAMP
+            stored._version = f"{stored._version} {STAMP}"
     except RuntimeError:
         COMPILATION.stored = False
         kernel = njit(error_model="numpy")(function)

@@ -5,7 +5,12 @@ symbol   meaning
 =======  ====================================================================================
 β        angle from the line between a stop's two points to the beam's direction away from the pin
 β₀       β as drawn, in (−π, π]
+F, f     value of a load, quantity with the load's energy −F f(z)
+C(s)     neutral line, a sum of weights and nodes
 =======  ====================================================================================
+
+A force on a beam works on the displacement of C(s), a distributed load on the displacement's integral, and a moment
+on the section's angle at s.  All three are linear in the unknowns of the chain.
 
 A stop has the rows β − β_least ≥ 0 and β_most − β ≥ 0.  The names of a joint's rows are ``beam@start.x``, ``.y``,
 ``.turn``; a stop's rows are ``stop.least`` and ``stop.most``; the row of a load or a drive has the same name.
@@ -18,11 +23,23 @@ from math import hypot, pi, remainder, tau
 from typing import Literal
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
-from cprbm.chain.loads import load_row
+from cprbm.chain.loads import unit_force, unit_moment
 from cprbm.chain.mechanism import AXES, Direction, Form, Mechanism, Row, node_coordinate
 from cprbm_scene import FreeEnd, Scene, WeldedEnd
-from cprbm_scene.statement import BeamEnd, DisplacementDrive, PinnedEnd, SlidingBody, TurningBody
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.statement import (
+    BeamEnd,
+    BeamForce,
+    BeamMoment,
+    DisplacementDrive,
+    Force,
+    Moment,
+    PinnedEnd,
+    SlidingBody,
+    TurningBody,
+)
 
 APART = 1e-6
 """Distance of an end from its point, over the beam's length, from which the end is drawn apart (the scene's limit)."""
@@ -104,7 +121,43 @@ def _drives(m: Mechanism) -> Iterator[Row]:
 
 def _loads(m: Mechanism) -> Iterator[Row]:
     for name, load in m.scene.loads.items():
-        yield load_row(m, name, load)
+        per_force, per_moment, unit_load = -1.0 / m.units.force, -1.0 / m.units.moment, None
+        match load:
+            case Moment():
+                form, unit = m.rotation(load.body), per_moment
+            case Force():
+                form, unit = m.displacement(load.point, unit_direction(load.direction)), per_force
+            case BeamMoment():
+                chain, at = m.chains[load.beam], load.at * m.chains[load.beam].length
+                links, factors = (each[0] for each in chain.angle_weights(np.array([at])))
+                form, unit = _weighted(m.beam_angles(load.beam), chain.link_angle, links, factors), per_moment
+                unit_load = unit_moment(chain, at, links, factors)
+            case BeamForce():
+                chain, at = m.chains[load.beam], load.at * m.chains[load.beam].length
+                weights, along = chain.line.weights(np.array([at])), unit_direction(load.direction)
+                form, unit = _displaced(m, load.beam, weights, along), per_force
+                unit_load = unit_force(m, load.beam, along, at, weights)
+            case _:
+                chain = m.chains[load.beam]
+                begin, end = (fraction * chain.length for fraction in load.along)
+                places = np.concatenate([[begin], chain.arcs[(chain.arcs > begin) & (chain.arcs < end)], [end]])
+                weights = csr_matrix(chain.line.integrals(places).sum(axis=0))
+                form = _displaced(m, load.beam, weights, unit_direction(load.direction))
+                unit = per_force * m.units.length
+        yield Row(name, form, driven=False, unit=unit, unit_load=unit_load)
+
+
+def _displaced(m: Mechanism, beam: str, weights: csr_matrix, direction: Direction) -> Form:
+    """Weighted displacement of a beam's nodes along a unit ``direction``."""
+    nodes, rest = m.beam_nodes(beam), m.chains[beam].nodes
+    x, y = (_weighted(nodes + k, rest[:, k], weights.indices, weights.data) * direction[k] for k in (0, 1))
+    return x + y
+
+
+def _weighted(indices: Ints, rest: Array, used: Ints, factors: Array) -> Form:
+    """Weighted change of the ``used`` unknowns from their values at rest."""
+    terms = zip(indices[used].tolist(), factors.tolist(), strict=True)
+    return Form(-float(rest[used] @ factors), tuple(term for term in terms if term[1] != 0.0))
 
 
 def _stops(m: Mechanism) -> Iterator[Row]:

@@ -14,24 +14,56 @@ elements.  The B-spline of P alone lies κ h²/6 inside the polygon; D²P/24 = �
 is right to fourth order.  The half links at both ends are continued to full links of the same curvature.
 C is linear in the nodes, has a continuous second derivative, and follows rigid motions exactly.
 At rest the spline of the nodes meets the neutral line at every joint.
+
+**Lost compliance.**  The spline spreads a point force over the nodes of a few links.
+
+=========  =====================================================================================
+symbol     meaning
+=========  =====================================================================================
+h, EI, GA  length of an element, bending stiffness, shear stiffness
+s          place of a transverse unit force, from the clamp of a cantilever
+w_j        weight of node j in the spline's position at s: the force on node j
+M_i, Q_j   moment in joint i, shear force in link j, of length L_j
+ξ          local parameter of a piece, from 0 to 1
+c(ξ)       lost compliance: of bending over h³/EI, of shear over h/GA
+=========  =====================================================================================
+
+The chain of fourth order has the compliance
+
+    Σ M_i² h/EI + Σ L_j Q_j² h²/(12 EI)
+
+in place of s³/(3 EI), and with shear Σ L_j Q_j²/GA in place of s/GA.  A point force makes a kink F/GA in the neutral
+line, and the spline has none.  The differences depend on ξ alone: a polynomial of degree six on every piece, the same
+on all pieces but the half links at the ends.  A half link beyond a clamp or a pin has nearly no compliance of its
+own, a half link at a free end more; both follow from a cantilever loaded near its two ends.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 from scipy.sparse import csr_matrix, identity, vstack
 from scipy.sparse.linalg import spsolve
 
-from cprbm_scene.answer import Array, Ints
+from cprbm_scene.answer import Array
 
 CUBIC = np.array([[1.0, -3.0, 3.0, -1.0], [4.0, 0.0, -6.0, 3.0], [1.0, 3.0, 3.0, -3.0], [0.0, 0.0, 0.0, 1.0]]) / 6.0
 """Cubic B-spline on one piece: control points by powers of the local parameter."""
 
 LINEAR = np.array([[1.0, -1.0], [0.0, 1.0]])
 """Straight piece between two control points, likewise."""
+
+POWERS = 7
+"""Coefficients of c: weights are cubic in ξ, moments and their squares follow."""
+
+ELEMENTS = 16
+"""Elements of the cantilever: the middle piece is free of the ends' influence to 1e-9."""
+
+GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(2)
+"""Exact for a cubic."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,42 +83,25 @@ class NeutralLine:
     size: Array
     offset: Array
 
-    def place(self, nodes: Array, s: Array) -> Array:
-        """Positions (k, 2) at arc lengths ``s`` of the curve with the given nodes (count, 2)."""
-        points = self.control @ nodes
-        piece, xi = self._local(s)
-        factors = xi[:, None] ** np.arange(len(self.basis)) @ self.basis.T
-        return np.asarray(np.einsum("kc,kcd->kd", factors, points[piece[:, None] + np.arange(len(self.basis))]))
-
-    def integral(self, nodes: Array, s: Array) -> Array:
-        """Integrals (k, 2) of the position from the beam's start to arc lengths ``s``."""
-        points = self.control @ nodes
-        power = 1.0 + np.arange(len(self.basis))
-
-        def from_begin(piece: Ints, xi: Array) -> Array:
-            rise = (xi[:, None] ** power - self.offset[piece][:, None] ** power) / power
-            factors = self.size[piece][:, None] * (rise @ self.basis.T)
-            return np.asarray(np.einsum("kc,kcd->kd", factors, points[piece[:, None] + np.arange(len(self.basis))]))
-
-        pieces = np.arange(len(self.size))
-        whole = from_begin(pieces, self.offset + np.diff(self.arcs) / self.size)
-        piece, xi = self._local(s)
-        return np.asarray(np.concatenate([np.zeros((1, 2)), np.cumsum(whole, axis=0)])[piece] + from_begin(piece, xi))
-
     def weights(self, s: Array) -> csr_matrix:
         """Weights (k, count) of the nodes in the positions at arc lengths ``s``."""
-        piece, xi = self._local(s)
-        count = len(self.basis)
+        piece = np.clip(np.searchsorted(self.arcs, s, side="right") - 1, 0, len(self.size) - 1)
+        xi, count = (s - self.arcs[piece]) / self.size[piece] + self.offset[piece], len(self.basis)
         factors = xi[:, None] ** np.arange(count) @ self.basis.T
         columns = (piece[:, None] + np.arange(count)).ravel()
         rows = np.repeat(np.arange(len(s)), count)
         shape = (len(s), self.control.shape[0])
         return csr_matrix((factors.ravel(), (rows, columns)), shape=shape) @ self.control
 
-    def _local(self, s: Array) -> tuple[Ints, Array]:
-        """Pieces and local parameters at arc lengths ``s``."""
-        piece = np.clip(np.searchsorted(self.arcs, s, side="right") - 1, 0, len(self.size) - 1)
-        return piece, (s - self.arcs[piece]) / self.size[piece] + self.offset[piece]
+    def integrals(self, places: Array) -> csr_matrix:
+        """Weights (k, count) of the nodes in the integrals of the position between ``places`` (k + 1,), in order.
+
+        No end of a piece lies between two places.
+        """
+        half = 0.5 * np.diff(places)
+        s = 0.5 * (places[1:] + places[:-1])[:, None] + half[:, None] * GAUSS_NODES
+        gauss = (half[:, None] * GAUSS_WEIGHTS).ravel()
+        return csr_matrix((gauss, np.arange(len(gauss)), 2 * np.arange(len(places)))) @ self.weights(s.ravel())
 
 
 def spline_line(arcs: Array) -> NeutralLine:
@@ -124,3 +139,33 @@ def nodes_through(places: Array, control: csr_matrix) -> Array:
     inner = (control[1:-3] + 4.0 * control[2:-2] + control[3:-1]) / 6.0
     ends = identity(count, format="csr")
     return np.asarray(spsolve(vstack([ends[:1], inner, ends[-1:]]).tocsc(), places))
+
+
+@lru_cache
+def lost_compliance(part: Literal["bending", "shear"]) -> Array:
+    """Coefficients of c, lowest power first, of the pieces of a beam.
+
+    The rows (5, POWERS) are an inner piece, a first half link at a joint with a body, a free first half link, and both
+    as last half links.
+    """
+    n = float(ELEMENTS)
+    pieces = (0.5 * n - 0.5, 0.5 * n + 0.5), (0.0, 0.5), (n, n - 0.5), (0.5, 0.0), (n - 0.5, n)
+    return np.array([_fitted(part, *ends) for ends in pieces])
+
+
+def _fitted(part: str, begin: float, end: float) -> Array:
+    """Coefficients of c between two places; the polynomial through POWERS places is exact."""
+    xi = 0.5 - 0.5 * np.cos(np.pi * (np.arange(POWERS) + 0.5) / POWERS)
+    lost = _lost(part, begin + (end - begin) * xi)
+    return np.asarray(np.linalg.solve(np.vander(xi, POWERS, increasing=True), lost))
+
+
+def _lost(part: str, s: Array) -> Array:
+    """c at places ``s`` (k,) of a cantilever with h = EI = GA = 1."""
+    arcs = np.concatenate([[0.0], np.arange(ELEMENTS) + 0.5, [float(ELEMENTS)]])
+    force = spline_line(arcs).weights(s).toarray()
+    sheared = np.cumsum(force[:, ::-1], axis=1)[:, ::-1][:, 1:] ** 2 @ np.diff(arcs)
+    if part == "shear":
+        return np.asarray(s - sheared)
+    moment = force @ np.maximum(arcs[None, :] - arcs[1:-1, None], 0.0).T
+    return np.asarray(s**3 / 3.0 - np.sum(moment**2, axis=1) - sheared / 12.0)

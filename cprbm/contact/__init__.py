@@ -1,32 +1,29 @@
 """Contact of curves: geometry, gaps with derivatives, places, pairs of a scene.
 
 * :mod:`cprbm.contact.curve`: pieces, linear in the positions of nodes;
-* :mod:`cprbm.contact.compliance`: compliance lost by a chain under a point force;
 * :mod:`cprbm.contact.closest`: points, closest points, boxes; :mod:`cprbm.contact.gap`: gap and derivatives;
 * :mod:`cprbm.contact.corners`, :mod:`cprbm.contact.edges`: corners of rigid solids, places at corners;
 * :mod:`cprbm.contact.fixed`: joints, ends and corners at the nearest feet;
 * :mod:`cprbm.contact.settling`: feet and moving places on a frozen state, counters;
-* :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.candidates`: contacts of a scene, gaps that another law measures;
-* :mod:`cprbm.contact.contacts`: places and closed set of a state.
+* :mod:`cprbm.contact.pairs`, :mod:`cprbm.contact.candidates`: contacts of a scene, places and closed set of a state.
 """
 
 from cprbm.contact.candidates import (
     TOUCHING,
-    Columns,
+    Contacts,
     Geometry,
-    Law,
     contact_geometry,
     copied,
     fixed_places,
-    half_thicknesses,
     joined,
     on_edge,
+    open_contacts,
     places_at,
     sides_at_rest,
     taken,
+    touching_as_drawn,
 )
-from cprbm.contact.closest import curve_point, lost_at
-from cprbm.contact.contacts import Contacts, open_contacts, touching_as_drawn
+from cprbm.contact.closest import lost_at
 from cprbm.contact.curve import BEND, CORNER, STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
 from cprbm.contact.edges import corner_sides, is_left, left_corner
 from cprbm.contact.fixed import REACH, Sites, contact_places, matched, movable, picked
@@ -37,6 +34,8 @@ from cprbm.contact.gap import (
     SHIFT,
     TANGENT,
     TURN,
+    Columns,
+    Law,
     Places,
     Row,
     gap_frame,
@@ -92,12 +91,10 @@ __all__ = [
     "copied",
     "corner_sides",
     "curve_arrays",
-    "curve_point",
     "find_feet",
     "fixed_places",
     "gap_frame",
     "gap_row",
-    "half_thicknesses",
     "is_left",
     "joined",
     "left_corner",

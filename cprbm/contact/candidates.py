@@ -1,4 +1,4 @@
-"""Places of contact: joints, ends, and the rules for their use.
+"""Places of contact: joints, ends, and the rules for their use; the places and the closed set of a state.
 
 Fixed places are the joints and ends of the first curve, and the ends of a second beam.  Corners of a second curve are
 point contacts that stay at the corners, with the feet on the beam.
@@ -17,62 +17,23 @@ The places of such a contact are places like others; the law writes their gaps a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from cprbm.chain import Mechanism
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
 from cprbm.contact.fixed import FREE, Ends, Sites, places_at_feet
-from cprbm.contact.gap import Places, gap_frame
+from cprbm.contact.gap import Law, Places, gap_frame
 from cprbm.contact.pairs import Pair, contact_pairs
-from cprbm.contact.settling import settle
+from cprbm.contact.settling import new_counters, settle
 from cprbm_scene import FreeEnd, Scene, WeldedEnd
 from cprbm_scene.answer import Array, Flags, Ints
 from cprbm_scene.freedoms import FREEDOMS, Freedoms
 
 TOUCHING = 1e-9
 """Gap, over the longest beam, below which curves touch: round-off of a scene's coordinates."""
-
-
-class Columns(NamedTuple):
-    """Border columns of closed places: columns of forces first, then columns of local motions.
-
-    Attributes:
-        values: of the rows with a force of their own (forces,).
-        negative: number of negative eigenvalues of the local motions' block.
-        diagonal, beside: block of the columns: diagonal, and entry beside the column before (columns,).
-        entry_column, entry_index, entry_value: entries by column, unknown and value.
-    """
-
-    values: Array
-    negative: int
-    diagonal: Array
-    beside: Array
-    entry_column: Ints
-    entry_index: Ints
-    entry_value: Array
-
-
-class Law(Protocol):
-    """A contact law for some pairs of curves."""
-
-    def measures(self, places: Places) -> Flags:
-        """Places that the law measures; the last of all places."""
-
-    def write_gaps(self, z: Array, places: Places, gaps: Array) -> None:
-        """Write the gaps of the law's places at a state."""
-
-    def columns(self, z: Array, places: Places, closed: Flags, gradient: Array) -> Columns:
-        """Columns of all places marked ``closed``; adds the gradient of all −F λ to ``gradient``."""
-
-    def force(self, z: Array, places: Places, k: int) -> Array:
-        """Force (2,) on a place of the law."""
-
-    def invalid(self, z: Array, places: Places, closed: Flags) -> str:
-        """Reason why the law does not hold at a state; empty if it holds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +43,7 @@ class Geometry:
     Attributes:
         curves, pairs, arrays: as the modules of the package say.
         ends: bodies of the curves.
-        possible: all fixed places, feet not found; node: number of a place's node on its curve.
+        possible: all fixed places, feet not found.
         columns: numbers of the two curves of every pair (pairs, 2).
         law: measures the gaps of some pairs; None without such pairs.
         joints_alone: whether the places are joints alone: no place moves or shares a force.
@@ -93,7 +54,6 @@ class Geometry:
     arrays: CurveArrays
     ends: Ends
     possible: Places
-    node: Ints
     columns: Ints
     law: Law | None = None
     joints_alone: bool = False
@@ -102,7 +62,7 @@ class Geometry:
     def sites(self) -> Sites:
         """All fixed places, for the kernels."""
         sharing = self.ends.welded & (not self.joints_alone)
-        return Sites(self.possible, self.node, self.columns, self.ends, sharing)
+        return Sites(self.possible, self.columns, self.ends, sharing)
 
     @cached_property
     def points(self) -> Ints:
@@ -140,9 +100,8 @@ def contact_geometry(m: Mechanism) -> Geometry:
     curves, pairs = contact_pairs(m)
     arrays = curve_arrays(curves)
     ends = _ends(m, curves)
-    possible, node = _possible(arrays, ends, pairs)
     columns = np.array([(pair.first, pair.second) for pair in pairs], dtype=np.int64).reshape(-1, 2)
-    return Geometry(curves, pairs, arrays, ends, possible, node, columns)
+    return Geometry(curves, pairs, arrays, ends, _possible(arrays, ends, pairs), columns)
 
 
 def taken(places: Places, which: Flags | Ints) -> Places:
@@ -216,6 +175,55 @@ def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:
     return sides
 
 
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """Possible places of contact, marks of the closed places, sides of the pairs and of corners' curves, counters.
+
+    ``given_up`` holds pairs and pieces at which a moving place failed; the pairs ``kept_open`` have no places.
+    ``apart`` holds the open places that these pairs had before, for their sides.
+    """
+
+    places: Places
+    closed: Flags
+    sides: Array
+    corner_sides: Array
+    counters: Ints
+    given_up: frozenset[tuple[int, int]] = frozenset()
+    kept_open: frozenset[int] = frozenset()
+    apart: Places | None = None
+
+    def pressing(self, pair: int) -> Flags:
+        """Closed places of a pair."""
+        return np.asarray(self.closed & (self.places.pair == pair))
+
+    def gaps(self, geometry: Geometry, z: Array) -> Array:
+        """Gaps of all places at a state, the feet moved; the present feet stay."""
+        places, gaps = copied(self.places), np.empty(len(self.closed))
+        settle(z, geometry.arrays, places, gaps, np.empty(len(gaps)), self.counters, 0)
+        if geometry.law is not None:
+            geometry.law.write_gaps(z, places, gaps)
+        return gaps
+
+
+def touching_as_drawn(geometry: Geometry, z: Array, contacts: Contacts) -> frozenset[int]:
+    """Pairs that touch in a state as drawn, at a weld on the rigid body of the foot too."""
+    places = fixed_places(
+        geometry, z, contacts.sides, np.ones(len(geometry.pairs), dtype=bool), contacts.counters, welds=True
+    )
+    gaps = replace(contacts, places=places, closed=np.zeros(len(places.pair), dtype=bool)).gaps(geometry, z)
+    # a weld behind the end of the other beam is on neither side of the beam
+    deepest = -TOUCHING - half_thicknesses(geometry.arrays, places)
+    return frozenset(places.pair[(gaps > deepest) & (gaps < TOUCHING)].tolist())
+
+
+def open_contacts(geometry: Geometry, z: Array) -> Contacts:
+    """Contacts of a state as drawn, without any place."""
+    counters = new_counters()
+    nothing = taken(geometry.possible, np.zeros(0, dtype=np.int64))
+    sides = sides_at_rest(geometry, z, counters), np.zeros(len(geometry.curves))
+    return Contacts(nothing, np.zeros(0, dtype=bool), *sides, counters)
+
+
 def _ends(m: Mechanism, curves: list[Curve]) -> Ends:
     """Numbers of bodies in the scene's order; all bodies at rest have the number of the first."""
     still = _bodies_at_rest(m.scene)
@@ -246,29 +254,25 @@ def _bodies_at_rest(scene: Scene) -> list[str]:
     return [name for name in scene.bodies if len(freedoms.guide(name)) + held.count(name) >= FREEDOMS]
 
 
-def _possible(arrays: CurveArrays, ends: Ends, pairs: list[Pair]) -> tuple[Places, Ints]:
-    """All fixed places of all pairs, with the first piece of the other curve for a foot, and their nodes."""
-    rows = []
+def _possible(arrays: CurveArrays, ends: Ends, pairs: list[Pair]) -> Places:
+    """All fixed places of all pairs, with the first piece of the other curve for a foot."""
+    rows, pieces = [], arrays.last - arrays.first + 1
     for number, pair in enumerate(pairs):
-        links = int(arrays.last[pair.first] - arrays.first[pair.first]) + 1
-        rows += [(number, pair.first, pair.second, node, links) for node in range(links + 1)]
-        rows += [(number, corner.curve, pair.first, 0, 1) for corner in pair.corners]
+        rows += [(number, pair.first, pair.second, node) for node in range(pieces[pair.first] + 1)]
+        rows += [(number, corner.curve, pair.first, 0) for corner in pair.corners]
         if not pair.itself and not ends.rigid[pair.second]:
-            links = int(arrays.last[pair.second] - arrays.first[pair.second]) + 1
-            rows += [(number, pair.second, pair.first, node, links) for node in (0, links)]
-    return places_at(arrays, np.array(rows, dtype=np.int64).reshape(-1, 5))
+            rows += [(number, pair.second, pair.first, node) for node in (0, int(pieces[pair.second]))]
+    return places_at(arrays, np.array(rows, dtype=np.int64).reshape(-1, 4))
 
 
-def places_at(arrays: CurveArrays, rows: Ints) -> tuple[Places, Ints]:
-    """Places at nodes, with the first piece of the other curve for a foot, and the nodes.
+def places_at(arrays: CurveArrays, rows: Ints) -> Places:
+    """Places at nodes, with the first piece of the other curve for a foot.
 
-    ``rows`` (k, 5) are the numbers of the pair, of both curves and of the node, and the links of the place's curve.
+    ``rows`` (k, 4) are the numbers of the pair, of both curves and of the node.
     """
-    pair, curve, other, node, links = rows.T
-    at_end = node == links
-    zeros, none = np.zeros(len(node)), np.zeros(len(node), dtype=bool)
-    corner = arrays.angle[arrays.first[curve]] < 0
-    places = Places(
+    pair, curve, other, node = rows.T
+    at_end, zeros = node > arrays.last[curve] - arrays.first[curve], np.zeros(len(node))
+    return Places(
         pair=pair,
         curve=curve,
         piece=arrays.first[curve] + node - at_end,
@@ -276,10 +280,9 @@ def places_at(arrays: CurveArrays, rows: Ints) -> tuple[Places, Ints]:
         other=other,
         foot=arrays.first[other].copy(),
         eta=zeros.copy(),
-        at_point=none.copy(),
+        at_point=np.zeros(len(node), dtype=bool),
         side=zeros.copy(),
-        moves=corner,
+        moves=arrays.angle[arrays.first[curve]] < 0,
         shares=np.zeros(len(node), dtype=np.int64),
         force=zeros,
     )
-    return places, node

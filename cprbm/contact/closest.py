@@ -86,17 +86,14 @@ def curve_jet(
 
 @compiled
 def curve_point(
-    z: Array, curves: CurveArrays, piece: int, xi: float, order: int, weights: Array
+    z: Array, curves: CurveArrays, piece: int, xi: float, weights: Array
 ) -> tuple[float, float]:  # pragma: no cover
-    """C, or C' of the ``order`` 1; writes the weights (2, STENCIL)."""
-    a, b, c, d = 1.0, xi, xi * xi, xi * xi * xi
-    if order == 1:
-        a, b, c, d = 0.0, 1.0, 2.0 * xi, 3.0 * xi * xi
+    """C; writes the weights (2, STENCIL)."""
     x = y = 0.0
     for i in range(STENCIL):
         w, v = curves.real[piece, i], curves.imaginary[piece, i]
-        p = weights[0, i] = a * w[0] + b * w[1] + c * w[2] + d * w[3]
-        q = weights[1, i] = a * v[0] + b * v[1] + c * v[2] + d * v[3]
+        p = weights[0, i] = w[0] + xi * (w[1] + xi * (w[2] + xi * w[3]))
+        q = weights[1, i] = v[0] + xi * (v[1] + xi * (v[2] + xi * v[3]))
         node = curves.stencil[piece, i]
         x += p * z[node] - q * z[node + 1]
         y += q * z[node] + p * z[node + 1]
@@ -118,40 +115,29 @@ def depth_beyond(curves: CurveArrays, piece: int, thickness: float) -> float:  #
 
 
 @compiled
+def border_pieces(curves: CurveArrays, curve: int, piece: int, step: float) -> tuple[int, int]:  # pragma: no cover
+    """Pieces behind and before the border that a step from a piece crosses; twice the piece at an end of the curve."""
+    first, last = curves.first[curve], curves.last[curve]
+    if piece == (last if step > 0.0 else first):
+        return (first, last) if curves.closed[curve] else (piece, piece)
+    return (piece + 1, piece) if step > 0.0 else (piece, piece - 1)
+
+
+@compiled
 def moved_along(
     curves: CurveArrays, curve: int, piece: int, xi: float, step: float
 ) -> tuple[int, float, bool]:  # pragma: no cover
     """Piece and parameter behind a step, in pieces, across borders; True if the step ends at an end of the curve."""
-    first, last = curves.first[curve], curves.last[curve]
     xi += step
-    while True:
+    while xi > 1.0 or xi < 0.0:
+        behind, before = border_pieces(curves, curve, piece, xi)
+        if behind == before:
+            return piece, min(1.0, max(0.0, xi)), True
         if xi > 1.0:
-            if piece == last and not curves.closed[curve]:
-                return piece, 1.0, True
-            beside = first if piece == last else piece + 1
-            xi = (xi - 1.0) * curves.span[piece] / curves.span[beside]
-            piece = beside
-        elif xi < 0.0:
-            if piece == first and not curves.closed[curve]:
-                return piece, 0.0, True
-            beside = last if piece == first else piece - 1
-            xi = 1.0 + xi * curves.span[piece] / curves.span[beside]
-            piece = beside
+            piece, xi = behind, (xi - 1.0) * curves.span[before] / curves.span[behind]
         else:
-            return piece, xi, False
-
-
-@compiled
-def border_pieces(curves: CurveArrays, curve: int, piece: int, step: float) -> tuple[int, int]:  # pragma: no cover
-    """Pieces behind and before the border that a step from a piece crosses; twice the piece at an end of the curve."""
-    first, last = curves.first[curve], curves.last[curve]
-    if step > 0.0:
-        if piece < last:
-            return piece + 1, piece
-        return (first, piece) if curves.closed[curve] else (piece, piece)
-    if piece > first:
-        return piece, piece - 1
-    return (piece, last) if curves.closed[curve] else (piece, piece)
+            piece, xi = before, 1.0 + xi * curves.span[behind] / curves.span[before]
+    return piece, xi, False
 
 
 @compiled
@@ -162,9 +148,8 @@ def is_corner(
 
     R is negative with a negative ``side``.
     """
-    px, py = curve_point(z, curves, piece, 0.0, 0, weights)
-    ax, ay = curve_point(z, curves, before, 1.0, 1, weights)
-    bx, by = curve_point(z, curves, piece, 0.0, 1, weights)
+    _, _, ax, ay, _, _ = curve_jet(z, curves, before, 1.0, weights, weights)
+    px, py, bx, by, _, _ = curve_jet(z, curves, piece, 0.0, weights, weights)
     R = copysign(hypot(px - x, py - y), side)
     back, ahead = R * curves.thickening[before], R * curves.thickening[piece]
     return bool((px - x) * ax + (py - y) * ay < back and ahead < (px - x) * bx + (py - y) * by)
@@ -220,10 +205,9 @@ def write_chords(z: Array, curves: CurveArrays, curve: int, chords: Array, weigh
     """Write both ends (pieces, 4) of a curve's pieces; the length of the longest chord."""
     longest = 0.0
     for piece in range(curves.first[curve], curves.last[curve] + 1):
-        ax, ay = curve_point(z, curves, piece, 0.0, 0, weights)
-        bx, by = curve_point(z, curves, piece, 1.0, 0, weights)
-        row = chords[piece]
-        row[0], row[1], row[2], row[3] = ax, ay, bx, by
+        ax, ay = curve_point(z, curves, piece, 0.0, weights)
+        bx, by = curve_point(z, curves, piece, 1.0, weights)
+        chords[piece, 0], chords[piece, 1], chords[piece, 2], chords[piece, 3] = ax, ay, bx, by
         longest = max(longest, hypot(bx - ax, by - ay))
     return longest
 

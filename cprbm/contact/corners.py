@@ -60,34 +60,24 @@ def sides_behind(points: Array, side: int, reach: float) -> tuple[Array, Array]:
     """
     first, last = (chord / np.hypot(*chord) for chord in (points[0] - points[1], points[-1] - points[-2]))
     ends, ways = (points[0], points[-1]), [side * np.array([-first[1], first[0]]), side * np.array([last[1], -last[0]])]
-    lengths = [min(_meetings(end, way, points), default=np.inf) for end, way in zip(ends, ways, strict=True)]
-    meet = _distances(ends, ways)
+    lengths = []
+    for end, way in zip(ends, ways, strict=True):
+        found = [_crossing(end, way, a, b - a) for a, b in pairwise(points)]
+        lengths.append(min((far for far, share in found if far > BEHIND and 0.0 <= share <= 1.0), default=np.inf))
+    meet = _crossing(ends[0], ways[0], ends[1], ways[1])
     if np.all((meet > BEHIND) & (meet < np.minimum(lengths, reach))):
-        lengths = list(meet)
+        lengths = meet.tolist()
     elif min(lengths) < reach:
         lengths = [length if length < reach else 0.0 for length in lengths]
     begin, end = (end + min(length, reach) * way for end, length, way in zip(ends, lengths, ways, strict=True))
     return begin[None][: int(lengths[0] > 0.0)], end[None][: int(lengths[1] > 0.0)]
 
 
-def _distances(ends: tuple[Array, Array], ways: list[Array]) -> Array:
-    """Distances (2,) from two ends along unit vectors to where both ways meet; inf for parallel ways."""
-    matrix = np.column_stack([ways[0], -ways[1]])
-    if abs(np.linalg.det(matrix)) < BEHIND:
-        return np.full(2, np.inf)
-    return np.asarray(np.linalg.solve(matrix, ends[1] - ends[0]))
-
-
-def _meetings(start: Array, way: Array, points: Array) -> list[float]:
-    """Distances along a ``way`` at which the way meets the pieces between points."""
-    found = []
-    for begin, end in pairwise(points):
-        matrix = np.column_stack([way, begin - end])
-        if abs(np.linalg.det(matrix)) > BEHIND * np.hypot(*(end - begin)):
-            along, share = np.linalg.solve(matrix, begin - start)
-            if along > BEHIND and 0.0 <= share <= 1.0:
-                found.append(float(along))
-    return found
+def _crossing(start: Array, way: Array, other: Array, along: Array) -> Array:
+    """Shares (2,) of a ``way`` and of a vector ``along`` from another start where both meet; inf for parallel ways."""
+    matrix = np.column_stack([way, -along])
+    parallel = abs(np.linalg.det(matrix)) <= BEHIND * np.hypot(*along)
+    return np.full(2, np.inf) if parallel else np.asarray(np.linalg.solve(matrix, other - start))
 
 
 def sharp_corners(curve: Curve, side: int, link: float) -> list[int]:
@@ -104,20 +94,12 @@ def sharp_corners(curve: Curve, side: int, link: float) -> list[int]:
     a, b = np.roll(slopes[:, 1] + 2.0 * slopes[:, 2] + 3.0 * slopes[:, 3], 1), slopes[:, 1]
     turns = -side * np.angle(b * np.conj(a))
     turns[0] = turns[0] if curve.closed else 0.0
-    spans = np.diff(curve.arcs)
-    corners = np.flatnonzero(turns > KINK)
-    total = float(curve.arcs[-1])
-
-    def turn_around(piece: int) -> float:
-        apart = np.abs(curve.arcs[corners] - curve.arcs[piece])
-        apart = np.minimum(apart, total - apart) if curve.closed else apart
-        return float(turns[corners[apart < 0.5 * link]].sum())
-
-    return [
-        piece
-        for piece in corners.tolist()
-        if max(spans[piece], spans[piece - 1]) >= link or turn_around(piece) > SHARPEST_ROW
-    ]
+    spans, corners = np.diff(curve.arcs), np.flatnonzero(turns > KINK)
+    apart = np.abs(curve.arcs[corners, None] - curve.arcs[corners])
+    apart = np.minimum(apart, curve.arcs[-1] - apart) if curve.closed else apart
+    turn_around = np.where(apart < 0.5 * link, turns[corners], 0.0).sum(axis=1)
+    far = np.maximum(spans[corners], spans[corners - 1]) >= link
+    return [int(piece) for piece in corners[far | (turn_around > SHARPEST_ROW)]]
 
 
 def sharp_bends(curve: Curve, side: int, link: float) -> list[Ints]:

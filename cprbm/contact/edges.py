@@ -22,7 +22,7 @@ from __future__ import annotations
 import numpy as np
 
 from cprbm.contact.candidates import Geometry, on_edge, taken
-from cprbm.contact.closest import curve_point
+from cprbm.contact.closest import curve_jet
 from cprbm.contact.corners import Corner
 from cprbm.contact.curve import STENCIL
 from cprbm.contact.fixed import movable
@@ -71,7 +71,7 @@ def corner_sides(geometry: Geometry, z: Array, known: Array, counters: Ints) -> 
     apart = separations(z, arrays, places)
     weights = np.empty((2, STENCIL))
     for k, curve in enumerate(places.curve.tolist()):
-        x, y = curve_point(z, arrays, places.foot[k], places.eta[k], 1, weights)
+        _, _, x, y, _, _ = curve_jet(z, arrays, places.foot[k], places.eta[k], weights, weights)
         distance = float(np.hypot(*apart[k]))
         if places.at_point[k]:
             sides[curve] = 0.0
@@ -126,9 +126,7 @@ def _slopes(geometry: Geometry, z: Array, places: Places, k: int) -> tuple[float
 def _faces(geometry: Geometry, z: Array, places: Places, k: int) -> tuple[Array, Array]:
     """a and b of a corner; both are zero for a circle."""
     corner, first = corner_of(geometry, places, k), geometry.arrays.first[geometry.pairs[places.pair[k]].second]
-    weights = np.empty((2, STENCIL))
-    found = []
-    for piece, xi in ((corner.before, 1.0), (corner.behind, 0.0)):
-        tangent = np.array(curve_point(z, geometry.arrays, int(first + piece), xi, 1, weights))
-        found.append(tangent / max(float(np.hypot(*tangent)), 1e-300))
-    return found[0], found[1]
+    weights, borders = np.empty((2, STENCIL)), ((first + corner.before, 1.0), (first + corner.behind, 0.0))
+    tangents = [curve_jet(z, geometry.arrays, int(piece), xi, weights, weights)[2:4] for piece, xi in borders]
+    a, b = (np.array(tangent) / max(float(np.hypot(*tangent)), 1e-300) for tangent in tangents)
+    return a, b

@@ -42,14 +42,13 @@ class Sites(NamedTuple):
     """All fixed places of a mechanism.
 
     Attributes:
-        possible: places, feet not found; node: number of a place's node on its curve.
+        possible: places, feet not found.
         columns: numbers of the two curves of every pair (pairs, 2).
         ends: bodies of the curves.
         sharing: ends (curves, 2) with a shared force: the first joint has the force of the second.
     """
 
     possible: Places
-    node: Ints
     columns: Ints
     ends: Ends
     sharing: Flags
@@ -113,13 +112,13 @@ def places_at_feet(
     On the curves marked ``pressed`` (curves,) ends at a weld on the curve's body are places too.
     """
     mine, ends = np.flatnonzero(near[sites.possible.pair]), sites.ends
-    places, node = picked(sites.possible, mine), sites.node[mine]
-    distance, kept = np.empty(mine.size), np.empty(mine.size, np.bool_)
+    places, distance, kept = picked(sites.possible, mine), np.empty(mine.size), np.empty(mine.size, np.bool_)
     find_feet(z, curves, places, distance, counters)
     for k in range(mine.size):
         pair, curve, other, foot = places.pair[k], places.curve[k], places.other[k], places.foot[k]
         start, end = on_end_body(curves, ends, places, k, 0), on_end_body(curves, ends, places, k, 1)
-        before, behind = node[k], curves.last[curve] - curves.first[curve] + 1 - node[k]
+        before = places.piece[k] - curves.first[curve] + int(places.xi[k])
+        behind = curves.last[curve] - curves.first[curve] + 1 - before
         welded, held = ends.welded[curve], False
         if curves.angle[places.piece[k]] < 0:
             # a corner is no place in an end link held by the corner's body

@@ -5,7 +5,7 @@ symbol     meaning
 =========  =====================================================================================
 A, B       curve of the place and curve of the foot; C_A(ξ), C_B(η) their points, primes by ξ and η
 F          contact force of a place, positive in pressure
-c_A, c_B   lost compliance of a point force, :mod:`cprbm.contact.compliance`; zero unless the place moves
+c_A, c_B   lost compliance of a point force, :mod:`cprbm.chain.spline`; zero unless the place moves
 T_A, T_B   half thickness, less F c/2 of a point force
 σ          side of B on which A lies, seen along B: +1 left, −1 right
 t, n       unit tangent of B, its left normal
@@ -45,7 +45,7 @@ dξ = −(λ_ξ + λ_ξu + λ_ξF dF)/λ_ξξ.  At a corner C_A' = 0 and all der
 from __future__ import annotations
 
 from math import hypot, sqrt
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from cprbm.chain.compiled import compiled
 from cprbm.contact.closest import curve_jet, lost_at, thickness_between
@@ -90,15 +90,52 @@ class Places(NamedTuple):
     force: Array
 
 
+class Columns(NamedTuple):
+    """Border columns of closed places: columns of forces first, then columns of local motions.
+
+    Attributes:
+        values: of the rows with a force of their own (forces,).
+        negative: number of negative eigenvalues of the local motions' block.
+        diagonal, beside: block of the columns: diagonal, and entry beside the column before (columns,).
+        entry_column, entry_index, entry_value: entries by column, unknown and value.
+    """
+
+    values: Array
+    negative: int
+    diagonal: Array
+    beside: Array
+    entry_column: Ints
+    entry_index: Ints
+    entry_value: Array
+
+
+class Law(Protocol):
+    """A contact law for some pairs of curves."""
+
+    def measures(self, places: Places) -> Flags:
+        """Places that the law measures; the last of all places."""
+
+    def write_gaps(self, z: Array, places: Places, gaps: Array) -> None:
+        """Write the gaps of the law's places at a state."""
+
+    def columns(self, z: Array, places: Places, closed: Flags, gradient: Array) -> Columns:
+        """Columns of all places marked ``closed``; adds the gradient of all −F λ to ``gradient``."""
+
+    def force(self, z: Array, places: Places, k: int) -> Array:
+        """Force (2,) on a place of the law."""
+
+    def invalid(self, z: Array, places: Places, closed: Flags) -> str:
+        """Reason why the law does not hold at a state; empty if it holds."""
+
+
 class Frame(NamedTuple):
     """Derivatives of λ at a place, the foot eliminated.
 
-    ``value`` λ, ``gap`` g; N, t̂; coefficients ``qq``, ``qe``, ``ee`` of λ_uu; ``along`` q_ξ; ``slope`` λ_ξ,
+    ``gap`` g; N, t̂; coefficients ``qq``, ``qe``, ``ee`` of λ_uu; ``along`` q_ξ; ``slope`` λ_ξ,
     ``curvature`` λ_ξξ, ``slope_by_force`` λ_ξF; ``foot_q``, ``foot_e`` of dη; ``lost`` c, ``foot_lost`` c_B',
     ``by_force`` λ_FF.
     """
 
-    value: float
     gap: float
     nx: float
     ny: float
@@ -174,10 +211,9 @@ def gap_frame(z: Array, curves: CurveArrays, places: Places, k: int, weights: Ar
     along = tx * ux + ty * uy
     slope = nx * ux + ny * uy - curves.thickening[piece] + 0.5 * force * own1
     curvature = qq * along * along + nx * wx + ny * wy + 0.5 * force * own2
-    lost, gap = own + other, R - thickness
     return Frame(
-        gap + 0.5 * force * lost, gap, nx, ny, tx, ty, qq, qe, ee, along, slope, curvature,
-        0.5 * (own1 + other1 * foot_q * along), foot_q, foot_e, lost, other1, -0.25 * other1 * other1 * foot_e,
+        R - thickness, nx, ny, tx, ty, qq, qe, ee, along, slope, curvature,
+        0.5 * (own1 + other1 * foot_q * along), foot_q, foot_e, own + other, other1, -0.25 * other1 * other1 * foot_e,
     )  # fmt: skip
 
 

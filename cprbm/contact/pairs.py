@@ -98,59 +98,40 @@ def contact_pairs(m: Mechanism) -> tuple[list[Curve], list[Pair]]:
 
 
 def _rigid_curve(m: Mechanism, frames: Frames, contact_name: str, contact: RigidContact) -> tuple[Curve, int]:
-    """Curve of a rigid shape, and the side of the beam."""
-    name, place = f"contact {contact_name}", m.units.place
+    """Curve of a rigid shape, at even arc lengths of a smooth edge, and the side of the beam."""
+    name, place, u = f"contact {contact_name}", m.units.place, np.linspace(0.0, 1.0, PIECES + 1)
+    side = 1 if getattr(contact, "side", "") in ("left", "inside") else -1
     match contact:
         case CircleContact(side="outside"):
             return frames.circle(name, contact.body, place(contact.center), contact.radius / m.units.length), 1
-        case CircleContact():
-            angle = np.linspace(0.0, 2.0 * np.pi, PIECES + 1)
-            around = np.column_stack([np.cos(angle), np.sin(angle)])
-            tangents = np.column_stack([-around[:, 1], around[:, 0]])
-            points, length = place(contact.center + contact.radius * around), 2.0 * np.pi * contact.radius
-            return frames.smooth_edge(name, contact.body, points, tangents, length / m.units.length), 1
         case HalfPlaneContact():
             normal = np.array(contact.normal) / np.hypot(*contact.normal)
             along = REACH * np.array([normal[1], -normal[0]])
-            points, side = place(contact.point) + np.array([-along, along]), 1
-            m.rows.extend(pin_rows(m, contact_name, contact, points, side))
-            return frames.polyline(name, contact.body, points), side
+            points, tangents, side = place(contact.point) + np.array([-along, along]), None, 1
         case LineContact():
-            points, side = place(contact.points), 1 if contact.side == "left" else -1
-            m.rows.extend(pin_rows(m, contact_name, contact, points, side))
-            if not contact.closed:
-                begin, end = sides_behind(points, side, REACH)
-                points = np.concatenate([begin, points, end])
-            return frames.polyline(name, contact.body, points), side
-        case FunctionContact():
-            ascends = contact.range[1] > contact.range[0]
-            left = (contact.side == "above") == (ascends == (contact.axis == "x"))
-            side = 1 if left else -1
-            points = place(shape_of(contact.curve).point(np.linspace(0.0, 1.0, PIECES + 1)))
-            m.rows.extend(pin_rows(m, contact_name, contact, points, side))
-            return _smooth(m, frames, name, contact, side), side
-        case SplineContact():
-            side = 1 if contact.side == "left" else -1
-            return _smooth(m, frames, name, contact, side), side
-        case EllipseContact():
-            side = 1 if contact.side == "inside" else -1
-            return _smooth(m, frames, name, contact, side), side
-    raise TypeError(f"found a rigid contact of the class {type(contact).__name__}")
+            points, tangents = place(contact.points), None
+        case CircleContact():
+            around = np.column_stack([np.cos(2.0 * np.pi * u), np.sin(2.0 * np.pi * u)])
+            points, tangents = place(contact.center + contact.radius * around), around[:, ::-1] * [-1.0, 1.0]
+            length = 2.0 * np.pi * contact.radius
+        case _:
+            assert isinstance(contact, FunctionContact | SplineContact | EllipseContact)
+            shape = shape_of(contact.curve)
+            points, tangents, length = place(shape.point(u)), shape.tangent(u), shape.length
+    if isinstance(contact, FunctionContact):
+        ascends = contact.range[1] > contact.range[0]
+        side = 1 if (contact.side == "above") == (ascends == (contact.axis == "x")) else -1
+    if isinstance(contact, EdgeContact):
+        m.rows.extend(_pin_rows(m, contact_name, contact, points, side))
+    sides = NO_SIDES
+    if isinstance(contact, FunctionContact | SplineContact | LineContact) and not getattr(contact, "closed", False):
+        sides = sides_behind(points, side, REACH)
+    if tangents is None:
+        return frames.polyline(name, contact.body, np.concatenate([sides[0], points, sides[1]])), side
+    return frames.smooth_edge(name, contact.body, points, tangents, length / m.units.length, sides), side
 
 
-def _smooth(
-    m: Mechanism, frames: Frames, name: str, contact: FunctionContact | SplineContact | EllipseContact, side: int
-) -> Curve:
-    """Smooth edge of a body, at even arc lengths, and the sides of the solid behind an open edge."""
-    u = np.linspace(0.0, 1.0, PIECES + 1)
-    points, tangents = m.units.place(shape_of(contact.curve).point(u)), shape_of(contact.curve).tangent(u)
-    sides = NO_SIDES if isinstance(contact, EllipseContact) else sides_behind(points, side, REACH)
-    return frames.smooth_edge(
-        name, contact.body, points, tangents, shape_of(contact.curve).length / m.units.length, sides
-    )
-
-
-def pin_rows(m: Mechanism, name: str, contact: EdgeContact, points: Array, side: int) -> Iterator[Row]:
+def _pin_rows(m: Mechanism, name: str, contact: EdgeContact, points: Array, side: int) -> Iterator[Row]:
     """Rows of the angles between a contact's beam and the edge through ``points`` (k, 2), at pins on the edge."""
     chain, record = m.chains[contact.beam], m.scene.beams[contact.beam]
     ends: tuple[tuple[Literal["start", "end"], int], ...] = (("start", 0), ("end", -1))

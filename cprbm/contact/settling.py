@@ -18,6 +18,7 @@ from cprbm.contact.closest import (
     closest_of,
     closest_point,
     curve_boxes,
+    curve_jet,
     curve_point,
     depth_beyond,
     moved_along,
@@ -71,7 +72,7 @@ def find_feet(
             longest[other] = write_chords(z, curves, other, chords, weights)
         if places.curve[k] == other:
             least_turn = TURNED_BACK
-        x, y = curve_point(z, curves, piece, places.xi[k], 0, weights)
+        x, y = curve_point(z, curves, piece, places.xi[k], weights)
         counters[SEARCHES] += 1
         turn = z[curves.angle[piece]], least_turn
         foot, eta, distance[k] = closest_of(z, curves, other, chords, longest[other], near[other], x, y, turn)
@@ -86,9 +87,9 @@ def find_bends(z: Array, curves: CurveArrays, places: Places, rounds: int) -> No
         if curves.angle[places.piece[k]] >= 0 or curves.is_point[places.curve[k]]:
             continue
         for _ in range(rounds):
-            x, y = curve_point(z, curves, places.foot[k], places.eta[k], 0, weights)
+            x, y = curve_point(z, curves, places.foot[k], places.eta[k], weights)
             places.piece[k], places.xi[k], _ = closest_chord(z, curves, places.curve[k], x, y, weights)
-            x, y = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights)
+            x, y = curve_point(z, curves, places.piece[k], places.xi[k], weights)
             places.foot[k], places.eta[k], _ = closest_chord(z, curves, places.other[k], x, y, weights)
 
 
@@ -117,7 +118,7 @@ def settle_place(
     gaps[k], curvatures[k] = np.inf, 0.0
     last, longest = 0.0, LONGEST_STEP
     for _ in range(max(steps, 1)):
-        x, y = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights[0])
+        x, y = curve_point(z, curves, places.piece[k], places.xi[k], weights[0])
         force = places.force[k] if places.moves[k] else 0.0
         foot, eta, side = places.foot[k], places.eta[k], places.side[k]
         places.foot[k], places.eta[k], places.at_point[k] = closest_point(
@@ -231,8 +232,8 @@ def separations(z: Array, curves: CurveArrays, places: Places) -> Array:  # prag
     vectors, weights = np.zeros((places.piece.size, 2)), np.empty((2, STENCIL))
     for k in range(places.piece.size):
         if not is_unturned(z, curves, places, k):
-            ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights)
-            bx, by = curve_point(z, curves, places.foot[k], places.eta[k], 0, weights)
+            ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], weights)
+            bx, by = curve_point(z, curves, places.foot[k], places.eta[k], weights)
             vectors[k, 0], vectors[k, 1] = ax - bx, ay - by
     return vectors
 
@@ -265,12 +266,12 @@ def _sweeps_over(
     """
     weights = np.empty((2, STENCIL))
     for z in (before, after):
-        cx, cy = curve_point(z, curves, point, at, 0, weights)
+        cx, cy = curve_point(z, curves, point, at, weights)
         piece, xi, _ = closest_chord(z, curves, beam, cx, cy, weights)
-        ax, ay = curve_point(before, curves, piece, xi, 0, weights)
-        bx, by = curve_point(before, curves, point, at, 0, weights)
-        cx, cy = curve_point(after, curves, piece, xi, 0, weights)
-        dx, dy = curve_point(after, curves, point, at, 0, weights)
+        ax, ay = curve_point(before, curves, piece, xi, weights)
+        bx, by = curve_point(before, curves, point, at, weights)
+        cx, cy = curve_point(after, curves, piece, xi, weights)
+        dx, dy = curve_point(after, curves, point, at, weights)
         nearest = min(hypot(ax - bx, ay - by), hypot(cx - dx, cy - dy))
         beside = nearest > depth_beyond(curves, piece, thickness_between(curves, piece, xi, point, at))
         if beside and (ax - bx) * (cx - dx) + (ay - by) * (cy - dy) < 0.0:
@@ -284,7 +285,6 @@ def choose_sides(z: Array, curves: CurveArrays, places: Places) -> None:  # prag
     weights = np.empty((2, STENCIL))
     for k in range(places.piece.size):
         if places.curve[k] == places.other[k] and not is_unturned(z, curves, places, k):
-            ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], 0, weights)
-            bx, by = curve_point(z, curves, places.foot[k], places.eta[k], 0, weights)
-            tx, ty = curve_point(z, curves, places.foot[k], places.eta[k], 1, weights)
+            ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], weights)
+            bx, by, tx, ty, _, _ = curve_jet(z, curves, places.foot[k], places.eta[k], weights, weights)
             places.side[k] = 1.0 if (ay - by) * tx - (ax - bx) * ty >= 0.0 else -1.0

@@ -26,9 +26,8 @@ import numpy as np
 
 from cprbm.chain import Mechanism, Row, apart_ends, stop_angle
 from cprbm.chain.rows import unit_direction
-from cprbm.continuation.closing import CLOSED, drawn_names, kept_open, least_gap, pressing_names
+from cprbm.continuation.closing import CLOSED, drawn_names, kept_open, least_gap, located, pressing_names
 from cprbm.continuation.driver import Driver, StepError
-from cprbm.continuation.limits import located
 from cprbm.continuation.path import Way
 from cprbm.equilibrium.contact_set import NotConvergedError
 from cprbm.equilibrium.rank import repeated_rows

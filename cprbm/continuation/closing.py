@@ -1,11 +1,15 @@
-"""Contacts that close or open within a load step, and their location.
+"""Stops and contacts that close or open within a load step, and their location.
 
 =======  ====================================================================================
 symbol   meaning
 =======  ====================================================================================
+e        event function of a stop: f of an open stop, −μ of a closed stop; both are positive or zero
 g        least gap of an open pair of curves
 F        sum of the contact forces of a closed pair
 =======  ====================================================================================
+
+A step is solved with the rows frozen.  Where e < 0 at the end of the step, Brent's method locates the first zero of e.
+The step ends there, and the stop closes or opens.
 
 The gap of a pair may be least between two joints; a moving place without a force finds the minimum.
 The first closing is located on states with the pair kept open, by values and slopes of g along the tangent:
@@ -17,18 +21,31 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from cprbm.contact import TOUCHING, Contacts, Geometry, taken, touching_as_drawn
-from cprbm.continuation.limits import located, located_by_slopes
 from cprbm.continuation.path import tangent
 from cprbm.equilibrium.contact_set import NotConvergedError, with_fixed_places
+from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.neighbours import least_between
-from cprbm.equilibrium.solving import Solved, at_state
+from cprbm.equilibrium.solving import Solved, equilibrium
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
+
+HAPPENED = 1e-10
+"""Event function, in rad or units of moment, below which an event has happened."""
+
+ACCURACY = 1e-12
+"""Accuracy of the fraction of a step."""
+
+STEPS = 60
+"""Most states on which an event is located by slopes."""
+
+CHANGES = 20
+"""Changes of the stops after which their search ends."""
 
 CLOSED = 1e-11
 """Overlap, over the longest beam, of a contact at the closing: ten times the active set's round-off."""
@@ -45,6 +62,94 @@ RELEASED = 1e-9
 
 LET_GO = 0.1
 """Force of an opening contact, over the force at the begin of the step: a larger force jumps to zero."""
+
+
+class StopChange(NamedTuple):
+    """A stop's ``row`` closes or opens at a fraction ``share`` of a step."""
+
+    share: float
+    row: int
+
+
+def event_values(solved: Solved, acting: Flags) -> Array:
+    """e of all rows; infinite for all rows but acting stops."""
+    values = np.where(solved.state.driven, -solved.state.multipliers(solved.system), solved.values)
+    return np.where(solved.system.limits & acting, values, np.inf)
+
+
+def first_event(
+    before: Solved, after: Solved, acting: Flags, solve: Callable[[float, frozenset[int]], Solved]
+) -> StopChange | None:
+    """The first stop that closes or opens in a step; None without any.
+
+    Args:
+        before, after: the step.
+        acting: which stops act.
+        solve: state at a fraction of the step, with pairs kept open.
+    """
+    begin, end = event_values(before, acting), event_values(after, acting)
+
+    def value(row: int, share: float) -> float:
+        return float(event_values(solve(share, frozenset()), acting)[row])
+
+    happened = np.flatnonzero(end < -HAPPENED).tolist()
+    shares = [0.0 if begin[row] <= HAPPENED else located(partial(value, row)) for row in happened]
+    return min((StopChange(*change) for change in zip(shares, happened, strict=True)), default=None)
+
+
+def located(event: Callable[[float], float]) -> float:
+    """Share of a step at which an event function vanishes."""
+    from scipy.optimize import brentq  # steps without events load no optimisers
+
+    return float(brentq(event, 0.0, 1.0, xtol=ACCURACY))
+
+
+def located_by_slopes(event: Callable[[float], tuple[float, float]], end: tuple[float, float]) -> float:
+    """Share of a step at which an event function with a slope vanishes; ``end`` holds both at the end of the step.
+
+    The share is the zero of the cubic through both ends of the bracket.  The bracket is halved after a state with more
+    than half the least value so far.
+    """
+    low, high, halved = (0.0, *event(0.0)), (1.0, *end), False
+    for _ in range(STEPS):
+        known = np.isfinite((low, high)).all() and not halved
+        share = _zero_of_cubic(low, high) if known else 0.5 * (low[0] + high[0])
+        here = (share, *event(share))
+        if here[1] == 0.0 or high[0] - low[0] < ACCURACY:
+            break
+        halved = not halved and abs(here[1]) > 0.5 * min(abs(low[1]), abs(high[1]))
+        low, high = (here, high) if (here[1] > 0.0) == (low[1] > 0.0) else (low, here)
+    return share
+
+
+def _zero_of_cubic(low: tuple[float, float, float], high: tuple[float, float, float]) -> float:
+    """Share between two shares at which the cubic with their values and slopes vanishes."""
+    (a, f, df), (b, g, dg) = low, high
+    bend, turn = 3.0 * (g - f) - (b - a) * (2.0 * df + dg), 2.0 * (f - g) + (b - a) * (df + dg)
+    return a + (b - a) * located(lambda x: f + x * ((b - a) * df + x * (bend + x * turn)))
+
+
+def changed(state: State, row: int, system: System) -> State:
+    """The state with a stop closed or opened."""
+    driven, z = state.driven.copy(), state.z.copy()
+    driven[row] = not driven[row]
+    z[system.rows.first + row] = 0.0
+    return replace(state, driven=driven, z=z)
+
+
+def with_stops(system: System, state: State, acting: Flags, iterations: int, springs: Springs | None = None) -> Solved:
+    """Equilibrium near a state with all stops within limits or pushing.
+
+    Raises:
+        NotConvergedError: no equilibrium was found.
+    """
+    for _ in range(CHANGES):
+        solved = equilibrium(system, state, iterations, springs)
+        values = event_values(solved, acting)
+        if values.min(initial=0.0) >= -HAPPENED:
+            return solved
+        state = changed(solved.state, int(np.argmin(values)), system)
+    raise NotConvergedError("the stops do not settle")
 
 
 class ContactChange(NamedTuple):
@@ -89,11 +194,6 @@ def drawn_names(system: System, state: State) -> frozenset[str]:
     return frozenset(geometry.pairs[pair].name for pair, gap in gaps.items() if pair in at_ends or gap < TOUCHING)
 
 
-def touches(solved: Solved) -> bool:
-    """True if open places touch: the state has no two-sided tangent."""
-    return bool(np.any(np.abs(solved.gaps[~solved.state.contacts.closed]) < TOUCHING))
-
-
 def kept_open(state: State, pairs: frozenset[int]) -> State:
     """The state with open pairs, which stay open in an equilibrium."""
     contacts = state.contacts
@@ -123,34 +223,6 @@ class Pressed(NamedTuple):
     def force(self, solved: Solved) -> float:
         """Sum of the contact forces."""
         return float(solved.state.contacts.places.force[self.places(solved)].sum())
-
-
-def pressing_joints(solved: Solved) -> list[Pressed]:
-    """Closed joints where all places are joints; else empty."""
-    return pressing_places(solved) if solved.system.geometry.joints_alone else []
-
-
-def pressing_places(solved: Solved) -> list[Pressed]:
-    """All closed places."""
-    contacts = solved.state.contacts
-    pair, piece = contacts.places.pair[contacts.closed], contacts.places.piece[contacts.closed]
-    return [Pressed(*each) for each in zip(pair.tolist(), piece.tolist(), strict=True)]
-
-
-def may_lift(solved: Solved) -> list[Pressed]:
-    """Closed pairs, and every closed place."""
-    return [*(Pressed(pair) for pair in sorted(pressing(solved))), *pressing_places(solved)]
-
-
-def without(solved: Solved, lifted: Pressed) -> Solved:
-    """The state without closed places, of which the force is about zero.
-
-    Raises:
-        NotConvergedError: the Hessian is singular.
-    """
-    state, contacts = solved.state, solved.state.contacts
-    closed = contacts.closed & ~lifted.places(solved)
-    return at_state(solved.system, replace(state, contacts=replace(contacts, closed=closed)))
 
 
 def first_change(

@@ -26,17 +26,17 @@ evenly to zero.  No force with a limit has this law.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from cprbm.contact import taken
-from cprbm.continuation.closing import Pressed, may_lift, pressing, without
+from cprbm.continuation.closing import Pressed, pressing
 from cprbm.continuation.path import Reached, Way, tangent
 from cprbm.equilibrium.contact_set import NotConvergedError
 from cprbm.equilibrium.sharing import balanced_forces
-from cprbm.equilibrium.solving import Solved
+from cprbm.equilibrium.solving import Solved, at_state
 from cprbm.equilibrium.stability import Mode, softest
 from cprbm_scene import BeamContact, Loss, SelfContact
 from cprbm_scene.answer import Array
@@ -119,19 +119,39 @@ def contact_ends(trail: list[Reached], beyond: float) -> CriticalPoint | None:
     if earlier is None:
         return None
     slips = [Pressed(pair) for pair in sorted(pressing(last.solved))]
-    ends = [(each, each.force, Loss.CONTACT) for each in may_lift(last.solved)]
+    ends = [(each, each.force, Loss.CONTACT) for each in _may_lift(last.solved)]
     for ended, value, loss in ends + [(each, partial(_to_end, pair=each.pair), Loss.SLIP) for each in slips]:
         zero = _vanishes(value, earlier, last)
         if zero - last.t <= NEAR * width:
             name = geometry.pairs[ended.pair].name
             try:
-                after = without(last.solved, ended)
+                after = _without(last.solved, ended)
             except NotConvergedError:  # nothing but the contact holds a body
                 kept = softest(last.solved).curvature
                 return CriticalPoint(zero, width, loss, name, last.solved, last.solved, kept, 0.0)
             if after.lost or loss is Loss.SLIP:
                 return opened(last.solved, after, zero, loss, name, width)
     return None
+
+
+def _may_lift(solved: Solved) -> list[Pressed]:
+    """Closed pairs, and every closed place."""
+    contacts = solved.state.contacts
+    places = zip(
+        contacts.places.pair[contacts.closed].tolist(), contacts.places.piece[contacts.closed].tolist(), strict=True
+    )
+    return [*map(Pressed, sorted(pressing(solved))), *(Pressed(*place) for place in places)]
+
+
+def _without(solved: Solved, lifted: Pressed) -> Solved:
+    """The state without closed places, of which the force is about zero.
+
+    Raises:
+        NotConvergedError: the Hessian is singular.
+    """
+    state, contacts = solved.state, solved.state.contacts
+    closed = contacts.closed & ~lifted.places(solved)
+    return at_state(solved.system, replace(state, contacts=replace(contacts, closed=closed)))
 
 
 def _vanishes(value: Callable[[Solved], float], earlier: Reached, last: Reached) -> float:

@@ -24,7 +24,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cprbm.continuation.limits import with_stops
+from cprbm.continuation.closing import with_stops
 from cprbm.continuation.path import potential
 from cprbm.equilibrium.contact_set import NotConvergedError
 from cprbm.equilibrium.factors import Springs

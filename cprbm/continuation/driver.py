@@ -29,7 +29,10 @@ import numpy as np
 
 from cprbm.continuation.closing import (
     ContactChange,
+    StopChange,
+    changed,
     first_change,
+    first_event,
     kept_open,
     may_close,
     pressing_names,
@@ -44,9 +47,7 @@ from cprbm.continuation.critical import (
     taut_value,
 )
 from cprbm.continuation.descent import descend
-from cprbm.continuation.jumps import jumped
-from cprbm.continuation.limits import StopChange, changed, first_event
-from cprbm.continuation.path import Reached, Way, energy_before, turned
+from cprbm.continuation.path import Reached, Way, energy_before, jumped, turned
 from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.contact_set import NotConvergedError
 from cprbm.equilibrium.solving import Solved, equilibrium

@@ -13,13 +13,13 @@ the boundary on which the joints stay.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cprbm.chain import Mechanism
-from cprbm.contact import Columns, CurveArrays, Geometry, Places, places_at
+from cprbm.contact import Columns, Geometry, Places, places_at
 from cprbm.equilibrium.columns import contact_columns
 from cprbm.paper.fit import Boundary, fitted, fitted_columns, write_basis, write_fitted_gaps
 from cprbm_scene import BeamContact, LineContact, Mistake, Scene, SceneError, SelfContact
@@ -114,41 +114,34 @@ class FittedLaw:
     """Law of the fitted boundaries.
 
     Attributes:
-        boundaries, pairs, names, beams: boundaries, numbers of the pairs, names of the contacts and of the beams with
-            constrained joints.
-        fitted: whether the law measures a pair (pairs,).
-        arrays: of the geometry's curves.
+        boundaries: by the numbers of the pairs.
+        geometry: curves and pairs.
         beyond: distance beyond the ends of a boundary within which a joint may press, in units.
         unit: of length, m.
     """
 
-    boundaries: Sequence[Boundary]
-    pairs: Sequence[int]
-    names: Sequence[str]
-    beams: Sequence[str]
-    fitted: Flags
-    arrays: CurveArrays
+    boundaries: Mapping[int, Boundary]
+    geometry: Geometry
     beyond: float
     unit: float
 
     def measures(self, places: Places) -> Flags:
         """Places of the law's pairs."""
-        return np.asarray(self.fitted[places.pair])
+        return np.isin(places.pair, list(self.boundaries))
 
     def write_gaps(self, z: Array, places: Places, gaps: Array) -> None:
         """Write the gaps of the law's places at a state; a foot on a fitted boundary is no point."""
-        for boundary, pair in zip(self.boundaries, self.pairs, strict=True):
+        for pair, boundary in self.boundaries.items():
             mine = places.pair == pair
             if mine.any():
                 found = np.empty(len(boundary.joints))
                 write_fitted_gaps(z, boundary, found)
-                gaps[mine] = found
-                places.at_point[mine] = False
+                gaps[mine], places.at_point[mine] = found, False
 
     def columns(self, z: Array, places: Places, closed: Flags, gradient: Array) -> Columns:
         """Columns of all places marked ``closed``; adds the gradient of all −F λ to ``gradient``."""
-        found = contact_columns(z, self.arrays, places, closed & ~self.measures(places), gradient)
-        for boundary, pair in zip(self.boundaries, self.pairs, strict=True):
+        found = contact_columns(z, self.geometry.arrays, places, closed & ~self.measures(places), gradient)
+        for pair, boundary in self.boundaries.items():
             mine = places.pair == pair
             if closed[mine].any():
                 found = _joined(found, fitted_columns(z, boundary, places.force[mine], closed[mine], gradient))
@@ -156,7 +149,7 @@ class FittedLaw:
 
     def force(self, z: Array, places: Places, k: int) -> Array:
         """Force (2,) on a constrained joint, normal to the boundary."""
-        boundary = self.boundaries[self.pairs.index(int(places.pair[k]))]
+        boundary = self.boundaries[int(places.pair[k])]
         j = int(np.count_nonzero(places.pair[:k] == places.pair[k]))
         fit, basis = fitted(z, boundary), np.empty((3, boundary.degree + 1))
         write_basis(z[boundary.joints[j] + boundary.along], fit.middle, fit.width, basis)
@@ -166,20 +159,17 @@ class FittedLaw:
 
     def invalid(self, z: Array, places: Places, closed: Flags) -> str:
         """Sentence on a joint that presses beyond the ends of the boundary; empty without such a joint."""
-        for boundary, pair, name, beam in zip(self.boundaries, self.pairs, self.names, self.beams, strict=True):
-            pressing = (closed & (places.force > 0.0))[places.pair == pair]
-            if not pressing.any():
-                continue
-            joints = np.flatnonzero(pressing)
-            beyond = beyond_ends(z, boundary)[joints]
-            worst = int(np.argmax(beyond))
-            if beyond[worst] > self.beyond:
-                piece = int(places.piece[places.pair == pair][joints[worst]])
-                curve = int(places.curve[places.pair == pair][0])
-                number = piece - int(self.arrays.first[curve])
+        for pair, boundary in self.boundaries.items():
+            mine = np.flatnonzero(places.pair == pair)
+            pressing = closed[mine] & (places.force[mine] > 0.0)
+            beyond = np.where(pressing, beyond_ends(z, boundary), -np.inf) if pressing.any() else np.full(1, -np.inf)
+            if beyond.max() > self.beyond:
+                worst, curve = mine[np.argmax(beyond)], places.curve[mine[0]]
+                number = places.piece[worst] - self.geometry.arrays.first[curve]
                 return (
-                    f"in contact '{name}' joint {number} of {beam} presses {beyond[worst] * self.unit:.2g} m beyond "
-                    "the end of the range of the fitted polynomial"
+                    f"in contact '{self.geometry.pairs[pair].name}' joint {number} of "
+                    f"{self.geometry.curves[curve].beam} presses {beyond.max() * self.unit:.2g} m beyond the end of "
+                    "the range of the fitted polynomial"
                 )
         return ""
 
@@ -200,37 +190,22 @@ def paper_geometry(m: Mechanism, every: Geometry, degree: int) -> Geometry:
     """
     pins = {f"{contact}.pin" for contact in m.scene.contacts}
     m.rows[:] = [row for row in m.rows if row.name not in pins]
-    law, pairs, rows, fitted_rows = list[tuple[Boundary, int, str, str]](), list(every.pairs), [], []
+    boundaries, pairs, rows, fitted_rows = dict[int, Boundary](), list(every.pairs), [], []
     for number, pair in enumerate(every.pairs):
         contact = m.scene.contacts[pair.name]
         if isinstance(contact, BeamContact):
-            boundary, beam = fitted_boundary(m, pair.name, degree)
-            law.append((boundary, number, pair.name, beam))
-            joints = np.searchsorted(m.beam_nodes(beam), boundary.joints)
+            boundaries[number], beam = fitted_boundary(m, pair.name, degree)
+            joints = np.searchsorted(m.beam_nodes(beam), boundaries[number].joints)
             own, other = (pair.first, pair.second) if beam == contact.between[0] else (pair.second, pair.first)
-            fitted_rows += [(number, own, other, joint, m.chains[beam].links) for joint in joints.tolist()]
+            fitted_rows += [(number, own, other, joint) for joint in joints.tolist()]
             pairs[number] = replace(pair, side=1)
         else:
-            (beam,) = contact.beams
-            joints = related_joints(m, pair.name, beam, fewest=1)
-            rows += [(number, pair.first, pair.second, joint, m.chains[beam].links) for joint in joints.tolist()]
-    possible, node = places_at(every.arrays, np.array(rows + fitted_rows, dtype=np.int64))
-    return replace(
-        every,
-        pairs=pairs,
-        possible=possible,
-        node=node,
-        law=_law(m, every, law) if law else None,
-        joints_alone=True,
-    )
-
-
-def _law(m: Mechanism, geometry: Geometry, law: Sequence[tuple[Boundary, int, str, str]]) -> FittedLaw:
+            joints = related_joints(m, pair.name, contact.beams[0], fewest=1)
+            rows += [(number, pair.first, pair.second, joint) for joint in joints.tolist()]
     longest = max(float(np.max(np.diff(chain.borders))) for chain in m.chains.values())
-    boundaries, pairs, names, beams = zip(*law, strict=True)
-    fitted = np.zeros(len(geometry.pairs), dtype=bool)
-    fitted[list(pairs)] = True
-    return FittedLaw(boundaries, pairs, names, beams, fitted, geometry.arrays, BEYOND * longest, m.units.length)
+    law = FittedLaw(boundaries, every, BEYOND * longest, m.units.length) if boundaries else None
+    possible = places_at(every.arrays, np.array(rows + fitted_rows, dtype=np.int64))
+    return replace(every, pairs=pairs, possible=possible, law=law, joints_alone=True)
 
 
 def refuse_contacts(scene: Scene) -> None:

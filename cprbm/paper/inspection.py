@@ -131,9 +131,13 @@ def _pressed_boundaries(solved: Solved) -> list[tuple[Boundary, str, Array]]:
     geometry, contacts = solved.system.geometry, solved.state.contacts
     if not isinstance(geometry.law, FittedLaw):
         return []
-    law, z, places = geometry.law, solved.state.z, contacts.places
-    every = zip(law.boundaries, law.names, map(contacts.pressing, law.pairs), strict=True)
-    return [(b, name, contact_terms(geometry, z, places, closed)[1]) for b, name, closed in every if closed.any()]
+    found = []
+    for pair, boundary in geometry.law.boundaries.items():
+        closed = contacts.pressing(pair)
+        if closed.any():
+            pull = contact_terms(geometry, solved.state.z, contacts.places, closed)[1]
+            found.append((boundary, geometry.pairs[pair].name, pull))
+    return found
 
 
 def _left_moment(solved: Solved, pull: Array) -> float:

@@ -1,19 +1,54 @@
-"""Values of the scene's probes at a state; meanings in :mod:`cprbm_scene.answer`."""
+"""Values of the scene's probes, and states of contacts; meanings in :mod:`cprbm_scene.answer`.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+g, s     gap, arc length of a joint on the first beam
+e        arc length of the zone's end
+=======  ====================================================================================
+
+Forces act at joints: the outermost force gives e to about one link.  Beyond that force the moment is smooth:
+g″ is zero at e and grows evenly.  Second differences of g at the next joints, extrapolated to zero, give e.  The spline
+spreads a force over one joint on either side; such joints do not count.  A moving place at the end of a zone is e.
+
+Clamp and contact share the force of a zone beside a weld, and a moment at an own pin is part of the contact: such a
+zone begins at the beam's end.
+"""
 
 from __future__ import annotations
 
-from typing import assert_never
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cprbm.chain import stop_angle
-from cprbm.results.contacts import contact_centre, contact_ends, contact_force, contact_moment
-from cprbm.results.forces import stop_moment
-from cprbm.results.statics import Statics
+from cprbm.chain.rows import END, ends_of
+from cprbm.contact import Geometry
+from cprbm.continuation.path import potential
+from cprbm.results.statics import NO_FORCE, Statics, cross, pin_moments, stop_moment
 from cprbm.results.view import View
 from cprbm_scene import Probe
-from cprbm_scene.answer import Array, frozen_array
-from cprbm_scene.statement import DisplacementDrive
+from cprbm_scene.answer import Array, ContactState, PointForces, frozen_array
+from cprbm_scene.question_records import Quantity
+from cprbm_scene.statement import DisplacementDrive, EdgeContact, PinnedEnd
+from cprbm_scene.stations import contact_states
+
+ZONE = 3
+"""Closed joints from which a contact has a length: two neighbours share the force of a point."""
+
+SMEARED = 1
+"""Joints beside a force with a wrong second difference."""
+
+JOINTS = 5
+"""Joints for three second differences."""
+
+NEGLIGIBLE = 1e-4
+"""Force of a joint, over the largest force, that errors of the discretisation leave on a flat edge."""
+
+FARTHEST = 1.5
+"""Distance, in links, of e from the outermost force; a larger one shows another law of g."""
 
 
 def probe_values(statics: Statics, stage: str) -> dict[str, Array]:
@@ -24,39 +59,25 @@ def probe_values(statics: Statics, stage: str) -> dict[str, Array]:
     }
 
 
-def _value(statics: Statics, probe: Probe) -> Array | float:
-    view, units, of = statics.view, statics.view.mechanism.units, probe.of
-    match probe.quantity:
-        case "displacement":
-            return view.displacement(of) * units.length
-        case "rotation":
-            return view.rotation(of)
-        case "bending_stress":
-            return statics.bending_stress(of, probe.points)
-        case "combined_stress":
-            return statics.combined_stress(of, probe.points)
-        case "reaction":
-            return _reaction(statics, of)[0] * units.force
-        case "reaction_moment":
-            return _reaction(statics, of)[1] * units.moment
-        case "potential_energy":
-            return view.potential_energy
-        case "angle":
-            return stop_angle(view.mechanism, of).value(view.z)
-        case "moment":
-            moment = contact_moment(view, of) if of in view.scene.contacts else stop_moment(view, of)
-            return abs(moment) * units.moment
-        case "force":
-            return contact_force(view, of) * units.force
-        case "centre":
-            return np.array(contact_centre(view, of)) * units.length
-        case "ends":
-            return np.array(contact_ends(view, of)) * units.length
-        case "closing_load":
-            closed = of in view.closing and contact_force(view, of) > 0.0
-            return np.array([view.closing[of]] if closed else [])
-        case _:
-            assert_never(probe.quantity)
+def _value(statics: Statics, probe: Probe) -> ArrayLike:
+    view, of = statics.view, probe.of
+    m, units = view.mechanism, view.mechanism.units
+    values: dict[Quantity, Callable[[], ArrayLike]] = {
+        "displacement": lambda: view.displacement(of) * units.length,
+        "rotation": lambda: m.rotation(of).value(view.z),
+        "bending_stress": lambda: statics.bending_stress(of, probe.points),
+        "combined_stress": lambda: statics.combined_stress(of, probe.points),
+        "reaction": lambda: _reaction(statics, of)[0] * units.force,
+        "reaction_moment": lambda: _reaction(statics, of)[1] * units.moment,
+        "potential_energy": lambda: potential(view.solved.system, view.solved.state) * units.moment,
+        "angle": lambda: stop_angle(m, of).value(view.z),
+        "moment": lambda: abs(_moment(view, of)) * units.moment,
+        "force": lambda: contact_force(view, of) * units.force,
+        "centre": lambda: np.array(contact_centre(view, of)) * units.length,
+        "ends": lambda: np.array(contact_ends(view, of)) * units.length,
+        "closing_load": lambda: [view.closing[of]] if of in view.closing and contact_force(view, of) > 0.0 else [],
+    }
+    return values[probe.quantity]()
 
 
 def _reaction(statics: Statics, of: str) -> tuple[Array, float]:
@@ -71,7 +92,7 @@ def _reaction(statics: Statics, of: str) -> tuple[Array, float]:
             force, moment = force + each.force, moment + each.moment
         elif each.source in view.scene.pins and of in view.scene.pins[each.source].points:
             # a pin between the ground and a body
-            fixed = view.plan.owners[of] not in view.mechanism.bodies
+            fixed = view.scene.body_of(of) not in view.mechanism.bodies
             if fixed and each.target in view.mechanism.bodies:
                 force = force + each.force
     slides = of in view.scene.bodies and not sources - {of}
@@ -80,9 +101,109 @@ def _reaction(statics: Statics, of: str) -> tuple[Array, float]:
 
 def _from_ground(view: View, source: str, target: str) -> bool:
     """True if a force of a source on a target is one of the ground: a held beam, a guide, or a drive."""
-    scene, moving, owners = view.scene, view.mechanism.bodies, view.plan.owners
+    scene, moving, owners = view.scene, view.mechanism.bodies, view.scene.owners
     if source in scene.drives or source == target:
         return True
     if target in scene.beams:
         return source in owners and owners[source] not in moving
     return target in moving and getattr(scene.bodies[target], "about", None) == source and target == owners[source]
+
+
+def contact_force(view: View, contact: str) -> float:
+    """Magnitude of the resultant on the first beam."""
+    return float(np.hypot(*sum((each.forces[0] for each in view.pressed[contact]), NO_FORCE)))
+
+
+def contact_centre(view: View, contact: str) -> list[float]:
+    """Arc length of the resultant on the first beam; empty for an open contact."""
+    found = view.pressed[contact]
+    weights = [float(np.hypot(*each.forces[0])) for each in found]
+    return [float(np.average([each.arcs[0] for each in found], weights=weights))] if sum(weights) > 0.0 else []
+
+
+def _moment(view: View, of: str) -> float:
+    """Moment of a stop on its beam, or of a contact on the beam about the first pin on the edge; else zero."""
+    record = view.scene.contacts.get(of)
+    if record is None:
+        return stop_moment(view, of)
+    if isinstance(record, EdgeContact):
+        for end, joint in zip(END, ends_of(view.scene, record.beam), strict=True):
+            if isinstance(joint, PinnedEnd) and view.scene.body_of(joint.point) == record.body:
+                about = view.end(record.beam, end)[1]
+                held = sum(moment for _, _, moment in pin_moments(view, of))
+                return float(held + sum(cross(each.places[0] - about, each.forces[0]) for each in view.pressed[of]))
+    return 0.0
+
+
+def touching_places(view: View) -> dict[str, Array]:
+    """Positions (k, 2), m, of the closed contacts."""
+    units, found = view.mechanism.units, {}
+    for name, pressed in view.pressed.items():
+        places = [each.surface for each in pressed]
+        places += [view.end(beam, end)[1] for beam, end, _ in pin_moments(view, name)]
+        if places:
+            found[name] = frozen_array(np.array(places) * units.length + units.origin)
+    return found
+
+
+def states_of_contacts(view: View, forces: PointForces, touching: Mapping[str, Array]) -> Mapping[str, ContactState]:
+    """States of all contacts.
+
+    The force of a contact beside a clamp is indeterminate, and beside a moment at an own pin.
+    """
+    units = view.mechanism.units
+    states = contact_states(view.scene.contacts, forces, touching, (units.length, units.force))
+    return {name: replace(state, indeterminate=_is_shared(view, name)) for name, state in states.items()}
+
+
+def _is_shared(view: View, contact: str) -> bool:
+    """True if a joint beside a weld or an own pin takes a part of the force."""
+    found = view.pressed[contact]
+    return any(each.share for each in found) or (bool(found) and any(True for _ in pin_moments(view, contact)))
+
+
+def contact_ends(view: View, contact: str) -> list[float]:
+    """Arc lengths on the first beam at which the first zone begins and the last zone ends; empty without contact."""
+    geometry, found = view.solved.system.geometry, view.pressed[contact]
+    pins = [view.end(beam, end)[0] for beam, end, _ in pin_moments(view, contact)]
+    if not found and not pins:
+        return []
+    heavy = NEGLIGIBLE * max((float(np.hypot(*each.forces[0])) for each in found), default=0.0)
+    found = [each for each in found if np.hypot(*each.forces[0]) >= heavy]
+    arcs = [each.arcs[0] for each in found] + pins
+    low, high = min(arcs), max(arcs)
+    pair = next(k for k, each in enumerate(geometry.pairs) if each.name == contact)
+    of_joints = all(each.on_first or each.moves for each in found) and not geometry.pairs[pair].itself
+    if (len(found) < ZONE and not pins) or not of_joints:
+        return [low, high]
+    length = float(geometry.curves[geometry.pairs[pair].first].arcs[-1])
+    clamps = [0.0 if each.share > 0 else length for each in found if each.share]
+    begin, end = min([low, *clamps]), max([high, *clamps])
+    held = [*pins, *clamps, *(each.arcs[0] for each in found if each.moves)]
+    return [
+        begin if begin in held else _zone_end(view, geometry, pair, low, sense=-1.0),
+        end if end in held else _zone_end(view, geometry, pair, high, sense=1.0),
+    ]
+
+
+def _zone_end(view: View, geometry: Geometry, pair: int, outermost: float, *, sense: float) -> float:
+    """e beyond the ``outermost`` force, in the ``sense`` of growing or falling arc lengths."""
+    contacts = view.solved.state.contacts
+    places = contacts.places
+    mine = (places.pair == pair) & (places.curve == geometry.pairs[pair].first) & ~places.moves & ~contacts.closed
+    arcs = geometry.arrays.arc[places.piece] + places.xi * geometry.arrays.span[places.piece]
+    span = float(geometry.arrays.span[places.piece].max())
+    beyond = np.flatnonzero(mine & (sense * (arcs - outermost) > 0.25 * span))
+    joints = beyond[np.argsort(sense * arcs[beyond])][SMEARED - 1 : SMEARED - 1 + JOINTS]
+    s, g = arcs[joints], view.solved.gaps[joints]
+    if len(joints) < JOINTS or not np.all(np.isfinite(g)):
+        return outermost
+    # g″ of a cubic through three joints each, and the places, the means of the joints
+    slopes = np.diff(g) / np.diff(s)
+    parting, at = np.diff(slopes) / (0.5 * (s[2:] - s[:-2])), (s[2:] + s[1:-1] + s[:-2]) / 3.0
+    if not np.all(np.diff(parting, prepend=0.0) > 0.0):
+        return outermost
+    # s as a polynomial of g″, at zero (Lagrange)
+    weights = [np.prod([other / (other - own) for other in np.delete(parting, i)]) for i, own in enumerate(parting)]
+    end = float(np.dot(weights, at))
+    return end if abs(end - outermost) <= FARTHEST * span else outermost

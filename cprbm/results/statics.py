@@ -1,4 +1,7 @@
-"""Internal forces of a beam, from the forces on the part before a cut.
+"""Forces of joints, slides, pivots, drives, pins, stops and contacts, and the internal forces of beams.
+
+A row of the form f exerts −μ ∂f/∂z.  The internal forces follow from the forces on the part before a cut.
+Forces are in the mechanism's units here.
 
 =======  ====================================================================================
 symbol   meaning
@@ -19,14 +22,137 @@ With shear α differs from θ by the angle of (1 + N/EA, Q/GA_s); in the other t
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
+from math import nan
 from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.results.forces import all_forces
+from cprbm.chain.mechanism import AXES
+from cprbm.chain.rows import END, ends_of, unit_direction
+from cprbm.contact import Geometry
+from cprbm.equilibrium.columns import contact_terms
 from cprbm.results.view import View
+from cprbm_scene import BeamContact, FreeEnd
 from cprbm_scene.answer import Array, BeamState, PointForce, frozen_array
-from cprbm_scene.statement import BeamForce, BeamMoment, DistributedLoad
+from cprbm_scene.statement import (
+    BeamForce,
+    BeamMoment,
+    DisplacementDrive,
+    DistributedLoad,
+    SlidingBody,
+    TurningBody,
+)
+
+NO_FORCE = np.zeros(2)
+
+
+def all_forces(view: View) -> Iterator[PointForce]:
+    """Forces on beams and on bodies, fixed bodies included; loads excluded."""
+    for forces in (_joints, _guides, _drives, _pins, _stops, _contacts):
+        yield from forces(view)
+
+
+def stop_moment(view: View, name: str) -> float:
+    """Moment of a stop on its beam."""
+    return view.multipliers.get(f"{name}.most", 0.0) - view.multipliers.get(f"{name}.least", 0.0)
+
+
+def pin_moments(view: View, contact: str) -> Iterator[tuple[str, str, float]]:
+    """Moments of a contact on ends pinned on the edge: names of the beam and the end, moment."""
+    rows = view.mechanism.rows
+    for row, mu in zip(rows, view.z[len(view.z) - len(rows) :].tolist(), strict=True):
+        if row.name == f"{contact}.pin" and mu != 0.0:
+            beam, turning = view.scene.contacts[contact].beams[0], dict(row.form.linear)
+            for end, index in zip(END, view.mechanism.beam_angles(beam)[[0, -1]].tolist(), strict=True):
+                if index in turning:
+                    yield beam, end, -mu * turning[index]
+
+
+def _pull(view: View, row: str) -> Array:
+    """Force (2,) on the first part of a joint or a pin, by its rows for x and y."""
+    return -np.array([view.multipliers[f"{row}.{axis}"] for axis, _ in AXES])
+
+
+def _joints(view: View) -> Iterator[PointForce]:
+    for beam in view.scene.beams:
+        for end, record in zip(END, ends_of(view.scene, beam), strict=True):
+            if not isinstance(record, FreeEnd):
+                joint = f"{beam}@{end}"
+                moment = -view.multipliers.get(f"{joint}.turn", 0.0)
+                yield from _at_end(view, record.point, beam, end, _pull(view, joint), moment)
+
+
+def _at_end(view: View, source: str, beam: str, end: str, force: Array, moment: float) -> Iterator[PointForce]:
+    """Force and moment on a beam's end, and the same with the opposite sign on the body of the end's point."""
+    joint = ends_of(view.scene, beam)[END.index(end)]
+    assert not isinstance(joint, FreeEnd)
+    s, place = view.end(beam, end)
+    yield PointForce(source, beam, s, place, force, moment)
+    yield PointForce(source, view.scene.body_of(joint.point), nan, place, -force, -moment)
+
+
+def _guides(view: View) -> Iterator[PointForce]:
+    for name, body in view.scene.bodies.items():
+        if isinstance(body, TurningBody):
+            yield PointForce(body.about, name, nan, view.place(body.about), _pull(view, f"{name}.pivot"), 0.0)
+        elif isinstance(body, SlidingBody):
+            along, place = unit_direction(body.along), view.place(body.pin or next(iter(body.points)))
+            force = -view.multipliers[f"{name}.slide"] * np.array([-along[1], along[0]])
+            yield PointForce(name, name, nan, place, force, -view.multipliers.get(f"{name}.level", 0.0))
+
+
+def _drives(view: View) -> Iterator[PointForce]:
+    for name, drive in view.scene.drives.items():
+        if isinstance(drive, DisplacementDrive):
+            force = -view.multipliers[name] * np.array(unit_direction(drive.direction))
+            yield PointForce(name, view.scene.body_of(drive.point), nan, view.place(drive.point), force, 0.0)
+        else:
+            place = view.place(next(iter(view.scene.bodies[drive.body].points)))
+            yield PointForce(name, drive.body, nan, place, NO_FORCE, -view.multipliers[name])
+
+
+def _pins(view: View) -> Iterator[PointForce]:
+    for name, pin in view.scene.pins.items():
+        for point, sign in zip(pin.points, (1.0, -1.0), strict=True):
+            yield PointForce(name, view.scene.body_of(point), nan, view.place(point), sign * _pull(view, name), 0.0)
+
+
+def _stops(view: View) -> Iterator[PointForce]:
+    for name, stop in view.scene.stops.items():
+        if stop_moment(view, name) != 0.0:
+            yield from _at_end(view, name, stop.beam, stop.end, NO_FORCE, stop_moment(view, name))
+
+
+def _contacts(view: View) -> Iterator[PointForce]:
+    """Forces of all contacts on beams and bodies, and moments at own pins."""
+    geometry = view.solved.system.geometry
+    for name, contact in view.scene.contacts.items():
+        if geometry.law is not None and isinstance(contact, BeamContact):
+            yield from _spread_forces(view, name, geometry)
+            continue
+        targets = (contact.beams[0], getattr(contact, "body", contact.beams[-1]))
+        for each in view.pressed[name]:
+            for target, s, place, force in zip(targets, each.arcs, each.places, each.forces, strict=True):
+                yield PointForce(name, target, s if target in view.scene.beams else nan, place, force, 0.0)
+        for beam, end, moment in pin_moments(view, name):
+            yield from _at_end(view, name, beam, end, NO_FORCE, moment)
+
+
+def _spread_forces(view: View, contact: str, geometry: Geometry) -> Iterator[PointForce]:
+    """Forces on nodes and moments on links of both beams of a contact that a law measures."""
+    contacts = view.solved.state.contacts
+    pair = next(k for k, each in enumerate(geometry.pairs) if each.name == contact)
+    pull = contact_terms(geometry, view.z, contacts.places, contacts.pressing(pair))[1]
+    for beam in view.scene.contacts[contact].beams:
+        arcs, places = view.mechanism.chains[beam].arcs, view.nodes(beam)
+        nodes, angles = view.mechanism.beam_nodes(beam), view.mechanism.beam_angles(beam)
+        forces = -pull[np.column_stack([nodes, nodes + 1])]
+        for node in np.flatnonzero(forces.any(axis=1)).tolist():
+            yield PointForce(contact, beam, float(arcs[node]), places[node], forces[node], 0.0)
+        for link in np.flatnonzero(pull[angles]).tolist():
+            s, place = 0.5 * (arcs[link] + arcs[link + 1]), 0.5 * (places[link] + places[link + 1])
+            yield PointForce(contact, beam, float(s), place, NO_FORCE, -float(pull[angles[link]]))
 
 
 class Cuts(NamedTuple):
@@ -48,22 +174,17 @@ class Statics:
     Attributes:
         view: the state.
         forces: on beams and on bodies, fixed bodies included; loads excluded.
+        cuts: function from a beam's name to the cuts at the samples.
     """
 
     def __init__(self, view: View) -> None:
         self.view = view
         self.forces = tuple(all_forces(view))
-        self._cuts = dict[str, Cuts]()
-
-    def cuts(self, beam: str) -> Cuts:
-        """Cuts of a beam at its samples."""
-        if beam not in self._cuts:
-            self._cuts[beam] = self._cut(beam)
-        return self._cuts[beam]
+        self.cuts = cache(self._cuts)
 
     def state(self, beam: str) -> BeamState:
         """Internal forces at the start, the joints and the end of a beam, SI."""
-        units, samples, cuts = self.view.mechanism.units, self.view.plan.samples[beam], self.cuts(beam)
+        units, samples, cuts = self.view.mechanism.units, self.view.samples[beam], self.cuts(beam)
         at, chain = samples.nodes, samples.chain
         columns = (
             chain.arcs * units.length,
@@ -79,32 +200,31 @@ class Statics:
 
     def bending_stress(self, beam: str, points: int) -> Array:
         """Signed stress (points,) of bending at equal steps of the arc length, Pa."""
-        samples, units = self.view.plan.samples[beam], self.view.mechanism.units
+        samples, units = self.view.samples[beam], self.view.mechanism.units
         at = samples.of_probe[points]
         return np.asarray(samples.stress[at] * self.cuts(beam).M[at] * units.moment / units.length**3)
 
     def combined_stress(self, beam: str, points: int) -> Array:
         """Largest magnitude (points,) of the stress of bending and normal force together, Pa."""
-        samples, units = self.view.plan.samples[beam], self.view.mechanism.units
+        samples, units = self.view.samples[beam], self.view.mechanism.units
         at = samples.of_probe[points]
         normal = np.abs(self.cuts(beam).N[at] / samples.area[at]) * units.force / units.length**2
         return np.asarray(np.abs(self.bending_stress(beam, points)) + normal)
 
-    def _cut(self, beam: str) -> Cuts:
-        view, samples, units = self.view, self.view.plan.samples[beam], self.view.mechanism.units
+    def _cuts(self, beam: str) -> Cuts:
+        view, samples, units = self.view, self.view.samples[beam], self.view.mechanism.units
         s, places, length = samples.s[:, None], view.lines[beam], samples.chain.length
         acting = [each for each in (*self.forces, *_point_loads(view, beam)) if each.target == beam]
         n, M = np.zeros((len(s), 2)), np.zeros(len(s))
         if acting:
             _, _, at, where, force, moment = map(np.array, zip(*acting, strict=True))
             before = (s >= at) & ((s < length) | (at < length))
-            n, M = -(before @ force), -(before * (_cross(where - places[:, None], force) + moment)).sum(axis=1)
+            n, M = -(before @ force), -(before * (cross(where - places[:, None], force) + moment)).sum(axis=1)
         for name, load in view.scene.loads.items():
             if isinstance(load, DistributedLoad) and load.beam == beam:
                 span, integral = self._carried(load)
-                q = view.loads.get(name, 0.0) * np.array(load.direction) / np.hypot(*load.direction)
-                q *= units.length / units.force
-                n, M = n - span[:, None] * q, M - _cross(integral - span[:, None] * places, q)
+                q = view.loads.get(name, 0.0) * units.length / units.force * np.array(unit_direction(load.direction))
+                n, M = n - span[:, None] * q, M - cross(integral - span[:, None] * places, q)
         section = view.angles(beam)
         angle = section
         if view.scene.theory == "shear":
@@ -114,11 +234,12 @@ class Statics:
 
     def _carried(self, load: DistributedLoad) -> tuple[Array, Array]:
         """Length (k,) of a distributed load before the cuts, and the integral (k, 2) of the position there."""
-        samples = self.view.plan.samples[load.beam]
+        samples = self.view.samples[load.beam]
         begin, end = (fraction * samples.chain.length for fraction in load.along)
-        until = np.clip(samples.s, begin, end)
-        integral = samples.chain.line.integral(self.view.nodes(load.beam), np.append(until, begin))
-        return until - begin, integral[:-1] - integral[-1]
+        until, chain = np.clip(samples.s, begin, end), samples.chain
+        places = np.unique([begin, *until, *chain.arcs[(chain.arcs > begin) & (chain.arcs < end)]])
+        integral = np.cumsum(chain.line.integrals(places) @ self.view.nodes(load.beam), axis=0)
+        return until - begin, np.concatenate([np.zeros((1, 2)), integral])[np.searchsorted(places, until)]
 
 
 def _point_loads(view: View, beam: str) -> Iterator[PointForce]:
@@ -128,12 +249,12 @@ def _point_loads(view: View, beam: str) -> Iterator[PointForce]:
         value = view.loads.get(name, 0.0)
         if value == 0.0 or not isinstance(load, BeamForce | BeamMoment) or load.beam != beam:
             continue
-        at = load.at * view.chain(beam).length
-        place = view.chain(beam).line.place(view.nodes(beam), np.array([at]))[0]
+        at, line = load.at * view.mechanism.chains[beam].length, view.mechanism.chains[beam].line
+        place = (line.weights(np.array([at])) @ view.nodes(beam))[0]
         if isinstance(load, BeamMoment):
             yield PointForce(name, beam, at, place, np.zeros(2), value / units.moment)
         else:
-            force = value / units.force * np.array(load.direction) / np.hypot(*load.direction)
+            force = value / units.force * np.array(unit_direction(load.direction))
             yield PointForce(name, beam, at, place, force, 0.0)
 
 
@@ -143,6 +264,6 @@ def _turned(n: Array, angle: Array) -> tuple[Array, Array]:
     return cos * n[:, 0] + sin * n[:, 1], cos * n[:, 1] - sin * n[:, 0]
 
 
-def _cross(arms: Array, force: Array) -> Array:
+def cross(arms: Array, force: Array) -> Array:
     """Moments (...) of forces (..., 2) at the ``arms`` (..., 2)."""
     return np.asarray(arms[..., 0] * force[..., 1] - arms[..., 1] * force[..., 0])

@@ -17,10 +17,9 @@ from cprbm.equilibrium.solving import equilibrium
 from cprbm.equilibrium.system import System, system_of
 from cprbm.paper.contacts import paper_geometry, refuse_contacts
 from cprbm.paper.inspection import Inspection
-from cprbm.results.contacts import states_of_contacts, touching_places
-from cprbm.results.probes import probe_values
+from cprbm.results.probes import probe_values, states_of_contacts, touching_places
 from cprbm.results.statics import Statics
-from cprbm.results.view import Plan, View
+from cprbm.results.view import Samples, View
 from cprbm.settings import Settings
 from cprbm_scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Scene, Shape, Stage, StationAnswer
 from cprbm_scene.answer import PointForces, frozen_array
@@ -79,7 +78,7 @@ class Run:
             refuse_contacts(self.scene)
             every, geometry = geometry, paper_geometry(mechanism, geometry, self.settings.degree)
             self.inspection = Inspection(mechanism, every)
-        self.plan = Plan(mechanism)
+        self.samples = {beam: Samples(mechanism, beam) for beam in mechanism.chains}
         return system_of(mechanism, geometry)
 
     def answer(self) -> Answer:
@@ -134,14 +133,15 @@ class Run:
             StepError: the drives contradict other rows.
         """
         m, state = self.system.mechanism, driver.solved.state
-        begun = [
-            name for name, drive in self.scene.drives.items() if drive.begins == stage.name and name not in self.values
-        ]
+        begun = {
+            name: m.row(name)
+            for name, drive in self.scene.drives.items()
+            if drive.begins == stage.name and name not in self.values
+        }
         if not begun:
             return
         driven, target = state.driven.copy(), state.target.copy()
-        for name in begun:
-            row = m.row(name)
+        for name, row in begun.items():
             driven[row], target[row] = True, driver.solved.values[row]
             self.values[name] = float(target[row]) / m.rows[row].unit
         held = without_repeated(self.system, replace(state, driven=driven, target=target))
@@ -158,12 +158,10 @@ class Run:
         """
         self._hold_drives(driver, stage)
         mechanism, names = self.system.mechanism, {stage.steps, *stage.together}
-        begin = driver.solved.state.target
-        before = self.values.get(stage.steps, 0.0)
-        end = begin.copy()
+        begin, before = driver.solved.state.target, self.values.get(stage.steps, 0.0)
+        end, driver.spent = begin.copy(), 0
         for row in map(mechanism.row, names):
             end[row] = station * mechanism.rows[row].unit
-        driver.spent = 0
         try:
             driver.follow(Way(begin, end, (before, station), stage.steps), stage.beyond)
         finally:
@@ -174,8 +172,7 @@ class Run:
         if ending is not Ending.COMPLETED:
             raise StepError(ending, certificate.failures[0])
         if self.inspection is not None:
-            crossed = self.inspection.crossed(driver.solved)
-            if crossed:
+            if crossed := self.inspection.crossed(driver.solved):
                 raise StepError(Ending.BEAMS_CROSSED, crossed)
             self.inspection.look(driver.solved, f"{stage.name} {station:.6g}")
         self.stations.append(self._station(driver, stage, station, certificate))
@@ -183,11 +180,9 @@ class Run:
 
     def _note(self, stage: Stage, passed: list[Passed]) -> None:
         """Add the critical points of the way to a station to the answer."""
-        system = self.system
-        unit = system.mechanism.units.moment
+        unit = self.system.mechanism.units.moment
         for each in passed:
-            point = each.point
-            landed = each.landed
+            point, landed = each.point, each.landed
             critical = Critical(
                 stage=stage.name,
                 value=each.value,
@@ -196,15 +191,14 @@ class Run:
                 what=point.what,
                 curvature=point.curvature,
                 left=point.left,
-                energy=potential(system, point.last.state) * unit,
+                energy=potential(self.system, point.last.state) * unit,
                 after=None if each.after is None else each.after * unit,
             )
             if landed is not None and stage.beyond is None:
                 self.gone_over.append(GoneOver(critical, turned(point.last, landed)))
-                where = f"{point.sentence} at {stage.steps} = {each.value:.6g}"
                 self.notes.append(
-                    f"the branch ends, {where}, and was left for the state beside it to which the decrease of the "
-                    "energy leads"
+                    f"the branch ends, {point.sentence} at {stage.steps} = {each.value:.6g}, and was left for the "
+                    "state beside it to which the decrease of the energy leads"
                 )
             else:
                 self.critical.append(critical)
@@ -218,11 +212,10 @@ class Run:
 
     def _station(self, driver: Driver, stage: Stage, station: float, certificate: Certificate) -> StationAnswer:
         """Answer at a station."""
-        view = View(driver.solved, self.plan, dict(self.values), self.closing)
+        view = View(driver.solved, self.samples, dict(self.values), self.closing)
         units, statics = self.system.mechanism.units, Statics(view)
-        touching = touching_places(view)
         # the paper's contacts press on joints and turn links: no places of the line carry the forces
-        told = self.inspection is None
+        touching, told = touching_places(view), self.inspection is None
         parts = self.system.mechanism.bodies.keys() | self.scene.beams.keys()
         forces = PointForces.collected(
             (force for force in statics.forces if told and force.target in parts),
@@ -250,6 +243,6 @@ class Run:
 
 def _shape(view: View, beam: str) -> Shape:
     """Deformed neutral line, m."""
-    units, samples = view.mechanism.units, view.plan.samples[beam]
+    units, samples = view.mechanism.units, view.samples[beam]
     places = view.lines[beam][samples.shape] * units.length + units.origin
     return Shape(*map(frozen_array, (samples.s[samples.shape] * units.length, *places.T)))

@@ -3,27 +3,24 @@
 =======  ====================================================================================
 symbol   meaning
 =======  ====================================================================================
-q, φ     displacement of a moving body's first point, rotation of the body
-X₀, X    this point and another point of the body at rest; a = X − X₀
 F, N     force of a closed place, unit normal from the foot to the place
 C_A, C_B place on the first curve of a row, foot on the second; F N acts at C_A, −F N at C_B
 =======  ====================================================================================
 
-The point X moves by q + (R(φ) − 1) a.  The :class:`Plan` holds what is the same at all stations.
+The :class:`Samples` are the same at all stations.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.chain import BeamChain, Mechanism, hidden_angles
+from cprbm.chain import Mechanism, hidden_angles
+from cprbm.chain.mechanism import AXES
 from cprbm.contact import STENCIL, gap_frame
-from cprbm.continuation.path import potential
 from cprbm.equilibrium.sharing import shared_multipliers
 from cprbm.equilibrium.solving import Solved
 from cprbm.equilibrium.system import hidden_forces
@@ -53,17 +50,16 @@ class Samples:
     def __init__(self, m: Mechanism, beam: str) -> None:
         self.chain = chain = m.chains[beam]
         count = LINE_POINTS * chain.links + 1
-        self.shape, self.nodes, self.of_probe = slice(count), slice(0, count, LINE_POINTS), dict[int, slice]()
-        parts = [np.interp(np.arange(count) / LINE_POINTS, np.arange(chain.links + 1), chain.arcs)]
+        self.shape, self.nodes = slice(count), slice(0, count, LINE_POINTS)
+        line = np.interp(np.arange(count) / LINE_POINTS, np.arange(chain.links + 1), chain.arcs)
         stresses = (probe for probe in m.scene.probes if probe.of == beam and probe.quantity.endswith("stress"))
-        for points in {probe.points for probe in stresses}:
-            self.of_probe[points] = slice(count, count + points)
-            parts.append(np.linspace(0.0, chain.length, points))
-            count += points
-        self.s = s = np.concatenate(parts)
+        points = sorted({probe.points for probe in stresses})
+        ends = count + np.cumsum(points, dtype=np.int64)
+        self.of_probe = {size: slice(end - size, end) for size, end in zip(points, ends.tolist(), strict=True)}
+        self.s = s = np.concatenate([line, *(np.linspace(0.0, chain.length, size) for size in points)])
         self.line, self.rest = chain.line.weights(s), chain.rest_angle(s)
         self.links, self.weights = chain.angle_weights(s)
-        self.hidden = np.zeros((len(m.rows), count))
+        self.hidden = np.zeros((len(m.rows), len(s)))
         for number, row in enumerate(m.rows):
             if row.unit_load is not None and row.unit_load.beam == beam:
                 self.hidden[number] = hidden_angles(chain, s, row.unit_load)
@@ -73,26 +69,6 @@ class Samples:
         self.stress = 0.5 * section.young * section.thickness(s) / section.rigidity(s)
 
 
-class Plan:
-    """What results read from a mechanism.
-
-    Attributes:
-        samples: by beam.
-        owners: bodies by their points.
-        points: by name the index of the body's first unknown, −1 of a fixed body, and X and a, (2,).
-        numbers: of the rows by name.
-    """
-
-    def __init__(self, m: Mechanism) -> None:
-        self.samples = {beam: Samples(m, beam) for beam in m.chains}
-        self.owners = m.scene.owners
-        self.points = dict[str, tuple[int, Array, Array]]()
-        for point, body in self.owners.items():
-            place = m.units.place(m.scene.bodies[body].points[point])
-            self.points[point] = m.bodies.get(body, -1), place, place - m.reference(body)
-        self.numbers = {row.name: number for number, row in enumerate(m.rows)}
-
-
 class Pressed(NamedTuple):
     """A closed place, in units: ``arcs`` on both curves of the pair, ``places`` and ``forces`` there.
 
@@ -100,9 +76,9 @@ class Pressed(NamedTuple):
     ``share`` is the offset of the place with the same force, beside a weld; ``on_first``: on the pair's first curve.
     """
 
-    arcs: tuple[float, float]
-    places: tuple[Array, Array]
-    forces: tuple[Array, Array]
+    arcs: tuple[float, ...]
+    places: tuple[Array, ...]
+    forces: tuple[Array, ...]
     surface: Array
     moves: bool
     share: int
@@ -115,13 +91,13 @@ class View:
 
     Attributes:
         solved: the state.
-        plan: of the mechanism.
+        samples: of the mechanism's beams.
         loads: values (SI) of all loads.
         closing: values (SI) of loads or drives at which contacts first closed.
     """
 
     solved: Solved
-    plan: Plan
+    samples: dict[str, Samples]
     loads: dict[str, float]
     closing: dict[str, float] = field(default_factory=dict)
 
@@ -140,10 +116,6 @@ class View:
         """Unknowns, with the forces of repeated rows."""
         return shared_multipliers(self.solved)
 
-    def chain(self, beam: str) -> BeamChain:
-        """Chain of a beam."""
-        return self.mechanism.chains[beam]
-
     def nodes(self, beam: str) -> Array:
         """Positions (N + 2, 2) of a beam's nodes, in units."""
         return np.asarray(self.z[self.mechanism.beam_nodes(beam)[:, None] + [0, 1]])
@@ -151,45 +123,33 @@ class View:
     @cached_property
     def lines(self) -> dict[str, Array]:
         """Positions (k, 2) of the samples of all beams, in units."""
-        return {beam: samples.line @ self.nodes(beam) for beam, samples in self.plan.samples.items()}
+        return {beam: samples.line @ self.nodes(beam) for beam, samples in self.samples.items()}
 
     def angles(self, beam: str) -> Array:
         """Angles (k,) of the sections at a beam's samples, with the flexibility beside loads at places of the beam."""
-        samples = self.plan.samples[beam]
+        samples = self.samples[beam]
         turns = self.z[self.mechanism.beam_angles(beam)] - samples.chain.link_angle
         turned = (samples.weights * turns[samples.links]).sum(axis=1)
         return np.asarray(samples.rest + turned - self._hidden_forces @ samples.hidden)
 
-    def multiplier(self, row: str) -> float:
-        """μ of a row; zero without such a row."""
-        number = self.plan.numbers.get(row)
-        return 0.0 if number is None else float(self.z[self.solved.system.rows.first + number])
+    @cached_property
+    def multipliers(self) -> dict[str, float]:
+        """μ of all rows by name."""
+        rows = self.mechanism.rows
+        return {row.name: mu for row, mu in zip(rows, self.z[len(self.z) - len(rows) :].tolist(), strict=True)}
 
     def displacement(self, point: str) -> Array:
         """Displacement (2,) of a named point, in units."""
-        body, _, arm = self.plan.points[point]
-        if body < 0:
-            return np.zeros(2)
-        x, y, phi = self.z[body : body + 3]
-        less, sine = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
-        return np.array([x + less * arm[0] - sine * arm[1], y + less * arm[1] + sine * arm[0]])
+        return np.array([self.mechanism.displacement(point, direction).value(self.z) for _, direction in AXES])
 
     def place(self, point: str) -> Array:
         """Position (2,) of a named point, in units."""
-        return np.asarray(self.plan.points[point][1] + self.displacement(point))
-
-    def rotation(self, body: str) -> float:
-        """Rotation of a body, rad."""
-        index = self.mechanism.bodies.get(body)
-        return 0.0 if index is None else float(self.z[index + 2])
+        return np.array([self.mechanism.point(point, direction).value(self.z) for _, direction in AXES])
 
     def end(self, beam: str, end: str) -> tuple[float, Array]:
         """Arc length and position of a beam's end, in units."""
-        chain, start = self.chain(beam), self.mechanism.starts[beam]
-        if end == "start":
-            return 0.0, self.z[start : start + 2]
-        last = int(self.mechanism.beam_nodes(beam)[-1])
-        return chain.length, self.z[last : last + 2]
+        chain, at = self.mechanism.chains[beam], 0 if end == "start" else -1
+        return float(chain.arcs[at]), self.nodes(beam)[at]
 
     @cached_property
     def _hidden_forces(self) -> Array:
@@ -198,23 +158,11 @@ class View:
         return hidden_forces(system, self.z, self.z[system.rows.first :])
 
     @cached_property
-    def potential_energy(self) -> float:
-        """Potential energy, J."""
-        return potential(self.solved.system, self.solved.state) * self.mechanism.units.moment
-
-    @cached_property
     def pressed(self) -> dict[str, list[Pressed]]:
         """Closed places of all contacts, ascending along the first beam."""
-        found: dict[str, list[Pressed]] = {name: [] for name in self.scene.contacts}
-        for name, each in self._closed_places():
-            found[name].append(each)
-        return {name: sorted(places, key=lambda each: each.arcs[0]) for name, places in found.items()}
-
-    def _closed_places(self) -> Iterator[tuple[str, Pressed]]:
         geometry, contacts, z = self.solved.system.geometry, self.solved.state.contacts, self.z
         arrays, places, law = geometry.arrays, contacts.places, geometry.law
-        by_law = None if law is None else law.measures(places)
-        weights = np.empty((4, 2, STENCIL))
+        weights, found = np.empty((4, 2, STENCIL)), {name: list[Pressed]() for name in self.scene.contacts}
         for k in np.flatnonzero(contacts.closed).tolist():
             frame, pair = gap_frame(z, arrays, places, k, weights), geometry.pairs[places.pair[k]]
             pieces, params = np.array([places.piece[k], places.foot[k]]), np.array([places.xi[k], places.eta[k]])
@@ -222,22 +170,15 @@ class View:
             along = ((weights[:2, 0] + 1j * weights[:2, 1]) * (z[nodes] + 1j * z[nodes + 1])).sum(axis=1)
             at = np.column_stack([along.real, along.imag])
             force = float(places.force[k]) * normal
-            if law is not None and by_law is not None and by_law[k]:
+            if law is not None and law.measures(places)[k]:
                 force = law.force(z, places, k)
                 normal = force / np.hypot(*force) if force.any() else normal
             surface = at[0] - normal * (arrays.thickness[pieces[0]] + params[0] * arrays.thickening[pieces[0]])
-            first, second = (arrays.arc[pieces] + params * arrays.span[pieces]).tolist()
+            arcs = (arrays.arc[pieces] + params * arrays.span[pieces]).tolist()
             on_first = bool(places.curve[k] == pair.first)
-            found = Pressed(
-                (first, second),
-                (at[0], at[1]),
-                (force, -force),
-                surface,
-                bool(places.moves[k]),
-                int(places.shares[k]),
-                on_first,
-            )
             # of a beam with itself the smaller arc length counts as the first
-            if first > second if places.curve[k] == places.other[k] else not on_first:
-                found = found._replace(arcs=(second, first), places=(at[1], at[0]), forces=(-force, force))
-            yield pair.name, found
+            backward = arcs[0] > arcs[1] if places.curve[k] == places.other[k] else not on_first
+            way = slice(None, None, -1 if backward else 1)
+            both = tuple(arcs[way]), tuple(at[way]), tuple(np.array([force, -force])[way])
+            found[pair.name].append(Pressed(*both, surface, bool(places.moves[k]), int(places.shares[k]), on_first))
+        return {name: sorted(pressed, key=lambda each: each.arcs[0]) for name, pressed in found.items()}

@@ -97,7 +97,8 @@ def test_values_are_those_of_the_cprbm_and_slopes_their_differences(case, seed):
         )
         if formulas.problem.fitted or formulas.problem.circles:
             order = np.argsort(
-                ~np.isin(places.pair, system.geometry.law.pairs) if system.geometry.law else places.pair, kind="stable"
+                ~np.isin(places.pair, list(system.geometry.law.boundaries)) if system.geometry.law else places.pair,
+                kind="stable",
             )
             assert formulas.contact(z) == pytest.approx(-gaps[order], abs=1e-12)
     step, directions = 1e-6, np.random.default_rng(seed).standard_normal((4, formulas.size))

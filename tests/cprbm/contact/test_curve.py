@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from cprbm.chain import add_rows, mechanism_of
+from cprbm.chain.spline import lost_compliance
 from cprbm.contact import Frames, beam_curve, contact_geometry
-from cprbm.contact.compliance import lost_compliance
 from cprbm_scene.curve_records import shape_of
 from tests.cprbm.contact.workshop import at, mechanism, random_state
 

@@ -1,6 +1,7 @@
 """The line on standard error when kernels are compiled."""
 
 import logging
+import pickle
 
 import numba
 import pytest
@@ -49,4 +50,15 @@ def test_the_compilation_of_another_program_is_not_mentioned(caplog):
 
 def test_stored_machine_code_is_out_of_date_once_any_module_with_kernels_changes():
     """Numba's index of a kernel holds the stamp of all modules, not of the kernel's module alone."""
-    assert strain_energy._cache._cache_file._source_stamp == STAMP
+    assert strain_energy._cache._cache_file._version == f"{numba.__version__} {STAMP}"
+
+
+def test_an_older_index_that_names_a_class_which_is_gone_is_not_read(tmp_path, monkeypatch):
+    stored = strain_energy._cache._cache_file
+    monkeypatch.setattr(stored, "_index_path", str(tmp_path / "index"))
+    gone = b"ccprbm.chain.kernel\nNoClassOfThisName\n."
+    (tmp_path / "index").write_bytes(pickle.dumps(numba.__version__) + gone)
+    assert stored._load_index() == {}
+    (tmp_path / "index").write_bytes(pickle.dumps(stored._version) + gone)
+    with pytest.raises(AttributeError, match="NoClassOfThisName"):
+        stored._load_index()
