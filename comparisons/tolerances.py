@@ -35,14 +35,14 @@ import numpy as np
 from comparisons.choices import Choices
 from comparisons.executor import Crew
 from comparisons.formats import at_station, percent
-from comparisons.pairing import Solvers, exact_or_why, in_other_theory, paired, with_solid
+from comparisons.pairing import Solvers, in_other_theory, paired, with_solid
 from comparisons.reactions import perturbed_scene
 from comparisons.sentences import problem_sentences
 from comparisons.stations import station_of
 from comparisons.store import AnswerMemory
 from comparisons.verdict.events import Place
 from comparisons.verdict.rows import Row, rows_of
-from comparisons.verdict.runs import Runs, Uncertainties
+from comparisons.verdict.runs import Runs, Uncertainties, runs_of
 from comparisons.verdict.uncertainty import Error, error, limit
 from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer
 from cprbm_scene.answer import Array, PointForces, frozen_array
@@ -294,14 +294,16 @@ class _Search:
     def _worst(self, limits: Limits, paper: Answer | None) -> WorstRow | None:
         """The row with the largest f, of a value in ``paper`` with the distance from ``auto``."""
         reference = self.reference or limits.answer
-        runs = Runs(
-            self.choices.kinematics_of(self.scene),
-            (paper or limits.answer, limits.coarse),
-            (reference, reference),
-            auto=None if paper is None else limits.answer,
-            settled=frozendict({"cprbm": limits.uncertainties}),
-        )
-        fractions = ((row, _fraction(row, limits)) for row in rows_of(self.scene, runs))
+        answers = {
+            "cprbm": paper or limits.answer,
+            "cprbm finer": limits.coarse,
+            "fea": reference,
+            "fea finer": reference,
+        }
+        answers |= {} if paper is None else {"cprbm auto": limits.answer}
+        settled = {"cprbm": limits.uncertainties}
+        runs = Runs(self.scene, self.choices.kinematics_of(self.scene), answers, settled=settled)
+        fractions = ((row, _fraction(row, limits)) for row in rows_of(runs))
         stated = (WorstRow(row.probe.name, *row.where, f) for row, f in fractions if f is not None)
         return max(stated, key=lambda each: each.fraction, default=None)
 
@@ -365,23 +367,18 @@ def runs_within(
     if cprbm.limits is None or fea.limits is None:
         runs = paired(scene, at_last, replace(solvers, solid=None), memory)
     else:
-        driven = perturbed_scene(scene)
-        other, other_absence = in_other_theory(scene, replace(at_last, links=links.n // 2), solvers)
-        known = [(solvers.exact, scene, of_fea.choices)] if solvers.exact and theory == "bending" else []
-        exact, exact_absence = exact_or_why(*memory.answers(known))
-        runs = Runs(
-            theory,
-            (cprbm.answer, cprbm.limits.coarse),
-            (fea.limits.answer, fea.limits.coarse),
-            auto=cprbm.limits.answer if of_cprbm.in_paper else None,
-            other=other,
-            other_absence=other_absence,
-            perturbed=None if driven is None else replace(of_cprbm, scene=driven, reference=None).at(links.n).answer,
-            exact=exact,
-            exact_absence=exact_absence,
-            settled=frozendict({"cprbm": cprbm.limits.uncertainties, "fea": fea.limits.uncertainties}),
-        )
+        results: dict[str, Answer | str] = {"cprbm": cprbm.answer, "cprbm finer": cprbm.limits.coarse}
+        results |= {"fea": fea.limits.answer, "fea finer": fea.limits.coarse}
+        if of_cprbm.in_paper:
+            results["cprbm auto"] = cprbm.limits.answer
+        results |= in_other_theory(scene, replace(at_last, links=links.n // 2), solvers)
+        if (driven := perturbed_scene(scene)) is not None:
+            results["cprbm perturbed"] = replace(of_cprbm, scene=driven, reference=None).at(links.n).answer
+        if solvers.exact and theory == "bending":
+            (results["exact"],) = memory.answers([(solvers.exact, scene, of_fea.choices)])
+        settled = {"cprbm": cprbm.limits.uncertainties, "fea": fea.limits.uncertainties}
+        runs = runs_of(scene, theory, results, settled=settled)
     if solvers.solid is not None:
         solid, of_solid = replace(of_fea, solver="solid", reference=fea.answer if fea.limits else None).run()
-        return replace(runs, solid=tuple(solid.answers.values())), (links, elements, of_solid)
+        return replace(runs, solids=tuple(solid.answers.values())), (links, elements, of_solid)
     return runs, (links, elements)

@@ -76,12 +76,12 @@ def _comparisons(request: Request, questions: Sequence[Question], run: Run, prog
         if isinstance(question, OffsetQuestion):
             yield offset_verdict.compared_offset(question, run.solvers.offset)
         elif pending is not None:
-            yield case.compare(question, pending())
+            yield case.compare(pending())
         else:
             assert request.tol is not None
             with output.status(shown=not request.quiet) as say:
                 runs, searches = runs_within(question, request.choices, request.tol, run.solvers, run.crew, say)
-            yield replace(case.compare(question, runs), tolerances=searches)
+            yield replace(case.compare(runs), tolerances=searches)
 
 
 def _begin(request: Request, questions: Sequence[Question], run: Run, place: int) -> Callable[[], Runs] | None:

@@ -90,10 +90,10 @@ def comparison_records(compared: Comparison) -> list[Plain]:
     """
     scene, records = compared.scene, list[Plain]()
     units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
-    for row, word in zip(compared.rows, compared.verdict.words, strict=True):
+    for row in compared.rows:
         cprbm, fea = (_parts(scene, row.probe, values) for values in (row.cprbm, row.fea))
         where = (scene.name, *row.where, units[row.stage], row.branch, row.probe.name)
-        judged = (row.difference, row.bounds and row.bounds.total, word.value if word else "")
+        judged = (row.difference, row.bounds and row.bounds.total, row.word.value if row.word else "")
         records += [
             dict(zip(_COMPARISON, (*where, *part, row.unit, cprbm.get(part), fea.get(part), *judged), strict=True))
             for part in cprbm | fea

@@ -289,7 +289,7 @@ def contact_figures(compared: Comparison) -> Iterator[Figure]:
     """
     scene, last, lines = compared.scene, compared.rows[-1].where, dict[str, list[Line]]()
     dotted = {**CPRBM, "linestyle": ":", "marker": "o"}
-    for answer, look in ((compared.runs.reference, FEA), (compared.runs.cprbm[0], dotted)):
+    for answer, look in zip(reversed(compared.runs.pair), (FEA, dotted), strict=True):
         forces = sorted(pressing(scene, station_of(answer, *last)), key=lambda at: (at.source, at.target, float(at.s)))
         for pair, found in groupby(forces, key=lambda at: f"{at.source} on {at.target}"):
             s, sizes = np.array([(float(at.s), np.hypot(*at.force)) for at in found]).T

@@ -60,11 +60,12 @@ def comparison_figures(compared: Comparison) -> tuple[Figure, ...]:
     stations, scene, runs = shown_stations(compared), compared.scene, compared.runs
     if not stations:
         return ()
-    names = [rows[0].row.where for rows in stations]
-    answers = {f"FEA ({runs.theory})": runs.reference, "CPRBM": runs.cprbm[0]}
+    names = [rows[0].where for rows in stations]
+    cprbm, fea = runs.pair
+    answers = {f"FEA ({runs.theory})": fea, "CPRBM": cprbm}
     return (
         *(shapes(scene, answers, where) for where in ([names[-1:], names] if len(names) > 1 else [names])),
-        *curve_figures(scene, runs.reference, runs.cprbm[0]),
+        *curve_figures(scene, fea, cprbm),
         *reaction_figures(compared),
         *stress_figures(scene, *(station_of(answer, *names[-1]) for answer in answers.values())),
         *contact_figures(compared),
@@ -87,7 +88,7 @@ def designs_figure(designs: Sequence[Comparison]) -> Figure:
     """Drawing of one comparison, or of the finite elements of several, at the last stations; all have rows."""
     if len(designs) == 1:
         return comparison_figures(designs[0])[0]
-    views = [view_of(each.scene, each.runs.reference.stations[-1]) for each in designs]
+    views = [view_of(each.scene, each.runs.answers["fea"].stations[-1]) for each in designs]
     limits = [bounds_of(each.scene, [view], "moment") for each, view in zip(designs, views, strict=True)]
     low, high = np.min([each.low for each in limits], axis=0), np.max([each.high for each in limits], axis=0)
     with canvas(*_sides(low, high, _SHAPES, (0.9, 1.1))) as drawing:

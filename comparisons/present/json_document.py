@@ -6,7 +6,7 @@ from typing import Any
 
 from comparisons.audit import Audit
 from comparisons.case import Comparison
-from comparisons.opinions import Third, claim_met, claim_of, claimed_difference, contact_model, thirds_of
+from comparisons.opinions import claim_met, claim_of, claimed_difference, contact_model, thirds_of
 from comparisons.present.columns import follow
 from comparisons.quantities import arc_lengths, unit_of
 from comparisons.reactions import WorkEnergyReaction
@@ -23,9 +23,9 @@ from cprbm_scene.statement import STRESSES
 def comparison(compared: Comparison) -> Plain:
     """One case of ``compare``."""
     scene, runs, verdict = compared.scene, compared.runs, compared.verdict
-    answers = {"cprbm": runs.cprbm[0], "fea": runs.reference, "exact": runs.exact}
-    answers["solid"] = None if runs.solid is None else runs.solid[-1]  # its finest mesh
-    judged = zip(compared.rows, verdict.words, verdict.reasons, strict=True)
+    answers = {name: runs.answers[name] for name in ("cprbm", "fea", "exact") if name in runs.answers}
+    if runs.solids:
+        answers["solid"] = runs.solids[-1]  # the finest mesh
     return {
         "case": scene.name,
         "verdict": verdict.word.value,
@@ -36,12 +36,8 @@ def comparison(compared: Comparison) -> Plain:
         "solvers": {
             name: {**solver(answer, compared.audits.get(name)), **_search(compared.tolerances, name)}
             for name, answer in answers.items()
-            if answer is not None
         },
-        "rows": [
-            {**_row(compared, row), "verdict": follow(word, "value"), "reason": follow(why, "value")}
-            for row, word, why in judged
-        ],
+        "rows": [_row(compared, row) for row in compared.rows],
         "critical": [_critical_row(scene, each) for each in compared.criticals],
         "branches": [
             {
@@ -56,7 +52,7 @@ def comparison(compared: Comparison) -> Plain:
             for each in verdict.branches
         ],
         "work_energy": [_reaction(each) for each in compared.reactions],
-        **({} if runs.solid is None else {"solid": [_third(each) for each in thirds_of(compared)]}),
+        **({} if not runs.solids else {"solid": [_third(each) for each in thirds_of(compared)]}),
     }
 
 
@@ -210,12 +206,15 @@ def _row(compared: Comparison, row: Row) -> Plain:
         "scale": row.scale,
         "denominator": row.denominator,
         **_places(scene, row.probe),
+        "verdict": follow(row, "word.value"),
+        "reason": follow(row, "reason.value"),
     }
 
 
-def _third(found: Third) -> Plain:
+def _third(row: Row) -> Plain:
     """A row beside the solid: the extrapolated value, its uncertainty, and distances from it as fractions."""
-    row = found.row
+    found = row.third
+    assert found is not None
     off = {"cprbm": found.cprbm, "fea": found.fea, "other_theory": found.other}
     return {
         "probe": row.probe.name,

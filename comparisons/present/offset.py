@@ -39,10 +39,7 @@ def document(compared: OffsetComparison) -> Plain:
             name: {"ending": "COMPLETED", "seconds": seconds, "settings": {}, "certificate": None}
             for name, seconds in compared.seconds.items()
         },
-        "rows": [
-            {**_row(compared, row), "verdict": word.value if word else None}
-            for row, word in zip(compared.rows, compared.verdict.words, strict=True)
-        ],
+        "rows": [_row(compared, row) for row in compared.rows],
     }
 
 
@@ -59,6 +56,7 @@ def _row(compared: OffsetComparison, row: OffsetRow) -> Plain:
         "pressure": plain(row.pressure),
         "claim": None if claim is None else claim.bound,
         "claim_met": None if claim is None or not np.isfinite(row.difference) else row.difference < claim.bound,
+        "verdict": row.word.value,
     }
 
 

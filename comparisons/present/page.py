@@ -248,16 +248,8 @@ def put_case(
     for section in (Section("", (), tuple(figures), (), name, {"cases": [document_of(compared)]}), *further):
         put_section(own, section)
     if isinstance(compared, Comparison):
-        runs = compared.runs
-        others = {
-            "cprbm paper": runs.paper,
-            "cprbm perturbed": runs.perturbed,
-            "exact": runs.exact,
-            f"cprbm {runs.other_theory}": runs.other,
-        }
-        found = {name: each for name, each in others.items() if each is not None}
-        write(own / "answers.json.gz", packed({**dict(runs.everything()), **found}))
-        write(own / _CONTACT_FORCES, contact_csv(compared.scene, (runs.cprbm[0], runs.reference)))
+        write(own / "answers.json.gz", packed(compared.runs.answers))
+        write(own / _CONTACT_FORCES, contact_csv(compared.scene, compared.runs.pair))
     return case_chapter(compared, figures, further)
 
 

@@ -27,7 +27,7 @@ from comparisons.geometry import length, points
 from comparisons.present.columns import NOTHING, Column
 from comparisons.present.figures import colour_unit, view_title
 from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, names_by_place, view_of
-from comparisons.present.row_tables import BOTH, ERROR, judged_rows, share_columns, value_columns
+from comparisons.present.row_tables import BOTH, ERROR, share_columns, value_columns
 from comparisons.present.strips import Strip
 from comparisons.present.table import with_minus
 from comparisons.stations import complete_stations
@@ -86,7 +86,7 @@ class Stepper:
 def stepper(compared: Comparison) -> Stepper | None:
     """The common stations of both answers; None without a common station."""
     scene, beams = compared.scene, compared.scene.beams
-    cprbm, fea = (complete_stations(scene, answer) for answer in (compared.runs.cprbm[0], compared.runs.reference))
+    cprbm, fea = (complete_stations(scene, answer) for answer in compared.runs.pair)
     common = [where for where in fea if where in cprbm]
     if not common:
         return None
@@ -101,7 +101,7 @@ def stepper(compared: Comparison) -> Stepper | None:
         return np.asarray((places - corner) * (scale, -scale))
 
     names = [probe.name for probe in scene.probes if probe.quantity not in STRESSES]
-    rows = {(at.row.probe.name, *at.row.where): at for at in judged_rows(compared)}
+    rows = {(row.probe.name, *row.where): row for row in compared.rows}
     _, unit_of, *values = value_columns(scene, [*rows.values()], BOTH)
     columns = [*values, *share_columns(ERROR), Column("word", "word.value")]
     units = {name: unit_of.cell(at) for (name, *_), at in rows.items()}

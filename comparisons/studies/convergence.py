@@ -18,7 +18,7 @@ from comparisons.choices import Choices
 from comparisons.executor import Crew
 from comparisons.formats import at_station, percent
 from comparisons.offset_verdict import OffsetRow, compared_offset
-from comparisons.pairing import OffsetConstruction, Solvers, exact_or_why
+from comparisons.pairing import OffsetConstruction, Solvers
 from comparisons.present.canvas import GREY, LINES, canvas, common_legend, finished, logarithmic
 from comparisons.present.columns import Column, Figure, Section, Table, table_of
 from comparisons.sentences import problem_sentences
@@ -29,7 +29,7 @@ from comparisons.studies import convergence_tables as tables
 from comparisons.studies.budget import account_of
 from comparisons.studies.families import Family, Method, Series, critical_families, probe_families, size
 from comparisons.verdict.uncertainty import Limit
-from cprbm_scene import OffsetQuestion, Question, Scene
+from cprbm_scene import Answer, OffsetQuestion, Question, Scene
 from cprbm_scene.offset import FEWEST, MOST
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Convergence:
         scene: the question; sizes: N, ascending; series: answers of both solvers.
         families: in the order of stages, stations and probes; of the CPRBM, then of the finite elements.
         criticals: families of the critical points.
-        exact_absence: why the exact reference covers no station; else empty.
+        exact: the exact answer; None in other theories than ``bending``.
     """
 
     scene: Scene
@@ -60,7 +60,7 @@ class Convergence:
     series: tuple[Series, ...]
     families: tuple[Family, ...]
     criticals: tuple[Family, ...]
-    exact_absence: str = ""
+    exact: Answer | None = None
 
     @property
     def completed(self) -> bool:
@@ -98,14 +98,13 @@ def convergence_of(scene: Scene, sizes: Sequence[int], choices: Choices, solvers
     jobs = [(getattr(solvers, method), scene, choices.of_size(n)) for method, _ in runs for n in sizes]
     known = [] if solvers.exact is None or theory != "bending" else [(solvers.exact, scene, choices)]
     answers = crew.answers([*jobs, *known])
-    exact, absence = exact_or_why(answers.pop() if known else None)
-    series = []
+    exact, series = answers.pop() if known else None, list[Series]()
     for place, (method, variant) in enumerate(runs):
         own = dict(zip(sizes, answers[place * len(sizes) :], strict=False))
         problems = {n: "; ".join(problem_sentences(scene, answer)) for n, answer in own.items()}
         series.append(Series(method, variant, theory, own, {n: why for n, why in problems.items() if why}))
     families, criticals = probe_families(scene, series, exact), critical_families(scene, series)
-    return Convergence(scene, tuple(sizes), tuple(series), tuple(families), tuple(criticals), absence)
+    return Convergence(scene, tuple(sizes), tuple(series), tuple(families), tuple(criticals), exact)
 
 
 def convergence_section(

@@ -152,7 +152,7 @@ def _limits(found: Convergence) -> Table:
             ("probe", "unit", f"CPRBM at {found.shown}", "from its limit", "CPRBM limit", "±", "FEA limit", "±",
              "limits apart", "CPRBM limit from exact", "no limit because"),
             tuple(_limit_row(scene, found.shown, pair) for pair in pairs_of(found.last)),
-            note + (f" No exact values: {found.exact_absence}" if found.exact_absence else ""),
+            note + (f" No exact values: {found.exact.sentence}" if found.exact and not found.exact.stations else ""),
         )
     )  # fmt: skip
 

@@ -130,7 +130,7 @@ class Report:
             found: Comparison | OffsetComparison = compared_offset(question, run.solvers.offset)
         else:
             runs = paired(question, self.choices, run.solvers, run.crew) if pending is None else pending()
-            found = compare(question, runs)
+            found = compare(runs)
             if self.times:
                 further["Run times"] = lambda: _run_times(question, self.timed, run.solvers)
         return found, tuple(_or_refusal(heading, section) for heading, section in further.items())

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -31,7 +32,7 @@ from comparisons.verdict.calibration import true_errors
 from comparisons.verdict.events import MIRRORED, PASSED, Place
 from comparisons.verdict.point_forces import resultant
 from comparisons.verdict.rows import ROUND_OFF, Row
-from comparisons.verdict.runs import SOLVERS, RunsTable
+from comparisons.verdict.runs import SOLVERS, Runs
 from cprbm_scene import Scene
 
 Judged = tuple[Word | None, Reason | None]
@@ -41,15 +42,16 @@ RESOLVABLE = frozenset({Reason.COARSE, Reason.EVENT})
 """Reasons that a finer mesh or another station removes."""
 
 
-def judge_rows(table: RunsTable, rows: Sequence[Row]) -> list[Judged]:
-    """Word and reason of every row; no word where a row takes no part."""
-    notable = {row.where for row in rows if row.events.contradictory and _is_notable(table, row)}
-    return [_judge(table, row, faint=row.where not in notable) for row in rows]
+def judge_rows(runs: Runs, rows: Sequence[Row]) -> tuple[Row, ...]:
+    """The rows with words and reasons; no word where a row takes no part."""
+    notable = {row.where for row in rows if row.events.contradictory and _is_notable(runs, row)}
+    judged = ((row, *_judge(runs, row, faint=row.where not in notable)) for row in rows)
+    return tuple(replace(row, word=word, reason=reason) for row, word, reason in judged)
 
 
-def _judge(table: RunsTable, row: Row, *, faint: bool) -> Judged:
+def _judge(runs: Runs, row: Row, *, faint: bool) -> Judged:
     """Word and reason of a row; ``faint`` tells that a contact in one solver only has no notable effect."""
-    scene, bounds = table.scene, row.bounds
+    scene, bounds = runs.scene, row.bounds
     if row.place is Place.BETWEEN:
         return None, None
     if row.absent or (row.exact is not None and row.exact.shape != row.fea.shape):
@@ -59,9 +61,9 @@ def _judge(table: RunsTable, row: Row, *, faint: bool) -> Judged:
     if any(each.pressure > 1.0 for each in true_errors(row)):
         return Word.DIFFER, Reason.EXACT
     if row.difference > bounds.total:
-        return _contradiction(table, row, faint=faint)
+        return _contradiction(runs, row, faint=faint)
     limit = scene.limit(row.probe) * row.scale
-    by_theory = table.runs.theory == "bending" and row.theory > limit
+    by_theory = runs.theory == "bending" and row.theory > limit
     if bounds.total <= limit and not by_theory:
         return Word.AGREE, None
     if row.shared is not None:
@@ -71,15 +73,15 @@ def _judge(table: RunsTable, row: Row, *, faint: bool) -> Judged:
     return Word.UNDECIDED, Reason.COARSE if bounds.total > limit else Reason.THEORY
 
 
-def judge_case(rows: Sequence[Row], judged: Sequence[Judged]) -> tuple[Word, Reason | None]:
+def judge_case(rows: Sequence[Row]) -> tuple[Word, Reason | None]:
     """Word and reason of all rows together."""
     for word in (Word.DIFFER, Word.UNDECIDED):
-        reasons = {reason for found, reason in judged if found is word}
+        reasons = {row.reason for row in rows if row.word is word}
         for reason in (each for each in Reason if each in reasons):
-            if word is Word.DIFFER or _decides(rows, judged, reason):
+            if word is Word.DIFFER or _decides(rows, reason):
                 return word, reason
-    if not any(word is Word.AGREE for word, _ in judged):
-        return Word.UNDECIDED, next((reason for _, reason in judged if reason is not None), Reason.RUN_ENDED)
+    if not any(row.word is Word.AGREE for row in rows):
+        return Word.UNDECIDED, next((row.reason for row in rows if row.reason is not None), Reason.RUN_ENDED)
     return Word.AGREE, None
 
 
@@ -92,18 +94,18 @@ def _without_value(scene: Scene, row: Row) -> Judged:
     return Word.UNDECIDED, Reason.EVENT
 
 
-def _is_notable(table: RunsTable, row: Row) -> bool:
+def _is_notable(runs: Runs, row: Row) -> bool:
     """Whether a contact in one solver only has an effect: by its force, or by another probe's difference."""
     if row.probe.of not in row.events.contradictory or row.probe.quantity != "force":
         return row.bounds is not None and row.difference > row.bounds.total + 10.0 * ROUND_OFF * row.scale
-    stations = [table.stations[name][row.where] for name in SOLVERS]
+    stations = [runs.stations[name][row.where] for name in SOLVERS]
     forces = [np.hypot(*station.forces.force.T).max(initial=0.0) for station in stations]
     moments = [np.abs(beam.M).max() / beam.s[-1] for station in stations for beam in station.beams.values()]
-    return row.difference > table.scene.limit(row.probe) * float(max(*forces, *moments))
+    return row.difference > runs.scene.limit(row.probe) * float(max(*forces, *moments))
 
 
-def _contradiction(table: RunsTable, row: Row, *, faint: bool) -> Judged:
-    if _same_resultant(table, row):
+def _contradiction(runs: Runs, row: Row, *, faint: bool) -> Judged:
+    if _same_resultant(runs, row):
         return Word.UNDECIDED, Reason.NOT_UNIQUE
     if row.events.unsettled:
         return Word.UNDECIDED, _event_reason(row)
@@ -116,23 +118,23 @@ def _event_reason(row: Row) -> Reason:
     return Reason.BRANCH if row.events.unsettled & {PASSED, MIRRORED} else Reason.EVENT
 
 
-def _same_resultant(table: RunsTable, row: Row) -> bool:
+def _same_resultant(runs: Runs, row: Row) -> bool:
     """Whether the row's contact or joint shares its force, and the sums of the shared forces do not contradict."""
     if row.shared is None:
         return False
     beam, others = row.shared
-    sums = {name: resultant(station, {row.probe.of, *others}, beam) for name, station in table.at(row.where).items()}
-    bounds = table.runs.bounds(sums, lambda difference: float(np.linalg.norm(difference)))
+    sums = {name: resultant(station, {row.probe.of, *others}, beam) for name, station in runs.at(row.where).items()}
+    bounds = runs.bounds(sums, lambda difference: float(np.linalg.norm(difference)))
     v_c, v_f = (sums[name] for name in SOLVERS)
     return bounds is not None and float(np.linalg.norm(v_c - v_f)) <= bounds.total
 
 
-def _decides(rows: Sequence[Row], judged: Sequence[Judged], reason: Reason) -> bool:
+def _decides(rows: Sequence[Row], reason: Reason) -> bool:
     """Whether undecided rows of a reason make the case undecided."""
-    agreeing = Counter(row.probe.name for row, (word, _) in zip(rows, judged, strict=True) if word is Word.AGREE)
+    agreeing = Counter(row.probe.name for row in rows if row.word is Word.AGREE)
     if reason is Reason.NOT_UNIQUE:
         return not agreeing
     if reason not in RESOLVABLE:
         return True
-    unresolved = Counter(row.probe.name for row, (_, why) in zip(rows, judged, strict=True) if why in RESOLVABLE)
+    unresolved = Counter(row.probe.name for row in rows if row.reason in RESOLVABLE)
     return any(count >= agreeing[name] for name, count in unresolved.items())

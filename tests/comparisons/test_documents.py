@@ -60,7 +60,7 @@ BENT = {
 def case():
     hinge = cases.opened("hinge")
     right = Solvers(cprbm=MadeUp("cprbm", 2e-3), fea=MadeUp("fea", -5e-4))
-    data = json_document.comparison(compare(hinge, paired(hinge, Choices(), right)))
+    data = json_document.comparison(compare(paired(hinge, Choices(), right)))
     return json.loads(text_of(data), parse_constant=lambda constant: pytest.fail(constant))
 
 
@@ -120,7 +120,7 @@ def test_claims_stand_at_their_station_only(case):
 
 def test_a_case_without_rows_and_a_single_solver_have_documents_too(hinge, right):
     early = Solvers(MadeUp("cprbm", 0.0, until=0), right.fea)
-    data = json_document.comparison(compare(hinge, paired(hinge, Choices(), early)))
+    data = json_document.comparison(compare(paired(hinge, Choices(), early)))
     assert (data["verdict"], data["rows"], data["solvers"]["cprbm"]["certificate"]) == ("UNDECIDED", [], None)
     data = json_document.solution(hinge, right.cprbm(hinge, Choices()))
     assert set(data) == {"case", "solvers", "rows"}
