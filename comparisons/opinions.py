@@ -39,9 +39,8 @@ from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import Row, Third
 from comparisons.verdict.runs import Runs
 from comparisons.verdict.uncertainty import GRIDS, Limit, largest, limit
-from cprbm_scene import Answer, Claim, Scene, StationAnswer
-from cprbm_scene.answer import Flags
-from cprbm_scene.statement import CRITICAL, STRESSES
+from cprbm_scene.answer import Answer, Flags, StationAnswer
+from cprbm_scene.statement import CRITICAL, STRESSES, Claim, Scene
 
 _OF_THE_VALUE = frozenset({"force", "reaction", "reaction_moment"})
 """Quantities with claims on the share of the value itself."""

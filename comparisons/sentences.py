@@ -11,7 +11,6 @@ from comparisons.formats import at_station, distance_text, number, percent, with
 from comparisons.quantities import load_unit
 from comparisons.stations import event_tolerance, problems
 from comparisons.verdict import Reason, Word
-from comparisons.verdict.calibration import error_ratios, tally, true_errors
 from comparisons.verdict.events import (
     MIRRORED,
     PASSED,
@@ -21,6 +20,7 @@ from comparisons.verdict.events import (
     mechanism,
     passed_by,
 )
+from comparisons.verdict.judge import error_ratios, tally, true_errors
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs import SOLVERS, Runs
 from cprbm_scene import Answer, Scene

@@ -230,14 +230,14 @@ STUDIES = Commands(
     {"Commands": (
         SolvingCommand(
             "calibration",
-            callback=later("studies.calibration"),
+            callback=later("verdicts.calibration"),
             params=[*OUTPUT, options.folder(help="Folder for page, numbers and figure.")],
             help="Compare stated and true errors on every case with an exact answer.",
         ),
         ToolCommand("study relations"),
         SolvingCommand(
             "table1",
-            callback=later("studies.table1"),
+            callback=later("verdicts.table1"),
             params=[options.repeated(help="Repetitions of every cell of the table."),
                     options.time_limit(default="60", help="A solve that takes longer is not repeated."), *OUTPUT,
                     options.folder(help="Folder for page, numbers and figure.")],
@@ -251,7 +251,7 @@ EVIDENCE = (
     click.Command("list", callback=later("doctor.list_cases"), help="List the built-in cases."),
     SolvingCommand(
         "bench",
-        callback=later("studies.bench"),
+        callback=later("verdicts.bench"),
         params=[
             CASE, SET,
             _sizes(callback=options.counts,

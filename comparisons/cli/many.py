@@ -18,10 +18,9 @@ from comparisons.present.page import Page, put_page, put_section
 from comparisons.sweeps import points as grids
 from comparisons.sweeps.demands import Demands, bounds_of, read_demands
 from comparisons.sweeps.optimum import optimum, optimum_section, problem_of
-from comparisons.sweeps.page import write_page
 from comparisons.sweeps.running import Runner, Sweep, tasks_of
 from comparisons.sweeps.scatter import distributions_of, scatter_section, study
-from comparisons.sweeps.tables import write_netcdf, write_tables
+from comparisons.sweeps.tables import write_netcdf, write_page, write_tables
 from comparisons.sweeps.workers import workers_on
 from cprbm_scene import Scene
 

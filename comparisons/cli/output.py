@@ -19,8 +19,8 @@ import click
 
 from comparisons import logs
 from comparisons.cli.request import Request
-from comparisons.present.columns import Section, Table
-from comparisons.writing import Plain, text_of, write
+from comparisons.present.columns import Plain, Section, Table
+from comparisons.writing import text_of, write
 
 T = TypeVar("T")
 

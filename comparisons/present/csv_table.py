@@ -9,11 +9,10 @@ from typing import Any, TypedDict
 
 from comparisons.case import Comparison
 from comparisons.formats import file_unit
+from comparisons.present.columns import Plain
 from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
-from comparisons.writing import Plain
-from cprbm_scene import Answer, Probe, Scene, StationAnswer
-from cprbm_scene.answer import Array, PointForce
-from cprbm_scene.statement import STRESSES
+from cprbm_scene.answer import Answer, Array, PointForce, StationAnswer
+from cprbm_scene.statement import STRESSES, Probe, Scene
 
 
 class Number(TypedDict):

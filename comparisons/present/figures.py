@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import cycle
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +16,8 @@ from comparisons.present.canvas import (
     GREY,
     INK,
     RED,
+    Axes,
+    Drawing,
     canvas,
     common_legend,
     draw_names,
@@ -24,7 +25,7 @@ from comparisons.present.canvas import (
     finished,
     image,
     show_lengths,
-)  # fmt: skip
+)
 from comparisons.present.columns import Figure
 from comparisons.present.curves import contact_figures, curve_figures, reaction_figures, stress_figures
 from comparisons.present.picture import Bounds, Part, View, bounds_of, view_of
@@ -33,10 +34,6 @@ from comparisons.present.strips import Coloured
 from comparisons.stations import station_of
 from cprbm_scene import Answer, FreeEnd, Scene, StationAnswer
 from cprbm_scene.answer import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
 
 QUANTITIES: Mapping[Coloured, tuple[str, str, str]] = {
     "bending_stress": ("bending stress", "Pa", "RdYlBu_r"),

@@ -7,17 +7,15 @@ from typing import Any
 from comparisons.audit import Audit
 from comparisons.case import Comparison
 from comparisons.opinions import claim_met, claim_of, claimed_difference, contact_model, thirds_of
-from comparisons.present.columns import follow
+from comparisons.present.columns import Plain, follow, plain
 from comparisons.quantities import arc_lengths, unit_of
 from comparisons.reactions import WorkEnergyReaction
 from comparisons.stations import CERTIFICATE_NUMBERS
 from comparisons.tolerances import Tolerance
 from comparisons.verdict.events import CriticalRow, released
 from comparisons.verdict.rows import Row
-from comparisons.writing import Plain, plain
-from cprbm_scene import Answer, Critical, Probe, Scene
-from cprbm_scene.answer import Array
-from cprbm_scene.statement import STRESSES
+from cprbm_scene.answer import Answer, Array, Critical
+from cprbm_scene.statement import STRESSES, Probe, Scene
 
 
 def comparison(compared: Comparison) -> Plain:

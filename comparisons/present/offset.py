@@ -11,10 +11,8 @@ from comparisons.formats import number, percent
 from comparisons.geometry import offset_curve
 from comparisons.offset_verdict import OffsetComparison, OffsetRow, claim_of_offset
 from comparisons.present.canvas import BLUE, RED, canvas, common_legend, finished
-from comparisons.present.columns import Column, Figure, Section, Table, table_of
-from comparisons.writing import Plain, plain
-from cprbm_scene import OffsetClaim
-from cprbm_scene.offset import Shown
+from comparisons.present.columns import Column, Figure, Plain, Section, Table, plain, table_of
+from cprbm_scene.offset import OffsetClaim, Shown
 
 _SHOWN = 6  # columns and rows of the short table
 

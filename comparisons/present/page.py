@@ -21,12 +21,12 @@ from comparisons.formats import percent
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.present import json_document, offset
 from comparisons.present.case_tables import case_sections, claims_table
-from comparisons.present.columns import Figure, Section, Table
+from comparisons.present.columns import Figure, Plain, Section, Table
 from comparisons.present.csv_table import contact_csv
 from comparisons.present.figures import comparison_figures
 from comparisons.present.stepper import HEADERS, SHADES, Stepper, stepper
 from comparisons.present.table import STYLES, html_cells
-from comparisons.writing import Plain, text_of, write
+from comparisons.writing import text_of, write
 from cprbm_scene import Question
 
 _CONTACT_FORCES = "contact-forces.csv"

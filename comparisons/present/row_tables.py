@@ -12,13 +12,12 @@ from comparisons.geometry import bentness
 from comparisons.opinions import contact_model, thirds_of
 from comparisons.present.columns import Column, Table, columns_of, table_of
 from comparisons.quantities import norm
-from comparisons.verdict.calibration import EXACT_FACTOR, error_ratios, tally, true_errors
 from comparisons.verdict.events import Place
+from comparisons.verdict.judge import EXACT_FACTOR, error_ratios, tally, true_errors
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs import SOLVERS
-from cprbm_scene import Answer, Scene
-from cprbm_scene.answer import Array
-from cprbm_scene.statement import STRESSES, Quantity
+from cprbm_scene.answer import Answer, Array
+from cprbm_scene.statement import STRESSES, Quantity, Scene
 
 STRESS = "Errors in stress"
 GROUPS: Mapping[str, frozenset[Quantity]] = {

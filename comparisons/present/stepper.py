@@ -31,8 +31,7 @@ from comparisons.present.row_tables import BOTH, ERROR, share_columns, value_col
 from comparisons.present.strips import Strip
 from comparisons.present.table import with_minus
 from comparisons.stations import complete_stations
-from cprbm_scene import StationAnswer
-from cprbm_scene.answer import Array
+from cprbm_scene.answer import Array, StationAnswer
 from cprbm_scene.statement import STRESSES
 
 WIDE = 1000.0

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import log, nan
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from comparisons.executor import Crew
 from comparisons.formats import at_station, percent
 from comparisons.offset_verdict import OffsetRow, compared_offset
 from comparisons.pairing import OffsetConstruction, Solvers
-from comparisons.present.canvas import GREY, LINES, canvas, common_legend, finished, logarithmic
+from comparisons.present.canvas import GREY, LINES, Axes, canvas, common_legend, finished, logarithmic
 from comparisons.present.columns import Column, Figure, Section, Table, table_of
 from comparisons.sentences import problem_sentences
 from comparisons.stations import at_shown, last_station
@@ -31,9 +30,6 @@ from comparisons.studies.families import Family, Method, Series, critical_famili
 from comparisons.verdict.uncertainty import Limit
 from cprbm_scene import Answer, OffsetQuestion, Question, Scene
 from cprbm_scene.offset import FEWEST, MOST
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 STANDARD_SIZE = 40
 """Size of the tables and of the budget, if the family has it."""

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from comparisons.formats import at_station, display_unit, distance_text, number, percent, vector, with_unit
 from comparisons.present import json_document
-from comparisons.present.columns import Column, Table, table_of, without_empty
+from comparisons.present.columns import Column, Plain, Table, plain, table_of, without_empty
 from comparisons.stations import last_station
 from comparisons.studies.families import Family, size
 from comparisons.verdict.events import mechanism
-from comparisons.writing import Plain, plain
 from cprbm_scene import Scene
 
 if TYPE_CHECKING:

@@ -24,10 +24,9 @@ from comparisons.verdict.events import mechanism
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import ROUND_OFF
 from comparisons.verdict.uncertainty import OWN, STANDARD, Limit, limit, observed, orders
-from cprbm_scene import Answer, Critical, Probe, Scene, Stage
-from cprbm_scene.answer import Array
+from cprbm_scene.answer import Answer, Array, Critical
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.statement import CRITICAL, STRESSES
+from cprbm_scene.statement import CRITICAL, STRESSES, Probe, Scene, Stage
 
 _AS_LARGE = 1e-3  # share of the largest stress within which a stress counts as equal
 _BESIDE_A_KINK = 1.5  # elements: the element with the kink, and half of its neighbours

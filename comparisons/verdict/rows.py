@@ -30,9 +30,8 @@ from comparisons.verdict.events import NO_EVENTS, Place, StationEvents, station_
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
 from comparisons.verdict.runs import Bounds, Runs
 from comparisons.verdict.uncertainty import largest
-from cprbm_scene import Probe, Scene, Stage, StationAnswer
-from cprbm_scene.answer import Array, Flags
-from cprbm_scene.statement import STRESSES, Quantity
+from cprbm_scene.answer import Array, Flags, StationAnswer
+from cprbm_scene.statement import STRESSES, Probe, Quantity, Scene, Stage
 
 ROUND_OFF = 1e-9
 """Round-off of a value, and least uncertainty of an exact value, as shares of the probe's scale."""

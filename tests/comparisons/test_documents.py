@@ -18,8 +18,9 @@ from comparisons.cli.main import run
 from comparisons.pairing import Solvers, paired
 from comparisons.present import json_document
 from comparisons.present.case_tables import answer_tables
+from comparisons.present.columns import plain
 from comparisons.present.csv_table import contact_csv, csv_of, numbers
-from comparisons.writing import plain, text_of
+from comparisons.writing import text_of
 from cprbm_scene import Answer, Certificate, Ending, Scene, StationAnswer, scene_from
 from tests.robustness.toml import toml_of
 from tests.verdict.made_up import CERTIFICATE, MadeUp

@@ -16,7 +16,7 @@ An answer is *wrong* if it is certified and
 * a value is further from the finest that was found than F times what is stated of it; or
 * it is further from the exact answer, where one is known, than F times what is stated of it,
 
-with the F of :mod:`comparisons.verdict.calibration`: a stated uncertainty is to hold in 95 % of the rows and not in
+with the F of :mod:`comparisons.verdict.judge`: a stated uncertainty is to hold in 95 % of the rows and not in
 all.
 """
 
@@ -34,7 +34,7 @@ from comparisons.pairing import Solvers, paired
 from comparisons.quantities import norm
 from comparisons.stations import ends_at_critical, problems, station_of
 from comparisons.verdict import Word
-from comparisons.verdict.calibration import EXACT_FACTOR, true_errors
+from comparisons.verdict.judge import EXACT_FACTOR, true_errors
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs import Bounds, Runs
 from cprbm_scene import Answer, Scene, SceneError

@@ -14,7 +14,7 @@ from comparisons.pairing import Solvers, solvers_of
 from comparisons.present import json_document
 from comparisons.studies import calibration as study
 from comparisons.studies.calibration import result_of
-from comparisons.verdict.calibration import EXACT_FACTOR, error_ratios, tally
+from comparisons.verdict.judge import EXACT_FACTOR, error_ratios, tally
 from comparisons.writing import text_of
 from cprbm_scene import Ending, Stage
 from tests.tables import tables_of
