@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from comparisons import workshop
 from comparisons.choices import KINEMATICS
 from comparisons.cli import options
-from comparisons.cli.commands import Commands, SolvingCommand, ToolCommand, later
+from comparisons.cli.commands import Commands, SolvingCommand, ToolCommand, absence_of, is_checkout, later
 from comparisons.cli.errors import exit_code
 from comparisons.cli.options import CASE, CASES, EXACT, EXPORTS, MANY, NUMERICAL, OUTPUT, SET, SIZED, VARIANTS
 
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
 ANSWERING = click.Choice(["cprbm", "fea", "exact", "solid"])
 """Names of all solvers of a single answer."""
 
-OPTIMISERS = ("slsqp", "ipopt") if workshop.is_checkout() else ()
+OPTIMISERS = ("slsqp", "ipopt") if is_checkout() else ()
 """Optimisers on the problem of the CPRBM: developers' tools."""
 
 _here = partial(options.folder, default=".", show_default=True)
@@ -44,7 +43,7 @@ class _Method(click.Choice[str]):
             click.ClickException: the method is a developers' tool and this is no checkout, or the method is removed.
             click.BadParameter: no method has this name.
         """
-        if absence := workshop.absence(f"bench --method {value}"):
+        if absence := absence_of(f"bench --method {value}"):
             raise click.ClickException(absence)
         return super().convert(value, param, ctx)
 

@@ -15,12 +15,13 @@ from typing import Literal, TypeVar
 
 import click
 
-from comparisons import case, cases, logs, offset_verdict, pairing, provenance, workshop
+from comparisons import case, cases, logs, offset_verdict, pairing, provenance
 from comparisons.bench import measures, running
 from comparisons.bench.section import bench_section, size_text
 from comparisons.case import Comparison
 from comparisons.choices import Count, check
 from comparisons.cli import output
+from comparisons.cli.commands import load_tool
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
 from comparisons.cli.main import OPTIMISERS
 from comparisons.cli.request import Request
@@ -228,7 +229,7 @@ def bench(
         check(replace(request.choices, links=n), opened)
     wanted = methods or (*running.OURS, *OPTIMISERS)
     asked = [each for each in running.contenders(request.solvers, request.choices) if each.name in wanted]
-    asked += [workshop.load(f"bench --method {name}").contender() for name in OPTIMISERS if name in wanted]
+    asked += [load_tool(f"bench --method {name}").contender() for name in OPTIMISERS if name in wanted]
     absent = {each.name: reason for each in asked if (reason := _absence(each, whole=whole))}
     taking = tuple(each for each in asked if each.name not in absent)
     if not taking:

@@ -107,8 +107,8 @@ def search_table(scene: Scene, found: Sequence[Tolerance]) -> Table:
         Column[Tolerance]("solver", "solver"),
         Column("N", "n"),
         Column("extrapolated from", lambda one: ", ".join(map(str, one.extrapolated)) or None),
-        Column("largest u", "worst.fraction", percent),
-        Column("of", "worst", lambda row: f"{row.probe} at {load_text(scene, row.stage, row.station)}"),
+        Column("largest u", lambda one: one.worst and one.fraction, percent),
+        Column("of", "worst", lambda row: f"{row.probe.name} at {load_text(scene, row.stage, row.station)}"),
         Column("met", lambda one: "yes" if one.met else "no"),
         Column("solved", lambda one: ", ".join(map(str, one.solved))),
     ]

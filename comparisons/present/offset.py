@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -12,19 +11,9 @@ from comparisons.geometry import offset_curve
 from comparisons.offset_verdict import OffsetComparison, OffsetRow, claim_of_offset
 from comparisons.present.canvas import BLUE, RED, canvas, common_legend, finished
 from comparisons.present.columns import Column, Figure, Plain, Section, Table, plain, table_of
-from cprbm_scene.offset import OffsetClaim, Shown
+from cprbm_scene.offset import Shown
 
 _SHOWN = 6  # columns and rows of the short table
-
-
-class OffsetStanding(NamedTuple):
-    """A claim beside a spacing: the row with the largest error, the largest share of t, and N above the bound."""
-
-    claim: OffsetClaim
-    spacing: str
-    worst: OffsetRow
-    over_offset: float
-    missed: list[int]
 
 
 def document(compared: OffsetComparison) -> Plain:
@@ -99,16 +88,16 @@ def _claims_table(compared: OffsetComparison) -> Table:
             rows = [row for row in compared.rows if row.spacing == spacing and row.n >= claim.numbers_from]
             worst, over = max(rows, key=lambda row: row.difference), max(row.over_offset for row in rows)
             missed = sorted({row.n for row in rows if not row.difference < claim.bound})
-            standings.append(OffsetStanding(claim, spacing, worst, over, missed))
+            standings.append({"claim": claim, "spacing": spacing, "worst": worst, "over": over, "missed": missed})
     columns = [
-        Column[OffsetStanding]("claim", lambda at: at.claim.text or f"from N = {at.claim.numbers_from} on"),
+        Column[Plain]("claim", "claim", lambda claim: claim.text or f"from N = {claim.numbers_from} on"),
         Column("spacing", "spacing"),
         Column("source", "claim.bound", percent),
         Column("largest here", "worst.difference", percent),
         Column("at", "worst", lambda row: f"N, t = {row.n}, {row.offset:g}"),
-        Column("over t", "over_offset", percent),
-        Column("", lambda at: "not met" if at.missed else "met"),
-        Column("not met at N", lambda at: ", ".join(map(str, at.missed)) or None),
+        Column("over t", "over", percent),
+        Column("", "missed", lambda missed: "not met" if missed else "met"),
+        Column("not met at N", lambda at: ", ".join(map(str, at["missed"])) or None),
     ]
     return table_of(
         "Claims of the source",

@@ -7,7 +7,7 @@ logarithm of their errors' ratio over the logarithm of the ratio of sizes.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from math import log, nan
 
@@ -26,53 +26,15 @@ from comparisons.store import AnswerMemory
 from comparisons.studies import budget_section as budgets
 from comparisons.studies import convergence_tables as tables
 from comparisons.studies.budget import account_of
-from comparisons.studies.families import Family, Method, Series, critical_families, probe_families, size
+from comparisons.studies.families import Convergence, Family, Method, Series, critical_families, probe_families, size
 from comparisons.verdict.uncertainty import Limit
-from cprbm_scene import Answer, OffsetQuestion, Question, Scene
+from cprbm_scene import OffsetQuestion, Question, Scene
 from cprbm_scene.offset import FEWEST, MOST
-
-STANDARD_SIZE = 40
-"""Size of the tables and of the budget, if the family has it."""
 
 _LEAST = 1e-13
 """Share of a probe's scale below which errors are round-off and not drawn."""
 
 _COLOURS = 10  # of Matplotlib's standard cycle, C0 to C9
-
-
-@dataclass(frozen=True, slots=True)
-class Convergence:
-    """A scene at all sizes.
-
-    Attributes:
-        scene: the question; sizes: N, ascending; series: answers of both solvers.
-        families: in the order of stages, stations and probes; of the CPRBM, then of the finite elements.
-        criticals: families of the critical points.
-        exact: the exact answer; None in other theories than ``bending``.
-    """
-
-    scene: Scene
-    sizes: tuple[int, ...]
-    series: tuple[Series, ...]
-    families: tuple[Family, ...]
-    criticals: tuple[Family, ...]
-    exact: Answer | None = None
-
-    @property
-    def completed(self) -> bool:
-        """True if every answer is complete."""
-        return not any(series.why for series in self.series)
-
-    @property
-    def shown(self) -> int:
-        """Size of the tables: the standard size, or else the middle size."""
-        return STANDARD_SIZE if STANDARD_SIZE in self.sizes else self.sizes[(len(self.sizes) - 1) // 2]
-
-    @property
-    def last(self) -> tuple[Family, ...]:
-        """Families at the last station."""
-        where = last_station(self.scene)
-        return tuple(family for family in self.families if (family.stage, family.station) == where)
 
 
 def convergence_of(scene: Scene, sizes: Sequence[int], choices: Choices, solvers: Solvers, crew: Crew) -> Convergence:

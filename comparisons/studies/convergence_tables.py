@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from statistics import median
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from comparisons.formats import at_station, display_unit, distance_text, number, percent, vector, with_unit
 from comparisons.present import json_document
 from comparisons.present.columns import Column, Plain, Table, plain, table_of, without_empty
 from comparisons.stations import last_station
-from comparisons.studies.families import Family, size
+from comparisons.studies.families import Convergence, Family, size
 from comparisons.verdict.events import mechanism
 from cprbm_scene import Scene
-
-if TYPE_CHECKING:
-    from comparisons.studies.convergence import Convergence
 
 NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
 
