@@ -25,7 +25,7 @@ SEARCHED = {"links": "-n", "elements": "--elements", "across": "--across"}
 
 
 class SolvingCommand(click.Command):
-    """A command whose function takes a :class:`comparisons.cli.request.Request` and the values of its own options."""
+    """A command whose function takes a :class:`comparisons.cli.output.Request` and the values of its own options."""
 
     def invoke(self, ctx: click.Context) -> Any:  # noqa: ANN401 - click's form
         """Exit code of the command.
@@ -33,7 +33,7 @@ class SolvingCommand(click.Command):
         Raises:
             click.UsageError: the command line has a number of links or elements beside a tolerance.
         """
-        from comparisons.cli.request import Request  # not for a list or help
+        from comparisons.cli.output import Request  # not for a list or help
 
         for name, option in SEARCHED.items() if ctx.params.get("tol") else ():
             if ctx.get_parameter_source(name) is not ParameterSource.DEFAULT:

@@ -24,7 +24,6 @@ from comparisons.cli import output
 from comparisons.cli.commands import load_tool
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
 from comparisons.cli.main import OPTIMISERS
-from comparisons.cli.request import Request
 from comparisons.present import brief, case_tables, csv_table, figures, offset, page
 from comparisons.present.columns import Plain, Section
 from comparisons.store import Run, run_into
@@ -42,7 +41,7 @@ from cprbm_scene.frozendict import frozendict
 Compared = Comparison | offset_verdict.OffsetComparison
 
 
-def compare_all(request: Request) -> int:
+def compare_all(request: output.Request) -> int:
     """Compare both solvers on questions; the exit code.
 
     0 if all agree; 1 if any case differs or a solve did not complete; 3 if no case is worse than undecided.  An
@@ -76,7 +75,9 @@ def compare_all(request: Request) -> int:
     return UNDECIDED if undecided or any(map(_failed_searches, finished)) else 0
 
 
-def _comparisons(request: Request, questions: Sequence[Question], run: Run, progress: output.Bar) -> Iterator[Compared]:
+def _comparisons(
+    request: output.Request, questions: Sequence[Question], run: Run, progress: output.Bar
+) -> Iterator[Compared]:
     """Comparisons of all questions; the next question is solved while the caller draws and prints the last."""
     begun = partial(_begin, request, [] if request.tol else questions, run)
     following = begun(0)
@@ -93,7 +94,7 @@ def _comparisons(request: Request, questions: Sequence[Question], run: Run, prog
             yield replace(case.compare(runs), tolerances=searches)
 
 
-def _begin(request: Request, questions: Sequence[Question], run: Run, place: int) -> Callable[[], Runs] | None:
+def _begin(request: output.Request, questions: Sequence[Question], run: Run, place: int) -> Callable[[], Runs] | None:
     """The runs of a question, begun now; None beyond the last question, and for an offset question."""
     question = questions[place] if place < len(questions) else None
     if question is None or isinstance(question, OffsetQuestion):
@@ -101,13 +102,13 @@ def _begin(request: Request, questions: Sequence[Question], run: Run, place: int
     return pairing.begin(question, request.choices, run.solvers, run.crew)
 
 
-def _run(request: Request, questions: Sequence[Question]) -> AbstractContextManager[Run]:
+def _run(request: output.Request, questions: Sequence[Question]) -> AbstractContextManager[Run]:
     """Context with the run of the questions into the folder of the request."""
     names = tuple(question.name for question in questions)
     return run_into(request.out, request.solvers, names, request.processes)
 
 
-def _keep(request: Request, run: Run, shown: Sequence[Question], whole: page.Page, document: Plain) -> None:
+def _keep(request: output.Request, run: Run, shown: Sequence[Question], whole: page.Page, document: Plain) -> None:
     """Write the page and the JSON of the questions ``shown``, unless they would replace more; the last one is new."""
     run.mark_shown(shown[-1].name)
     if run.covers([question.name for question in shown]):
@@ -117,7 +118,7 @@ def _keep(request: Request, run: Run, shown: Sequence[Question], whole: page.Pag
             output.write_json(request.json_file, document)
 
 
-def _show(request: Request, compared: Compared) -> None:
+def _show(request: output.Request, compared: Compared) -> None:
     """Print a case: in brief, with ``-v`` with all tables, or quietly with the verdict alone."""
     if not request.quiet and logs.level() == NOTSET:
         values = [text for name, value in request.values.items() for text in ("--set", f"{name}={value}")]
@@ -142,7 +143,7 @@ def _failed_searches(compared: Compared) -> list[str]:
     return [search.sentence(compared.scene) for search in compared.tolerances if not search.met]
 
 
-def _export(request: Request, compared: Sequence[Comparison]) -> None:
+def _export(request: output.Request, compared: Sequence[Comparison]) -> None:
     """Write the table and the drawing of all comparisons; without common stations standard error reports the reason."""
     if request.csv_file is not None:
         write(request.csv_file, csv_table.csv_of_comparisons(compared))
@@ -152,7 +153,7 @@ def _export(request: Request, compared: Sequence[Comparison]) -> None:
         click.echo(f"cprbm: {request.plot_file} is not drawn: a case has no station of both solvers.", err=True)
 
 
-def converge_all(request: Request, sizes: tuple[int, ...]) -> int:
+def converge_all(request: output.Request, sizes: tuple[int, ...]) -> int:
     """State limits and orders of all numbers of questions; exit code 1 for an incomplete series."""
     questions = request.questions()
     request = request.with_room("convergence" if "all" in request.arguments else "")
@@ -180,7 +181,7 @@ def converge_all(request: Request, sizes: tuple[int, ...]) -> int:
     return 0 if all(section.complete for section in finished) else INCOMPLETE
 
 
-def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -> None:
+def report(request: output.Request, sizes: tuple[int, ...], without: tuple[str, ...]) -> None:
     """Write the page of questions with verdicts, errors and run times; finished parts are taken from the folder."""
     request = replace(request, arguments=request.arguments or ("all",))
     questions = request.questions()
@@ -208,7 +209,7 @@ Step = TypeVar("Step")
 
 
 def bench(
-    request: Request,
+    request: output.Request,
     sizes: tuple[int, ...] | None,
     numbers: tuple[Count, ...],
     methods: tuple[str, ...],
@@ -259,7 +260,7 @@ def _absence(contender: running.Contender, *, whole: bool) -> str:
     return "an optimiser solves the last station only" if alone else contender.absence
 
 
-def calibration(request: Request) -> int:
+def calibration(request: output.Request) -> int:
     """Compare stated with true errors; exit code 1 for a case that differs or did not complete."""
     request = request.with_room()
     with run_into(request.out, request.solvers, processes=request.processes) as run:
@@ -269,7 +270,7 @@ def calibration(request: Request) -> int:
     return INCOMPLETE if any(each.word is Word.DIFFER or not each.completed for each in verdicts) else 0
 
 
-def table1(request: Request, repeat: int) -> int:
+def table1(request: output.Request, repeat: int) -> int:
     """Time both solvers on the cells of the paper's Table 1; exit code 1 for an incomplete solve."""
     request = request.with_room()
     session = timings.session(request.solvers, provenance.machine(), repeat, request.at_most)
@@ -278,7 +279,7 @@ def table1(request: Request, repeat: int) -> int:
 
 
 def take_steps(
-    request: Request,
+    request: output.Request,
     study: Study,
     steps: Sequence[Step],
     take: Callable[[Study, Step], Study],
@@ -303,7 +304,7 @@ def take_steps(
     return study
 
 
-def _write_files(request: Request, section: Section) -> Section:
+def _write_files(request: output.Request, section: Section) -> Section:
     """The section, whose files are written now."""
     if request.prints:
         output.write_json(request.json_file, dict(section.data))

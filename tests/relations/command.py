@@ -6,7 +6,7 @@ import click
 
 from comparisons.cli.commands import SolvingCommand
 from comparisons.cli.options import COUNT, OUTPUT, candidates, count, folder
-from comparisons.cli.request import Request
+from comparisons.cli.output import Request
 from comparisons.cli.verdicts import take_steps
 from comparisons.pairing import solvers_of
 from comparisons.store import run_into
