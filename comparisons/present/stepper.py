@@ -30,7 +30,7 @@ from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, na
 from comparisons.present.row_tables import BOTH, ERROR, share_columns, value_columns
 from comparisons.present.strips import Strip
 from comparisons.present.table import with_minus
-from comparisons.stations import complete_stations
+from comparisons.verdict.runs import SOLVERS
 from cprbm_scene.answer import Array, StationAnswer
 from cprbm_scene.statement import STRESSES
 
@@ -85,8 +85,7 @@ class Stepper:
 def stepper(compared: Comparison) -> Stepper | None:
     """The common stations of both answers; None without a common station."""
     scene, beams = compared.scene, compared.scene.beams
-    cprbm, fea = (complete_stations(scene, answer) for answer in compared.runs.pair)
-    common = [where for where in fea if where in cprbm]
+    common, (cprbm, fea) = compared.runs.reached, (compared.runs.stations[solver] for solver in SOLVERS)
     if not common:
         return None
     views = [view_of(scene, fea[where]) for where in common]

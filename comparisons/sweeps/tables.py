@@ -258,7 +258,8 @@ def _contours(figure: Any, axes: Axes, pair: Sequence[Axis], solved: Solved, num
             values[task.number - 1], branches[task.number - 1] = number, kinds.index(outcome.branch)
     if not np.isfinite(values).any():
         return
-    levels = np.linspace(np.nanmin(values), max(np.nanmax(values), np.nextafter(np.nanmin(values), np.inf)), 12)
+    least, size = np.nanmin(values), np.nanmax(np.abs(values)) or 1.0
+    levels = np.linspace(least, max(np.nanmax(values), least + ROUND_OFF * size), 12)
     axes.set_ylabel(second.label)
     x, y = (np.array(axis.values()) / axis.size for axis in pair)
     for branch in range(len(kinds)):
