@@ -396,7 +396,8 @@ def test_a_percentage_stays_on_the_line_of_its_number(comparison):
 
 
 def test_a_page_has_all_chapters_or_the_section_of_a_study_alone(comparison):
-    other = replace(comparison, scene=comparison.scene.model_copy(update={"name": "other"}))
+    renamed = comparison.scene.model_copy(update={"name": "other"})
+    other = replace(comparison, runs=replace(comparison.runs, scene=renamed))
     text = page.html(page.report_page([page.case_chapter(each, ()) for each in (comparison, other)]))
     assert '<article id="hinge"' in text
     assert '<article id="other"' in text
