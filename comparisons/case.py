@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from comparisons import sentences as said
@@ -11,10 +11,10 @@ from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.stations import complete_part, ends_at_critical
 from comparisons.tolerances import Tolerance
 from comparisons.verdict import SEVERITY, Reason, Word, worst_of
-from comparisons.verdict.events import CriticalRow, Place, critical_rows, far_closings, station_events
-from comparisons.verdict.judge import Judged, judge_case, judge_rows
-from comparisons.verdict.rows import Row, build_rows
-from comparisons.verdict.runs import SOLVERS, Runs, RunsTable
+from comparisons.verdict.events import CriticalRow, Place, critical_rows, far_closings
+from comparisons.verdict.judge import judge_case, judge_rows
+from comparisons.verdict.rows import Row, rows_of
+from comparisons.verdict.runs import SOLVERS, Runs
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -27,7 +27,7 @@ Auditor = Callable[[Scene, Answer], Audit]
 
 @dataclass(frozen=True, slots=True)
 class BranchVerdict:
-    """Word of the rows of one branch in a stage.
+    """Word of the rows of a branch in a stage.
 
     Attributes:
         stage: name; number: of critical points before; first, last: stations; stations: their number.
@@ -51,18 +51,15 @@ class Verdict:
     Attributes:
         word: of the case; reason: None where the case agrees.
         sentences: the sentence on what decides first.
-        words, reasons: by row; a word is None where the row takes no part, a reason unless the word has one.
         completed: whether both compared runs reached the last station, or agree on the critical point where they end.
         branches: words by branch.
     """
 
     word: Word
     sentences: tuple[str, ...]
-    words: tuple[Word | None, ...]
     completed: bool
     branches: tuple[BranchVerdict, ...] = ()
     reason: Reason | None = None
-    reasons: tuple[Reason | None, ...] = ()
 
     @property
     def sentence(self) -> str:
@@ -77,9 +74,8 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A scene, all runs, rows, events, the verdict, reactions by two ways, searches for N, and audits by solver."""
+    """All runs of a scene, rows, events, the verdict, reactions by two ways, searches for N, and audits by solver."""
 
-    scene: Scene
     runs: Runs
     rows: tuple[Row, ...]
     verdict: Verdict
@@ -89,9 +85,11 @@ class Comparison:
     audits: Mapping[str, Audit] = frozendict()
 
     @property
-    def question(self) -> Scene:
-        """The scene."""
-        return self.scene
+    def scene(self) -> Scene:
+        """The question."""
+        return self.runs.scene
+
+    question = scene
 
     @property
     def pressures(self) -> list[float]:
@@ -101,50 +99,40 @@ class Comparison:
     @property
     def seconds(self) -> Mapping[str, float]:
         """Seconds of the compared runs, of the run in the other theory and of the exact reference, by name."""
-        answers = {**dict(self.runs.everything()), "other": self.runs.other, "exact": self.runs.exact}
-        return {name: answer.seconds for name, answer in answers.items() if answer is not None}
+        left_out = ("cprbm paper", "cprbm perturbed")
+        return {name: answer.seconds for name, answer in self.runs.answers.items() if name not in left_out}
 
 
-def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
-    """The comparison of all runs of a scene.
-
-    Args:
-        scene: the question.
-        runs: the answers.
-        look: the audit.
-    """
-    exact, other = (None if each is None else complete_part(scene, each) for each in (runs.exact, runs.other))
-    table = RunsTable(scene, replace(runs, exact=exact, other=other))
-    criticals, rows = critical_rows(table), build_rows(table, station_events(table))
-    judged = judge_rows(table, rows)
+def compare(runs: Runs, look: Auditor = audit) -> Comparison:
+    """The comparison of all ``runs`` of a scene, with the audit ``look``."""
+    scene, criticals, rows = runs.scene, critical_rows(runs), judge_rows(runs, rows_of(runs))
     audits = {
-        answer.solver: look(scene, replace(answer, stations=tuple(table.stations[name].values())))
-        for name, answer in zip(SOLVERS, table.pair, strict=True)
+        answer.solver: look(scene, replace(answer, stations=tuple(runs.stations[name].values())))
+        for name, answer in zip(SOLVERS, runs.pair, strict=True)
     }
-    lacking = any(name in table.problems for name in SOLVERS)
+    lacking = any(name in runs.problems for name in SOLVERS)
     completed = not lacking or (
-        all(map(ends_at_critical, table.pair)) and bool(criticals) and criticals[-1].word is Word.AGREE
+        all(map(ends_at_critical, runs.pair)) and bool(criticals) and criticals[-1].word is Word.AGREE
     )
-    verdict = _verdict(table, rows, judged, criticals, audits, completed=completed)
-    found = () if lacking else _reactions(table)
-    return Comparison(scene, runs, rows, verdict, criticals, found, audits=audits)
+    verdict = _verdict(runs, rows, criticals, audits, completed=completed)
+    found = () if lacking else _reactions(runs)
+    return Comparison(runs, rows, verdict, criticals, found, audits=audits)
 
 
 def _verdict(
-    table: RunsTable,
+    runs: Runs,
     rows: Sequence[Row],
-    judged: Sequence[Judged],
     criticals: Sequence[CriticalRow],
     audits: Mapping[str, Audit],
     *,
     completed: bool,
 ) -> Verdict:
     """All findings with their sentences; the worst decides, and its sentence comes first."""
-    scene, of_rows = table.scene, judge_case(rows, judged)
+    scene, of_rows = runs.scene, judge_case(rows)
     crossings = next((found.crossings for found in audits.values() if found.crossings), ())
     findings: list[Finding] = [
-        *((Word.DIFFER, Reason.EVENTS, said.closing_sentence(scene, closing)) for closing in far_closings(table)),
-        *((*row.judged, said.critical_sentence(table, row)) for row in criticals),
+        *((Word.DIFFER, Reason.EVENTS, said.closing_sentence(scene, closing)) for closing in far_closings(runs)),
+        *((*row.judged, said.critical_sentence(runs, row)) for row in criticals),
         *(
             (Word.UNDECIDED, Reason.AUDIT, said.audit_sentence(name, found.complaints))
             for name, found in audits.items()
@@ -152,50 +140,38 @@ def _verdict(
         ),
         *((Word.UNDECIDED, Reason.UNDECLARED_CONTACT, sentence) for sentence in crossings),
     ]
-    others = [name for name in table.problems if not ends_at_critical(table.answers[name])]
-    explained = (
-        not others and all(map(ends_at_critical, table.pair)) and bool(criticals)
-    )  # by the row of the last point
-    if table.problems and not completed and not explained:
-        findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table, table.problems)))
+    others = [name for name in runs.problems if not ends_at_critical(runs.same_theory[name])]
+    explained = not others and all(map(ends_at_critical, runs.pair)) and bool(criticals)  # by the row of the last point
+    if runs.problems and not completed and not explained:
+        findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(runs, runs.problems)))
     if rows or completed:
-        findings.append((*of_rows, said.headline(table, rows, judged, of_rows)))
+        findings.append((*of_rows, said.headline(runs, rows, of_rows)))
     reasons_in_order = [None, *Reason]  # DIFFER comes first, then UNDECIDED, and of these the reasons
     findings.sort(key=lambda finding: (SEVERITY.index(finding[0]), reasons_in_order.index(finding[1])))
     word, reason, _ = findings[0]
     sentences = (
         *(sentence for *_, sentence in findings),
-        said.ended_sentence(table, others) if completed and others else "",
-        *said.passed_sentences(table, rows, judged),
+        said.ended_sentence(runs, others) if completed and others else "",
+        *said.passed_sentences(runs, rows),
         said.calibration_sentence(scene, rows),
-        said.theory_sentence(scene, table.runs, rows),
+        said.theory_sentence(runs, rows),
         said.wider_limits(scene) if word is Word.AGREE else "",
     )
-    words = tuple(found for found, _ in judged)
-    reasons = tuple(why for _, why in judged)
-    shown = tuple(sentence for sentence in sentences if sentence)
-    return Verdict(word, shown, words, completed, _branch_verdicts(rows, words), reason, reasons)
+    return Verdict(word, tuple(filter(None, sentences)), completed, tuple(_branch_verdicts(rows)), reason)
 
 
-def _branch_verdicts(rows: Sequence[Row], words: Sequence[Word | None]) -> tuple[BranchVerdict, ...]:
+def _branch_verdicts(rows: Sequence[Row]) -> Iterator[BranchVerdict]:
     """Word of every branch, in the order of the path."""
-    found: dict[tuple[str, int], list[tuple[Row, Word | None]]] = {}
-    for row, word in zip(rows, words, strict=True):
-        if row.branch is not None:
-            found.setdefault((row.stage, row.branch), []).append((row, word))
-    return tuple(_branch_verdict(*branch, mine) for branch, mine in found.items())
+    for branch in dict.fromkeys((row.stage, row.branch) for row in rows if row.branch is not None):
+        mine = [row for row in rows if (row.stage, row.branch) == branch]
+        places, word = {row.station: row.place for row in mine}, worst_of(row.word for row in mine)
+        near = sum(place is Place.BETWEEN for place in places.values())
+        yield BranchVerdict(*branch, next(iter(places)), next(reversed(places)), len(places), near, word)
 
 
-def _branch_verdict(stage: str, number: int, mine: Sequence[tuple[Row, Word | None]]) -> BranchVerdict:
-    """Word of the rows of a branch."""
-    places = {row.station: row.place for row, _ in mine}
-    near, word = sum(place is Place.BETWEEN for place in places.values()), worst_of(word for _, word in mine)
-    return BranchVerdict(stage, number, next(iter(places)), next(reversed(places)), len(places), near, word)
-
-
-def _reactions(table: RunsTable) -> tuple[WorkEnergyReaction, ...]:
+def _reactions(runs: Runs) -> tuple[WorkEnergyReaction, ...]:
     """Reactions of drives by two ways, of two complete answers."""
-    asked, perturbed = perturbed_scene(table.scene), table.runs.perturbed
+    asked, perturbed = perturbed_scene(runs.scene), runs.answers.get("cprbm perturbed")
     if asked is None:
-        return reactions(table.scene, *table.pair, None)
-    return () if perturbed is None else reactions(table.scene, *table.pair, complete_part(asked, perturbed))
+        return reactions(runs.scene, *runs.pair, None)
+    return () if perturbed is None else reactions(runs.scene, *runs.pair, complete_part(asked, perturbed))

@@ -22,16 +22,17 @@ from typing import TypeAlias, assert_never
 
 import numpy as np
 
-from cprbm_scene import Beam, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import (
+    Beam,
     Curve,
     EdgeContact,
     EllipseContact,
     FunctionContact,
     HalfPlaneContact,
     LineContact,
+    Scene,
     SplineContact,
 )
 

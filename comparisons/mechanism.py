@@ -104,7 +104,7 @@ class Mechanism:
         Raises:
             SceneError: a solver refuses the scene.
         """
-        found = case.compare(self.scene, paired(self.scene, choices or Choices(), solvers_of(None)))
+        found = case.compare(paired(self.scene, choices or Choices(), solvers_of(None)))
         return MechanismComparison(**{each.name: getattr(found, each.name) for each in fields(found)})
 
     def plot(

@@ -43,6 +43,7 @@ class OffsetRow:
         offset: t, m.
         differences, stated, round_off: d_i, u_i and r_i, (n,).
         over_offset: the largest |o_i − e_i| over t, whatever the question says.
+        limit: the verdict limit of the question.
     """
 
     spacing: str
@@ -52,6 +53,7 @@ class OffsetRow:
     stated: Array
     round_off: Array
     over_offset: float
+    limit: float
 
     @property
     def difference(self) -> float:
@@ -63,13 +65,14 @@ class OffsetRow:
         """The largest d_i/(u_i + r_i)."""
         return float(np.max(self.differences / (self.stated + self.round_off)))
 
-    def word(self, limit: float) -> Word:
+    @property
+    def word(self) -> Word:
         """The verdict on the row."""
         if not np.all(np.isfinite(self.differences)):
             return Word.UNDECIDED
         if self.pressure > 1.0:
             return Word.DIFFER
-        return Word.UNDECIDED if np.max(self.stated + self.round_off) > limit else Word.AGREE
+        return Word.UNDECIDED if np.max(self.stated + self.round_off) > self.limit else Word.AGREE
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,6 +137,7 @@ def _rows(question: OffsetQuestion, name: str, found: Offsets, exact: Array) -> 
             stated=SAFETY * np.max(off_curve / tilt) / over,
             round_off=_ROUND_OFF * (np.max(np.abs(points)) + t) / tilt / over,
             over_offset=float(np.max(apart)) / t,
+            limit=question.verdict_limit,
         )
 
 
@@ -146,9 +150,8 @@ def _shown(question: OffsetQuestion, construct: OffsetConstruction) -> tuple[Arr
 
 def _judged(question: OffsetQuestion, rows: Sequence[OffsetRow]) -> Verdict:
     """The worst word of all rows, with the row that decides."""
-    words = tuple(row.word(question.verdict_limit) for row in rows)
-    word = worst_of(words) or Word.UNDECIDED
-    mine = [row for row, found in zip(rows, words, strict=True) if found is word]
+    word = worst_of(row.word for row in rows) or Word.UNDECIDED
+    mine = [row for row in rows if row.word is word]
     row = max(mine, key=lambda row: row.pressure if np.isfinite(row.pressure) else np.inf)
     if not np.isfinite(row.pressure):
         cause = "some offset point lies beyond the ends of the exact curve"
@@ -164,4 +167,4 @@ def _judged(question: OffsetQuestion, rows: Sequence[OffsetRow]) -> Verdict:
         Word.UNDECIDED: f"{len(mine)} of {len(rows)} rows are undecided, first of all",
     }
     sentence = f"{beginning[word]} {row.spacing} at N = {row.n}, t = {row.offset:g}: {cause}."
-    return Verdict(word, (sentence,), words, completed=all(np.isfinite(each.difference) for each in rows))
+    return Verdict(word, (sentence,), completed=all(np.isfinite(each.difference) for each in rows))

@@ -36,12 +36,11 @@ from comparisons.quantities import VANISHING, norm
 from comparisons.stations import find_station, station_of
 from comparisons.verdict.events import CriticalRow
 from comparisons.verdict.point_forces import away_from_point_forces
-from comparisons.verdict.rows import Row
+from comparisons.verdict.rows import Row, Third
 from comparisons.verdict.runs import Runs
 from comparisons.verdict.uncertainty import GRIDS, Limit, largest, limit
-from cprbm_scene import Answer, Claim, Scene, StationAnswer
-from cprbm_scene.answer import Array, Flags
-from cprbm_scene.statement import CRITICAL, STRESSES
+from cprbm_scene.answer import Answer, Flags, StationAnswer
+from cprbm_scene.statement import CRITICAL, STRESSES, Claim, Scene
 
 _OF_THE_VALUE = frozenset({"force", "reaction", "reaction_moment"})
 """Quantities with claims on the share of the value itself."""
@@ -123,26 +122,6 @@ def standings(scene: Scene, rows: Sequence[Row], criticals: Sequence[CriticalRow
     return tuple(found)
 
 
-@dataclass(frozen=True, slots=True)
-class Third:
-    """A row beside the solid.
-
-    Attributes:
-        row: the row.
-        solid: x (k,), in the probe's unit.
-        uncertainty: u, in the probe's unit.
-        cprbm, fea, other: distances from x of the CPRBM, of the finite elements, and of the CPRBM in the other theory;
-            NaN without a value.
-    """
-
-    row: Row
-    solid: Array
-    uncertainty: float
-    cprbm: float
-    fea: float
-    other: float
-
-
 def solid_limit(
     scene: Scene, row: Row, answers: Sequence[Answer], beside: Sequence[StationAnswer] = ()
 ) -> tuple[Limit, Flags] | None:
@@ -172,43 +151,43 @@ def contact_model(runs: Runs, row: Row) -> float | None:
 
     None where a value is missing, has another shape, or lies on another branch.
     """
-    if runs.formulations is None or row.counts is None:
-        return None
-    stations = [find_station(answer, *row.where) for answer in runs.formulations]
+    answers = [runs.answers[name] for name in runs.formulations if name in runs.answers]
+    stations = [find_station(answer, *row.where) for answer in answers]
     found = [at.values[row.probe.name] for at in stations if at is not None and at.branch == row.branch]
-    if [value.shape for value in found] != [row.fea.shape] * 2:
+    if row.counts is None or [value.shape for value in found] != [row.fea.shape] * 2:
         return None
     return norm(row.probe.quantity, (found[0] - found[1])[row.counts])
 
 
-def thirds_of(compared: Comparison) -> tuple[Third, ...]:
+def thirds_of(compared: Comparison) -> tuple[Row, ...]:
     """Rows with values of all answers; none without a solid that reached the last station."""
-    scene, runs, found = compared.scene, compared.runs, list[Third]()
-    if runs.solid is None or not all(answer.completed for answer in runs.solid):
+    scene, runs, found = compared.scene, compared.runs, list[tuple[Row, Third]]()
+    if not all(answer.completed for answer in runs.solids):
         return ()
     for row in (row for row in compared.rows if row.bounds is not None):
-        limited = solid_limit(scene, row, runs.solid, (station_of(runs.reference, *row.where),))
+        limited = solid_limit(scene, row, runs.solids, (station_of(runs.answers["fea"], *row.where),))
         if limited is not None and limited[1].any():
             x, counts, quantity = limited[0].value, limited[1], row.probe.quantity
             beside = (row.cprbm, row.fea, None if math.isnan(row.theory) else row.other)
             off = (math.nan if value is None else norm(quantity, (value - x)[counts]) for value in beside)
-            found.append(Third(row, x, norm(quantity, limited[0].uncertainty[counts]), *off))
-    widest = largest(((one.row.probe.name, one.row.stage), one.uncertainty) for one in found)
-    return tuple(replace(one, uncertainty=widest[one.row.probe.name, one.row.stage]) for one in found)
+            found.append((row, Third(x, norm(quantity, limited[0].uncertainty[counts]), *off)))
+    widest = largest(((row.probe.name, row.stage), third.uncertainty) for row, third in found)
+    pairs = ((row, replace(third, uncertainty=widest[row.probe.name, row.stage])) for row, third in found)
+    return tuple(replace(row, third=third) for row, third in pairs)
 
 
 def solid_sentence(compared: Comparison) -> str:
     """Largest distances from the solid at the last station with a displacement or a rotation; empty without a solid."""
     runs = compared.runs
-    if runs.solid is None:
+    if not runs.solids:
         return ""
-    for answer in runs.solid:
+    for answer in runs.solids:
         if not answer.completed:
             return f"The solid has no complete answer: {answer.ending.value}. {answer.sentence}"
-    moved = [one for one in thirds_of(compared) if one.row.probe.quantity in ("displacement", "rotation")]
+    moved = [row for row in thirds_of(compared) if row.probe.quantity in ("displacement", "rotation")]
     if not moved:
         return "The solid has no displacement or rotation beside the beam theories."
-    last = [one for one in moved if one.row.where == moved[-1].row.where]
+    last = [row for row in moved if row.where == moved[-1].where]
     return (
         f"Beside the solid, displacements and rotations at the last station are off by at most "
         f"{_largest(last, 'fea')} in {runs.theory} (finite elements) and {_largest(last, 'other')} in "
@@ -216,7 +195,7 @@ def solid_sentence(compared: Comparison) -> str:
     )
 
 
-def _largest(found: Sequence[Third], size: str) -> str:
+def _largest(found: Sequence[Row], size: str) -> str:
     """Largest fraction of the sizes of a name."""
-    fractions = (one.row.fraction(getattr(one, size)) for one in found)
+    fractions = (row.fraction(getattr(row.third, size)) for row in found)
     return percent(max((fraction for fraction in fractions if fraction is not None), default=None))

@@ -26,7 +26,7 @@ use the reaction.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
@@ -37,7 +37,7 @@ from comparisons.choices import Choices, check
 from comparisons.executor import ALONE, Crew, Job, Solver
 from comparisons.formats import in_file_units
 from comparisons.reactions import perturbed_scene
-from comparisons.verdict.runs import Runs, other_theory
+from comparisons.verdict.runs import SOLVERS, TWICE, Runs, other_theory, runs_of
 from cprbm_scene import Answer, Ending, Mistake, RigidContact, Scene, SceneError, Spacing
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
@@ -175,11 +175,6 @@ def exact_by_rule(scene: Scene, choices: Choices) -> Answer:
     )
 
 
-def exact_or_why(answer: Answer | None = None) -> tuple[Answer | None, str]:
-    """An exact answer with a station, or None and the reason for its absence."""
-    return (answer, "") if answer is None or answer.stations else (None, answer.sentence)
-
-
 def solid_answer(scene: Scene, choices: Choices) -> Answer:
     """The answer of the mechanism as a plane solid.
 
@@ -272,30 +267,13 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
     pending = crew.begin(list(jobs.values()), partial(_nothing_in_common, scene))
 
     def ended() -> Runs:
-        found = dict(zip(jobs, pending(), strict=False))  # of decided runs the first two alone
-        cprbm, fea, solid = (
-            tuple(found[run] for run in (name, f"{name} finer") if run in found) for name in ("cprbm", "fea", "solid")
-        )
-        other, other_absence = (None, "") if bare else in_other_theory(scene, even, solvers)
-        exact, exact_absence = exact_or_why(found.get("exact"))
-        ratio, fea_ratio = even.ratios_beside()
-        return Runs(
-            theory,
-            cprbm,
-            fea,
-            auto=found.get("auto"),
-            paper=None if bare or "auto" in jobs or len(found) < len(jobs) else in_paper(scene, choices, solvers),
-            beside=found.get("beside"),
-            ratio=ratio,
-            fea_beside=found.get("fea beside"),
-            fea_ratio=fea_ratio,
-            other=other,
-            other_absence=other_absence,
-            perturbed=found.get("perturbed"),
-            exact=exact,
-            exact_absence=exact_absence,
-            solid=solid or None,
-        )
+        found: dict[str, Answer | str] = dict(zip(jobs, pending(), strict=False))  # of decided runs the first two alone
+        if not bare:
+            has_paper = len(found) == len(jobs) and "cprbm auto" not in jobs
+            found |= in_other_theory(scene, even, solvers)
+            found |= in_paper(scene, choices, solvers) if has_paper else {}
+        beside = {f"{name} beside": 1.0 / ratio for name, ratio in zip(SOLVERS, even.ratios_beside(), strict=True)}
+        return runs_of(scene, theory, found, {**beside, **TWICE})
 
     return ended
 
@@ -307,9 +285,9 @@ def _planned(scene: Scene, choices: Choices, solvers: Solvers, *, bare: bool) ->
     planned: dict[str, tuple[Solver | None, Scene | None, Choices]] = {
         "cprbm": (solvers.cprbm, scene, choices),
         "fea": (solvers.fea, scene, choices),
-        "auto": (None if even == choices else solvers.cprbm, scene, even),
-        "perturbed": (solvers.cprbm, driven, choices),
-        "beside": (solvers.cprbm, scene, even.beside()),
+        "cprbm auto": (None if even == choices else solvers.cprbm, scene, even),
+        "cprbm perturbed": (solvers.cprbm, driven, choices),
+        "cprbm beside": (solvers.cprbm, scene, even.beside()),
         "cprbm finer": (solvers.cprbm, scene, even.finer()),
         "fea beside": (solvers.fea, scene, beside),
         "fea finer": (solvers.fea, scene, finer),
@@ -331,28 +309,25 @@ def _nothing_in_common(scene: Scene, cprbm: Answer, fea: Answer) -> bool:
     return not (asked & reached[0] & reached[1]) and not cprbm.critical and not fea.critical
 
 
-def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
-    """The CPRBM at N in ``paper`` and ``bending``; None where the run is impossible, takes long or shows nothing."""
+def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> dict[str, Answer]:
+    """The CPRBM at N in ``paper`` and ``bending``, by name; none where a run is impossible, long, or shows nothing."""
     finest = choices.links if isinstance(choices.links, int) else max(choices.links.values())
     contacts = scene.contacts.values()
     has_hints = all(isinstance(contact, RigidContact) or contact.paper is not None for contact in contacts)
     if not contacts or not has_hints or finest > PAPER_BESIDE_AUTO or any(stage.beyond for stage in scene.stages):
-        return None
-    # `paper` may refuse too few links for the polynomial; no requested value depends on the run
-    return _unless_refused(solvers.cprbm, scene, replace(choices.within("bending"), formulation="paper"))[0]
+        return {}
+    with suppress(SceneError):  # too few links for the polynomial; no requested value depends on the run
+        return {"cprbm paper": solvers.cprbm(scene, replace(choices.within("bending"), formulation="paper"))}
+    return {}
 
 
-def in_other_theory(scene: Scene, choices: Choices, solvers: Solvers) -> tuple[Answer | None, str]:
-    """The CPRBM in the other theory (:attr:`Runs.other_theory`), or None and the mistakes of a refusal."""
-    return _unless_refused(solvers.cprbm, scene, choices.within(other_theory(choices.kinematics_of(scene))))
-
-
-def _unless_refused(solver: Solver, scene: Scene, choices: Choices) -> tuple[Answer | None, str]:
-    """The answer of a solver, or None and the mistakes of a refusal."""
+def in_other_theory(scene: Scene, choices: Choices, solvers: Solvers) -> dict[str, Answer | str]:
+    """The CPRBM in the other theory (:attr:`Runs.other_theory`), or the mistakes of a refusal, by name of the run."""
+    theory = other_theory(choices.kinematics_of(scene))
     try:
-        return solver(scene, choices), ""
+        return {f"cprbm {theory}": solvers.cprbm(scene, choices.within(theory))}
     except SceneError as error:
-        return None, "; ".join(map(str, error.mistakes))
+        return {f"cprbm {theory}": "; ".join(map(str, error.mistakes))}
 
 
 @contextmanager

@@ -11,7 +11,6 @@ from comparisons.formats import at_station, distance_text, number, percent, with
 from comparisons.quantities import load_unit
 from comparisons.stations import event_tolerance, problems
 from comparisons.verdict import Reason, Word
-from comparisons.verdict.calibration import error_ratios, tally, true_errors
 from comparisons.verdict.events import (
     MIRRORED,
     PASSED,
@@ -21,33 +20,28 @@ from comparisons.verdict.events import (
     mechanism,
     passed_by,
 )
-from comparisons.verdict.judge import Judged
+from comparisons.verdict.judge import error_ratios, tally, true_errors
 from comparisons.verdict.rows import Row
-from comparisons.verdict.runs import SOLVERS, Runs, RunsTable
+from comparisons.verdict.runs import SOLVERS, Runs
 from cprbm_scene import Answer, Scene
 
 NAMES = {"cprbm": "the CPRBM", "fea": "the finite elements"}
 _OPTIONS = {"cprbm": ("-n", "links"), "fea": ("--elements", "elements")}
 
 
-def headline(table: RunsTable, rows: Sequence[Row], judged: Sequence[Judged], decided: Judged) -> str:
+def headline(runs: Runs, rows: Sequence[Row], decided: tuple[Word, Reason | None]) -> str:
     """Sentence on all rows: the deciding row, or the closest agreeing row."""
     word, reason = decided
-    counted = Counter(found for found, _ in judged if found is not None)
-    total = sum(counted.values())
-    pairs = [(row, why) for row, (found, why) in zip(rows, judged, strict=True) if found is word]
-    if not pairs:
+    total = sum(row.word is not None for row in rows)
+    mine = [row for row in rows if row.word is word]
+    if not mine:
         return "No station has a row that can be compared."
+    row = max((row for row in mine if row.reason is reason), key=pressure)
     if word is Word.AGREE:
-        row = max((row for row, _ in pairs), key=pressure)
-        counts = f"All {total} rows agree" if counted[word] == total else f"{counted[word]} of {total} rows agree"
-        return f"{counts}; the closest is {place(table.scene, row)}: {_measured(row)}.{_others(rows, judged)}"
-    mine = [row for row, why in pairs if why is reason]
-    row = max(mine, key=pressure)
+        counts = f"All {total} rows agree" if len(mine) == total else f"{len(mine)} of {total} rows agree"
+        return f"{counts}; the closest is {place(runs.scene, row)}: {_measured(row)}.{_others(rows)}"
     verb = "differ" if word is Word.DIFFER else "are undecided"
-    return (
-        f"{len(pairs)} of {total} rows {verb}, first of all {place(table.scene, row)}: {_explained(table, row, reason)}"
-    )
+    return f"{len(mine)} of {total} rows {verb}, first of all {place(runs.scene, row)}: {_explained(runs, row, reason)}"
 
 
 def pressure(row: Row) -> float:
@@ -85,19 +79,20 @@ def wider_limits(scene: Scene) -> str:
     return allowed if wider else ""
 
 
-def theory_sentence(scene: Scene, runs: Runs, rows: Sequence[Row]) -> str:
+def theory_sentence(runs: Runs, rows: Sequence[Row]) -> str:
     """The largest step of theory, or why the CPRBM has no value in the other theory; empty without this run."""
-    other = runs.other
+    scene, other, own = runs.scene, runs.other, runs.answers["cprbm"]
     if other is None:
-        return f"The CPRBM does not answer in {runs.other_theory}: {runs.other_absence}." if runs.other_absence else ""
+        refused = runs.absences.get(f"cprbm {runs.other_theory}")
+        return f"The CPRBM does not answer in {runs.other_theory}: {refused}." if refused else ""
     parts, inside = [], f"In {runs.other_theory} the CPRBM"
     steps = [(row.theory / row.scale, row) for row in rows if math.isfinite(row.theory)]
     if steps:
         largest, row = max(steps, key=lambda step: step[0])
         parts.append(f"{inside}'s values are at most {percent(largest)} of the scale away ({place(scene, row)}).")
-    if other.completed and not runs.cprbm[0].completed:
+    if other.completed and not own.completed:
         parts.append(f"{inside} has a complete answer: `--theory {runs.other_theory}`.")
-    elif runs.cprbm[0].completed and not other.completed:
+    elif own.completed and not other.completed:
         parts.append(f"{inside} has no complete answer: {_first(problem_sentences(scene, other))}.")
     return " ".join(parts)
 
@@ -107,11 +102,11 @@ def problem_sentences(scene: Scene, answer: Answer) -> tuple[str, ...]:
     return problems(scene, answer, partial(at_station, scene))
 
 
-def ended_sentence(table: RunsTable, names: Iterable[str]) -> str:
+def ended_sentence(runs: Runs, names: Iterable[str]) -> str:
     """The incomplete runs of some ``names``, and their problems; each problem once."""
     by_problem: dict[str, list[str]] = {}
     for name in names:
-        by_problem.setdefault(_first(problem_sentences(table.scene, table.answers[name])), []).append(name)
+        by_problem.setdefault(_first(problem_sentences(runs.scene, runs.same_theory[name])), []).append(name)
     parts = "; ".join(f"{', '.join(runs)}: {problem}" for problem, runs in by_problem.items())
     return f"Runs without a complete answer: {parts}."
 
@@ -121,11 +116,11 @@ def audit_sentence(solver: str, complaints: Sequence[str]) -> str:
     return f"The audit of {solver}'s answer fails: {_first(complaints)}."
 
 
-def critical_sentence(table: RunsTable, row: CriticalRow) -> str:
+def critical_sentence(runs: Runs, row: CriticalRow) -> str:
     """Loads and mechanisms of a critical point in both solvers, and its word."""
-    scene, places = table.scene, []
+    scene, places = runs.scene, []
     for (solver, name), one in zip(NAMES.items(), (row.cprbm, row.fea), strict=True):
-        others = [each.end for each in table.answers[solver].gone_over if each.end.stage == row.stage]
+        others = [each.end for each in runs.same_theory[solver].gone_over if each.end.stage == row.stage]
         points = others if one is None else [one]
         texts = " and ".join(f"{with_unit(scene, each.value, row.unit, 5)} ({mechanism(each)})" for each in points)
         beside = f", which passed {texts} and went on," if texts else ""
@@ -165,26 +160,26 @@ def closing_sentence(scene: Scene, closing: Closing) -> str:
     return f"{contact} closes in {stage.name} at {loads}, against a stated {stated}, {allowed} allowed: DIFFER."
 
 
-def passed_sentences(table: RunsTable, rows: Sequence[Row], judged: Sequence[Judged]) -> Iterator[str]:
+def passed_sentences(runs: Runs, rows: Sequence[Row]) -> Iterator[str]:
     """Passed critical points of both compared runs before the first differing row."""
-    differing = [row for row, (word, _) in zip(rows, judged, strict=True) if word is Word.DIFFER]
+    differing = [row for row in rows if row.word is Word.DIFFER]
     if not differing:
         return
-    stages = {stage.name: stage for stage in table.scene.stages}
+    stages = {stage.name: stage for stage in runs.scene.stages}
     stage = stages[differing[0].stage]
     before, index = [*stages][: [*stages].index(stage.name)], stage.stations.index(differing[0].station)
-    for name, answer in zip(NAMES.values(), table.pair, strict=True):
+    for name, answer in zip(NAMES.values(), runs.pair, strict=True):
         earlier = [one for one in answer.gone_over if one.end.stage in before]
         mine = [one for one in answer.gone_over if one.end.stage == stage.name]
-        for one in (*earlier, *mine[: passed_by(table.scene, stage, answer, index)])[-1:]:
+        for one in (*earlier, *mine[: passed_by(runs.scene, stage, answer, index)])[-1:]:
             yield (
                 f"Before that {name} passed a critical point ({mechanism(one.end)}) at "
-                f"{at_station(table.scene, one.end.stage, one.end.value)} and went on along a state turned by "
+                f"{at_station(runs.scene, one.end.stage, one.end.value)} and went on along a state turned by "
                 f"{number(one.turned, 3)} rad."
             )
 
 
-def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:
+def _explained(runs: Runs, row: Row, reason: Reason | None) -> str:
     """Why the row does not agree, and the next command."""
     contacts = " and ".join(sorted((row.events.unsettled | row.events.contradictory) - {PASSED, MIRRORED}))
     match reason:
@@ -216,13 +211,13 @@ def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:
         case Reason.THEORY:
             return (
                 f"bending and shear differ by {_of_scale(row.theory, row)} of the scale, more than "
-                f"{percent(table.scene.limit(row.probe))}; in bending the solvers agree to "
+                f"{percent(runs.scene.limit(row.probe))}; in bending the solvers agree to "
                 f"{_of_scale(row.difference, row)}. Use the value in shear: `--theory shear`."
             )
         case Reason.NOT_UNIQUE:
             return f"{row.probe.of} shares its force with a joint or contact beside it, and the sums agree."
         case _:
-            return _coarse(table, row)
+            return _coarse(runs, row)
 
 
 def _first(sentences: Sequence[str]) -> str:
@@ -231,13 +226,13 @@ def _first(sentences: Sequence[str]) -> str:
     return sentences[0].rstrip(".") + more
 
 
-def _coarse(table: RunsTable, row: Row) -> str:
+def _coarse(runs: Runs, row: Row) -> str:
     """The solver with too large an uncertainty, and a sufficient size."""
     assert row.bounds is not None
-    limit = table.scene.limit(row.probe)
+    limit = runs.scene.limit(row.probe)
     needed, room = [], 0.4 * limit * row.scale
     for solver, (option, key) in _OPTIONS.items():
-        size, stated = table.answers[solver].settings.get(key), getattr(row.bounds, solver)
+        size, stated = runs.same_theory[solver].settings.get(key), getattr(row.bounds, solver)
         if isinstance(size, int) and stated > room:
             needed.append(f"{option} {math.ceil(size * math.sqrt(stated / room) / 10.0) * 10}")
     hint = f" `{' '.join(needed)}` would do." if needed else " Refine both solvers."
@@ -248,17 +243,11 @@ def _coarse(table: RunsTable, row: Row) -> str:
     )
 
 
-def _others(rows: Sequence[Row], judged: Sequence[Judged]) -> str:
+def _others(rows: Sequence[Row]) -> str:
     """Undecided rows of a case that agrees, by probe and reason."""
-    found = Counter(
-        (row.probe.name, reason.value)
-        for row, (word, reason) in zip(rows, judged, strict=True)
-        if word is Word.UNDECIDED and reason is not None
-    )
-    if not found:
-        return ""
+    found = Counter((row.probe.name, row.reason.value) for row in rows if row.word is Word.UNDECIDED and row.reason)
     parts = ", ".join(f"{count} of {name} ({reason})" for (name, reason), count in found.items())
-    return f" Undecided rows: {parts}."
+    return f" Undecided rows: {parts}." if parts else ""
 
 
 def _measured(row: Row) -> str:

@@ -35,14 +35,14 @@ import numpy as np
 from comparisons.choices import Choices
 from comparisons.executor import Crew
 from comparisons.formats import at_station, percent
-from comparisons.pairing import Solvers, exact_or_why, in_other_theory, paired, with_solid
+from comparisons.pairing import Solvers, in_other_theory, paired, with_solid
 from comparisons.reactions import perturbed_scene
 from comparisons.sentences import problem_sentences
 from comparisons.stations import station_of
 from comparisons.store import AnswerMemory
 from comparisons.verdict.events import Place
 from comparisons.verdict.rows import Row, rows_of
-from comparisons.verdict.runs import Runs, Uncertainties
+from comparisons.verdict.runs import Runs, Uncertainties, runs_of
 from comparisons.verdict.uncertainty import Error, error, limit
 from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer
 from cprbm_scene.answer import Array, PointForces, frozen_array
@@ -72,19 +72,6 @@ Say = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True)
-class WorstRow:
-    """A row, by probe, stage and station, with its uncertainty as a fraction.
-
-    The fraction is infinite where the value exists at one N and not at another.
-    """
-
-    probe: str
-    stage: str
-    station: float
-    fraction: float
-
-
-@dataclass(frozen=True, slots=True)
 class Tolerance:
     """Result of a search for N.
 
@@ -93,6 +80,8 @@ class Tolerance:
         solver: the solver.
         n: the last N.
         worst: the row with the largest fraction; None without a row that states any.
+        fraction: the largest stated uncertainty; infinite in trouble, and where a value exists at one N and not at
+            another; 0 without a row.
         trouble: why nothing is stated; else empty.
         probes: names of the probes with limits as values.
         solved: every solved N, ascending.
@@ -102,7 +91,8 @@ class Tolerance:
     asked: float
     solver: SolverName
     n: int
-    worst: WorstRow | None
+    worst: Row | None
+    fraction: float
     trouble: str
     probes: tuple[str, ...]
     solved: tuple[int, ...] = ()
@@ -112,11 +102,6 @@ class Tolerance:
     def extrapolated(self) -> tuple[int, ...]:
         """The two finest N, where values are limits of both; otherwise empty."""
         return (self.n // 2, self.n) if self.probes else ()
-
-    @property
-    def fraction(self) -> float:
-        """The largest fraction: infinite in trouble, 0 without a row."""
-        return math.inf if self.trouble else 0.0 if self.worst is None else self.worst.fraction
 
     @property
     def met(self) -> bool:
@@ -130,9 +115,9 @@ class Tolerance:
             what = f"{len(self.probes)} probes extrapolated from N = {', '.join(map(str, self.extrapolated))}"
         found, row = self.trouble or "no row has a value", self.worst
         if row is not None:
-            finite = math.isfinite(row.fraction)
-            stated = f"states {percent(row.fraction)}" if finite else "has a value at one N and none at another"
-            found = f"{row.probe} at {at_station(scene, row.stage, row.station)} {stated}"
+            finite = math.isfinite(self.fraction)
+            stated = f"states {percent(self.fraction)}" if finite else "has a value at one N and none at another"
+            found = f"{row.probe.name} at {at_station(scene, row.stage, row.station)} {stated}"
         ended = f"; {self.ended}" if self.ended else ""
         met = "within" if self.met else "NOT within"
         return f"{self.solver.upper()}: {met} {percent(self.asked)}: {what}; at worst {found}{ended}."
@@ -274,12 +259,15 @@ class _Search:
         value = found.pop() if paper else None
         answers = dict(zip(ordered, found, strict=True))
         problems = {size: next(iter(problem_sentences(self.scene, each)), "") for size, each in answers.items()}
-        result = Tolerance(self.tolerance, self.solver, n, None, problems[n // 2] or problems[n], ())
-        if result.trouble:
+        trouble = problems[n // 2] or problems[n]
+        result = Tolerance(self.tolerance, self.solver, n, None, math.inf if trouble else 0.0, trouble, ())
+        if trouble:
             return _Level(answers, value or answers[n], result)
         answers = {size: answer for size, answer in answers.items() if not problems[size]}
         limits = limits_of(self.scene, answers)
-        result = replace(result, worst=self._worst(limits, value), probes=() if self.in_paper else limits.probes)
+        worst, fraction = self._worst(limits, value)
+        probes = () if self.in_paper else limits.probes
+        result = replace(result, worst=worst, fraction=fraction, probes=probes)
         return _Level(answers, value or limits.answer, result, limits)
 
     def choices_at(self, n: int) -> Choices:
@@ -291,19 +279,21 @@ class _Search:
         """True for the CPRBM in ``paper``, whose values are never limits."""
         return self.solver == "cprbm" and self.choices.formulation == "paper"
 
-    def _worst(self, limits: Limits, paper: Answer | None) -> WorstRow | None:
-        """The row with the largest f, of a value in ``paper`` with the distance from ``auto``."""
+    def _worst(self, limits: Limits, paper: Answer | None) -> tuple[Row | None, float]:
+        """The row with the largest f, and f, of a value in ``paper`` with the distance from ``auto``."""
         reference = self.reference or limits.answer
-        runs = Runs(
-            self.choices.kinematics_of(self.scene),
-            (paper or limits.answer, limits.coarse),
-            (reference, reference),
-            auto=None if paper is None else limits.answer,
-            settled=frozendict({"cprbm": limits.uncertainties}),
-        )
-        fractions = ((row, _fraction(row, limits)) for row in rows_of(self.scene, runs))
-        stated = (WorstRow(row.probe.name, *row.where, f) for row, f in fractions if f is not None)
-        return max(stated, key=lambda each: each.fraction, default=None)
+        answers = {
+            "cprbm": paper or limits.answer,
+            "cprbm finer": limits.coarse,
+            "fea": reference,
+            "fea finer": reference,
+        }
+        answers |= {} if paper is None else {"cprbm auto": limits.answer}
+        settled = {"cprbm": limits.uncertainties}
+        runs = Runs(self.scene, self.choices.kinematics_of(self.scene), answers, settled=settled)
+        fractions = ((row, _fraction(row, limits)) for row in rows_of(runs))
+        stated = ((row, f) for row, f in fractions if f is not None)
+        return max(stated, key=lambda each: each[1], default=(None, 0.0))
 
 
 def _fraction(row: Row, limits: Limits) -> float | None:
@@ -365,23 +355,18 @@ def runs_within(
     if cprbm.limits is None or fea.limits is None:
         runs = paired(scene, at_last, replace(solvers, solid=None), memory)
     else:
-        driven = perturbed_scene(scene)
-        other, other_absence = in_other_theory(scene, replace(at_last, links=links.n // 2), solvers)
-        known = [(solvers.exact, scene, of_fea.choices)] if solvers.exact and theory == "bending" else []
-        exact, exact_absence = exact_or_why(*memory.answers(known))
-        runs = Runs(
-            theory,
-            (cprbm.answer, cprbm.limits.coarse),
-            (fea.limits.answer, fea.limits.coarse),
-            auto=cprbm.limits.answer if of_cprbm.in_paper else None,
-            other=other,
-            other_absence=other_absence,
-            perturbed=None if driven is None else replace(of_cprbm, scene=driven, reference=None).at(links.n).answer,
-            exact=exact,
-            exact_absence=exact_absence,
-            settled=frozendict({"cprbm": cprbm.limits.uncertainties, "fea": fea.limits.uncertainties}),
-        )
+        results: dict[str, Answer | str] = {"cprbm": cprbm.answer, "cprbm finer": cprbm.limits.coarse}
+        results |= {"fea": fea.limits.answer, "fea finer": fea.limits.coarse}
+        if of_cprbm.in_paper:
+            results["cprbm auto"] = cprbm.limits.answer
+        results |= in_other_theory(scene, replace(at_last, links=links.n // 2), solvers)
+        if (driven := perturbed_scene(scene)) is not None:
+            results["cprbm perturbed"] = replace(of_cprbm, scene=driven, reference=None).at(links.n).answer
+        if solvers.exact and theory == "bending":
+            (results["exact"],) = memory.answers([(solvers.exact, scene, of_fea.choices)])
+        settled = {"cprbm": cprbm.limits.uncertainties, "fea": fea.limits.uncertainties}
+        runs = runs_of(scene, theory, results, settled=settled)
     if solvers.solid is not None:
         solid, of_solid = replace(of_fea, solver="solid", reference=fea.answer if fea.limits else None).run()
-        return replace(runs, solid=tuple(solid.answers.values())), (links, elements, of_solid)
+        return replace(runs, solids=tuple(solid.answers.values())), (links, elements, of_solid)
     return runs, (links, elements)

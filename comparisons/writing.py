@@ -1,4 +1,4 @@
-"""What the harness writes: JSON of plain data, files that are whole or absent, and files that grow by whole lines.
+"""Files of the harness: text of JSON, files that are whole or absent, and files that grow by whole lines.
 
 A file stays whole after a kill or a loss of power.
 """
@@ -6,16 +6,11 @@ A file stays whole after a kill or a loss of power.
 from __future__ import annotations
 
 import json
-import math
 import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
-
-import numpy as np
-
-Plain = dict[str, Any]
 
 _PARTIAL = ".partial"
 
@@ -30,24 +25,6 @@ def text_of(data: Mapping[str, Any], indent: int | None = 1) -> str:
         json.dumps(data, indent=indent, ensure_ascii=False, allow_nan=False, separators=None if indent else (",", ":"))
         + "\n"
     )
-
-
-def plain(value: object) -> Any:  # noqa: ANN401 - all types of JSON
-    """``value`` in the types of JSON; None for a number without a finite value."""
-    match value:
-        case Mapping():
-            return {str(key): plain(item) for key, item in value.items()}
-        case list() | tuple():
-            return [plain(item) for item in value]
-        case np.ndarray():
-            whole = value.dtype.kind != "f" or bool(np.isfinite(value).all())
-            return value.tolist() if whole else plain(value.tolist())
-        case bool() | int() | str() | None:
-            return value
-        case float() | np.floating():
-            return float(value) if math.isfinite(value) else None
-        case _:
-            return str(value)
 
 
 def write(path: Path, content: str | bytes) -> None:

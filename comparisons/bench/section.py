@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,12 +16,18 @@ from comparisons.bench.measures import MEASURES, Measure, uncertainties
 from comparisons.bench.running import FIT_FROM, NO_WORSE, OURS, Clocked, Contender, Session, Timing, trend
 from comparisons.choices import Count
 from comparisons.formats import number, percent
-from comparisons.present.canvas import canvas, common_legend, finished, logarithmic
-from comparisons.present.columns import Column, Figure, Section, Table, records_of, table_of, without_empty
-from comparisons.writing import Plain, plain
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from comparisons.present.canvas import Axes, canvas, common_legend, finished, logarithmic
+from comparisons.present.columns import (
+    Column,
+    Figure,
+    Plain,
+    Section,
+    Table,
+    plain,
+    records_of,
+    table_of,
+    without_empty,
+)
 
 TARGETS = (1e-2, 1e-3, 1e-4)
 _CLOCKED: dict[Clocked, str] = {"both": "set-up and solve", "solve": "solve alone"}

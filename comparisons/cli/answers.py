@@ -14,7 +14,6 @@ from comparisons.audit import Audit, audit
 from comparisons.cli import output
 from comparisons.cli.doctor import WHAT_DRAWS
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
-from comparisons.cli.request import Request
 from comparisons.formats import at_station, file_unit
 from comparisons.logs import SOLVERS
 from comparisons.pairing import Solvers, exact_answer, solid_answer, solvers_of
@@ -32,7 +31,7 @@ _ROUNDING = 1e-9
 """Largest distance of a typed station, a share of the station: decimal digits are rounded."""
 
 
-def solve(request: Request, solver: SolverName) -> int:
+def solve(request: output.Request, solver: SolverName) -> int:
     """Write and print the answer of a solver; the exit code."""
     scene = request.scene()
     request = request.with_room()
@@ -42,7 +41,9 @@ def solve(request: Request, solver: SolverName) -> int:
     return _report_problems(scene, *found)
 
 
-def _write(request: Request, scene: Scene, answer: Answer, audited: Audit, searches: tuple[Tolerance, ...]) -> None:
+def _write(
+    request: output.Request, scene: Scene, answer: Answer, audited: Audit, searches: tuple[Tolerance, ...]
+) -> None:
     """Write the files of an answer, and print its tables."""
     from comparisons.present import case_tables, csv_table, figures, json_document  # not for a quiet solve
 
@@ -57,7 +58,7 @@ def _write(request: Request, scene: Scene, answer: Answer, audited: Audit, searc
         output.print_tables(case_tables.answer_tables(scene, answer, searches))
 
 
-def _answer_of(request: Request, scene: Scene, solver: SolverName) -> Found:
+def _answer_of(request: output.Request, scene: Scene, solver: SolverName) -> Found:
     """The answer of a solver.
 
     Raises:
@@ -88,7 +89,7 @@ def _report_problems(scene: Scene, answer: Answer, audited: Audit, searches: tup
     return code if sentences else 0
 
 
-def view(request: Request, solver: SolverName, quantity: Coloured, station: str | None) -> int:
+def view(request: output.Request, solver: SolverName, quantity: Coloured, station: str | None) -> int:
     """Write pictures of the answer of a solver; the exit code.
 
     Raises:

@@ -1,20 +1,23 @@
-"""Lazy commands, and groups of commands under headings.
+"""Lazy commands, groups of commands under headings, and the door to the developers' tools.
 
-A list of commands, and the help of a command, load no command's module: the module comes with the first call.
+A list of commands, and the help of a command, load no command's module: the module comes with the first call.  The
+tools stand in ``tests`` and ``benchmarks`` of a checkout, and the wheel has none of them.
 """
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from difflib import get_close_matches
 from importlib import import_module
+from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import click
 from click.core import ParameterSource
 
-from comparisons import workshop
 from comparisons.choices import Choices
 
 SEARCHED = {"links": "-n", "elements": "--elements", "across": "--across"}
@@ -22,7 +25,7 @@ SEARCHED = {"links": "-n", "elements": "--elements", "across": "--across"}
 
 
 class SolvingCommand(click.Command):
-    """A command whose function takes a :class:`comparisons.cli.request.Request` and the values of its own options."""
+    """A command whose function takes a :class:`comparisons.cli.output.Request` and the values of its own options."""
 
     def invoke(self, ctx: click.Context) -> Any:  # noqa: ANN401 - click's form
         """Exit code of the command.
@@ -30,7 +33,7 @@ class SolvingCommand(click.Command):
         Raises:
             click.UsageError: the command line has a number of links or elements beside a tolerance.
         """
-        from comparisons.cli.request import Request  # not for a list or help
+        from comparisons.cli.output import Request  # not for a list or help
 
         for name, option in SEARCHED.items() if ctx.params.get("tol") else ():
             if ctx.get_parameter_source(name) is not ParameterSource.DEFAULT:
@@ -58,16 +61,16 @@ class ToolCommand(click.Command):
     """
 
     def __init__(self, tool: str) -> None:
-        record = workshop.TOOLS[tool]
+        record = TOOLS[tool]
         super().__init__(tool.rpartition(" ")[2], help=record.purpose, hidden=bool(record.new_name))
         self.tool = tool
 
     def loaded(self) -> click.Command:
         """The command of the tool; for an old name standard error states the new name."""
-        if new_name := workshop.TOOLS[self.tool].new_name:
+        if new_name := TOOLS[self.tool].new_name:
             text = f"cprbm: 'cprbm {self.tool}' is now 'cprbm {new_name}'; the next release drops the old name."
             click.echo(text, err=True)
-        found: click.Command = workshop.load(self.tool).command
+        found: click.Command = load_tool(self.tool).command
         return found
 
 
@@ -95,7 +98,7 @@ class Commands(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all commands; the developers' tools belong to a checkout."""
         shown = {name: each for name, each in self.commands.items() if not each.hidden}
-        return [name for name, each in shown.items() if workshop.is_checkout() or not isinstance(each, ToolCommand)]
+        return [name for name, each in shown.items() if is_checkout() or not isinstance(each, ToolCommand)]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands of every group under its heading."""
@@ -116,7 +119,7 @@ class Commands(click.Group):
             click.UsageError: no command has this name.
         """
         name, *rest = args
-        if absence := workshop.absence(f"{ctx.command_path} {name}".partition(" ")[2]):
+        if absence := absence_of(f"{ctx.command_path} {name}".partition(" ")[2]):
             raise click.ClickException(absence)
         if name not in self.commands:
             known = self.list_commands(ctx)
@@ -125,3 +128,68 @@ class Commands(click.Group):
             ctx.fail(f"found {name!r}, no command of '{ctx.command_path}'{meant}; allowed: {', '.join(known)}")
         command = self.commands[name]
         return name, command.loaded() if isinstance(command, ToolCommand) else command, rest
+
+
+ROOT = Path(__file__).resolve().parents[2]
+"""Folder above the packages: the checkout, or the folder of installed packages."""
+
+FOLDERS = ("tests/robustness", "benchmarks")
+
+
+@dataclass(frozen=True, slots=True)
+class Tool:
+    """A developers' tool.
+
+    Attributes:
+        module: its name.
+        purpose: as the list of commands states it.
+        new_name: the command that takes the place of this old one; empty if this is no old one.
+    """
+
+    module: str
+    purpose: str = ""
+    new_name: str = ""
+
+
+TOOLS = {
+    "robustness": Tool(
+        "tests.robustness.command",
+        "Judge both solvers on random scenes.",
+    ),
+    "stress": Tool("tests.robustness.command", new_name="robustness"),
+    "study relations": Tool(
+        "tests.relations.command",
+        "Compare a scene with its moved, mirrored, reordered and scaled images.",
+    ),
+    "bench --method slsqp": Tool("benchmarks.peers.slsqp"),
+    "bench --method ipopt": Tool("benchmarks.peers.ipopt"),
+}
+"""The tools by their commands, without the name of the program."""
+
+REMOVED = {
+    "regress": "'python -m tests.baseline' of a checkout records and compares the numbers (CONTRIBUTING.md).",
+    "study readings": "no reading of section 3.4 jumps where the paper says (the page 'Where a branch ends').",
+    "study materials": "within bending no error depends on the modulus (the page 'The paper’s claims').",
+    "bench --method trust-constr": "13 times the time of the CPRBM (the page 'Decisions').",
+}
+"""Commands without a successor, with the reason and the page that keeps their results."""
+
+
+def is_checkout() -> bool:
+    """True if this package stands in a checkout, beside the tools' folders."""
+    return all((ROOT / folder).is_dir() for folder in FOLDERS)
+
+
+def absence_of(command: str) -> str:
+    """The sentence that says why a tool or a removed command cannot run here; empty for every other command."""
+    if command in TOOLS and not is_checkout():
+        where = "it runs in a checkout of the repository, not from an installed package"
+        return f"'cprbm {command}' is a developers' tool: {where}."
+    return f"'cprbm {command}' is removed: {REMOVED[command]}" if command in REMOVED else ""
+
+
+def load_tool(command: str) -> ModuleType:
+    """The module of a tool, from this checkout whatever the current folder holds."""
+    if sys.path[0] != str(ROOT):
+        sys.path.insert(0, str(ROOT))  # processes that share the work take this path over
+    return import_module(TOOLS[command].module)

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from comparisons import workshop
 from comparisons.choices import KINEMATICS
 from comparisons.cli import options
-from comparisons.cli.commands import Commands, SolvingCommand, ToolCommand, later
+from comparisons.cli.commands import Commands, SolvingCommand, ToolCommand, absence_of, is_checkout, later
 from comparisons.cli.errors import exit_code
 from comparisons.cli.options import CASE, CASES, EXACT, EXPORTS, MANY, NUMERICAL, OUTPUT, SET, SIZED, VARIANTS
 
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
 ANSWERING = click.Choice(["cprbm", "fea", "exact", "solid"])
 """Names of all solvers of a single answer."""
 
-OPTIMISERS = ("slsqp", "ipopt") if workshop.is_checkout() else ()
+OPTIMISERS = ("slsqp", "ipopt") if is_checkout() else ()
 """Optimisers on the problem of the CPRBM: developers' tools."""
 
 _here = partial(options.folder, default=".", show_default=True)
@@ -44,7 +43,7 @@ class _Method(click.Choice[str]):
             click.ClickException: the method is a developers' tool and this is no checkout, or the method is removed.
             click.BadParameter: no method has this name.
         """
-        if absence := workshop.absence(f"bench --method {value}"):
+        if absence := absence_of(f"bench --method {value}"):
             raise click.ClickException(absence)
         return super().convert(value, param, ctx)
 
@@ -230,14 +229,14 @@ STUDIES = Commands(
     {"Commands": (
         SolvingCommand(
             "calibration",
-            callback=later("studies.calibration"),
+            callback=later("verdicts.calibration"),
             params=[*OUTPUT, options.folder(help="Folder for page, numbers and figure.")],
             help="Compare stated and true errors on every case with an exact answer.",
         ),
         ToolCommand("study relations"),
         SolvingCommand(
             "table1",
-            callback=later("studies.table1"),
+            callback=later("verdicts.table1"),
             params=[options.repeated(help="Repetitions of every cell of the table."),
                     options.time_limit(default="60", help="A solve that takes longer is not repeated."), *OUTPUT,
                     options.folder(help="Folder for page, numbers and figure.")],
@@ -251,7 +250,7 @@ EVIDENCE = (
     click.Command("list", callback=later("doctor.list_cases"), help="List the built-in cases."),
     SolvingCommand(
         "bench",
-        callback=later("studies.bench"),
+        callback=later("verdicts.bench"),
         params=[
             CASE, SET,
             _sizes(callback=options.counts,

@@ -12,22 +12,20 @@ import click
 
 from comparisons.cli import output
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
-from comparisons.cli.request import Request
 from comparisons.present.columns import Section
 from comparisons.present.page import Page, put_page, put_section
 from comparisons.sweeps import points as grids
 from comparisons.sweeps.demands import Demands, bounds_of, read_demands
 from comparisons.sweeps.optimum import optimum, optimum_section, problem_of
-from comparisons.sweeps.page import write_page
 from comparisons.sweeps.running import Runner, Sweep, tasks_of
 from comparisons.sweeps.scatter import distributions_of, scatter_section, study
-from comparisons.sweeps.tables import write_netcdf, write_tables
+from comparisons.sweeps.tables import write_netcdf, write_page, write_tables
 from comparisons.sweeps.workers import workers_on
 from cprbm_scene import Scene
 
 
 def sweep(
-    request: Request,
+    request: output.Request,
     vary: tuple[str, ...],
     sample: str | None,
     solver: Literal["cprbm", "fea", "compare"],
@@ -63,7 +61,7 @@ def sweep(
 
 
 def tolerance(
-    request: Request, samples: int, sobol: bool, limits: Path | None, solver: Literal["cprbm", "fea"]  # noqa: FBT001
+    request: output.Request, samples: int, sobol: bool, limits: Path | None, solver: Literal["cprbm", "fea"]  # noqa: FBT001
 ) -> int:  # fmt: skip
     """Solve a sample of a scene's parameters, and print quantiles and yield; exit code 1 if a point is missing."""
     scene = request.scene()
@@ -77,7 +75,7 @@ def tolerance(
     return 0 if result.complete else INCOMPLETE
 
 
-def optimise(request: Request, goal: Path, vary: tuple[str, ...], starts: int, solves: int) -> int:
+def optimise(request: output.Request, goal: Path, vary: tuple[str, ...], starts: int, solves: int) -> int:
     """Search the parameters of a scene for a goal; exit code 3 if the best point is undecided, 1 without an optimum."""
     scene = request.scene()
     problem = problem_of(scene, [grids.axis_of(text, request.si) for text in vary], goal)
@@ -90,7 +88,7 @@ def optimise(request: Request, goal: Path, vary: tuple[str, ...], starts: int, s
 
 
 @contextmanager
-def _runner(request: Request, scene: Scene, command: str, solves: int) -> Iterator[tuple[Path, Runner]]:
+def _runner(request: output.Request, scene: Scene, command: str, solves: int) -> Iterator[tuple[Path, Runner]]:
     """Context with the folder, and the solver of the points with a bar."""
     out = request.out or Path(f"{command}-{scene.name}")
     with workers_on(request.place) as workers, output.bar(solves, shown=not request.quiet, loggers=()) as progress:
@@ -98,7 +96,7 @@ def _runner(request: Request, scene: Scene, command: str, solves: int) -> Iterat
         yield out, Runner(workers, request.choices, request.solvers, request.at_most, out, progress.move)
 
 
-def _put(request: Request, scene: Scene, out: Path, result: Section, numbers: str) -> None:
+def _put(request: output.Request, scene: Scene, out: Path, result: Section, numbers: str) -> None:
     """Write and print the section of a study."""
     put_section(out, result)
     put_page(out, Page(result.heading, scene.title, further=(result,)))
@@ -110,7 +108,7 @@ def _put(request: Request, scene: Scene, out: Path, result: Section, numbers: st
 
 
 def _points(
-    request: Request, scene: Scene, vary: tuple[str, ...], sampled: str | None
+    request: output.Request, scene: Scene, vary: tuple[str, ...], sampled: str | None
 ) -> tuple[tuple[grids.Axis, ...], tuple[grids.Point, ...]]:
     """Axes and points of the command line.
 

@@ -1,4 +1,4 @@
-"""``cprbm compare``, ``converge`` and ``report``: both solvers on questions, as tables, JSON and a page.
+"""``cprbm compare``, ``converge``, ``report``, ``bench`` and ``study``: results one by one, as tables, JSON and a page.
 
 After every result the page and the JSON file are whole: an interrupted command leaves all finished work.
 """
@@ -11,29 +11,37 @@ from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import partial
 from logging import NOTSET
+from typing import Literal, TypeVar
 
 import click
 
 from comparisons import case, cases, logs, offset_verdict, pairing, provenance
+from comparisons.bench import measures, running
+from comparisons.bench.section import bench_section, size_text
 from comparisons.case import Comparison
+from comparisons.choices import Count, check
 from comparisons.cli import output
+from comparisons.cli.commands import load_tool
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
-from comparisons.cli.request import Request
+from comparisons.cli.main import OPTIMISERS
 from comparisons.present import brief, case_tables, csv_table, figures, offset, page
-from comparisons.present.columns import Section
+from comparisons.present.columns import Plain, Section
 from comparisons.store import Run, run_into
+from comparisons.studies import calibration as calibrations
 from comparisons.studies import convergence
+from comparisons.studies import table1 as timings
 from comparisons.studies.report import Report
 from comparisons.tolerances import runs_within
 from comparisons.verdict import Word
 from comparisons.verdict.runs import Runs
-from comparisons.writing import Plain, write
+from comparisons.writing import write
 from cprbm_scene import OffsetQuestion, Question
+from cprbm_scene.frozendict import frozendict
 
 Compared = Comparison | offset_verdict.OffsetComparison
 
 
-def compare_all(request: Request) -> int:
+def compare_all(request: output.Request) -> int:
     """Compare both solvers on questions; the exit code.
 
     0 if all agree; 1 if any case differs or a solve did not complete; 3 if no case is worse than undecided.  An
@@ -67,7 +75,9 @@ def compare_all(request: Request) -> int:
     return UNDECIDED if undecided or any(map(_failed_searches, finished)) else 0
 
 
-def _comparisons(request: Request, questions: Sequence[Question], run: Run, progress: output.Bar) -> Iterator[Compared]:
+def _comparisons(
+    request: output.Request, questions: Sequence[Question], run: Run, progress: output.Bar
+) -> Iterator[Compared]:
     """Comparisons of all questions; the next question is solved while the caller draws and prints the last."""
     begun = partial(_begin, request, [] if request.tol else questions, run)
     following = begun(0)
@@ -76,15 +86,15 @@ def _comparisons(request: Request, questions: Sequence[Question], run: Run, prog
         if isinstance(question, OffsetQuestion):
             yield offset_verdict.compared_offset(question, run.solvers.offset)
         elif pending is not None:
-            yield case.compare(question, pending())
+            yield case.compare(pending())
         else:
             assert request.tol is not None
             with output.status(shown=not request.quiet) as say:
                 runs, searches = runs_within(question, request.choices, request.tol, run.solvers, run.crew, say)
-            yield replace(case.compare(question, runs), tolerances=searches)
+            yield replace(case.compare(runs), tolerances=searches)
 
 
-def _begin(request: Request, questions: Sequence[Question], run: Run, place: int) -> Callable[[], Runs] | None:
+def _begin(request: output.Request, questions: Sequence[Question], run: Run, place: int) -> Callable[[], Runs] | None:
     """The runs of a question, begun now; None beyond the last question, and for an offset question."""
     question = questions[place] if place < len(questions) else None
     if question is None or isinstance(question, OffsetQuestion):
@@ -92,13 +102,13 @@ def _begin(request: Request, questions: Sequence[Question], run: Run, place: int
     return pairing.begin(question, request.choices, run.solvers, run.crew)
 
 
-def _run(request: Request, questions: Sequence[Question]) -> AbstractContextManager[Run]:
+def _run(request: output.Request, questions: Sequence[Question]) -> AbstractContextManager[Run]:
     """Context with the run of the questions into the folder of the request."""
     names = tuple(question.name for question in questions)
     return run_into(request.out, request.solvers, names, request.processes)
 
 
-def _keep(request: Request, run: Run, shown: Sequence[Question], whole: page.Page, document: Plain) -> None:
+def _keep(request: output.Request, run: Run, shown: Sequence[Question], whole: page.Page, document: Plain) -> None:
     """Write the page and the JSON of the questions ``shown``, unless they would replace more; the last one is new."""
     run.mark_shown(shown[-1].name)
     if run.covers([question.name for question in shown]):
@@ -108,7 +118,7 @@ def _keep(request: Request, run: Run, shown: Sequence[Question], whole: page.Pag
             output.write_json(request.json_file, document)
 
 
-def _show(request: Request, compared: Compared) -> None:
+def _show(request: output.Request, compared: Compared) -> None:
     """Print a case: in brief, with ``-v`` with all tables, or quietly with the verdict alone."""
     if not request.quiet and logs.level() == NOTSET:
         values = [text for name, value in request.values.items() for text in ("--set", f"{name}={value}")]
@@ -133,7 +143,7 @@ def _failed_searches(compared: Compared) -> list[str]:
     return [search.sentence(compared.scene) for search in compared.tolerances if not search.met]
 
 
-def _export(request: Request, compared: Sequence[Comparison]) -> None:
+def _export(request: output.Request, compared: Sequence[Comparison]) -> None:
     """Write the table and the drawing of all comparisons; without common stations standard error reports the reason."""
     if request.csv_file is not None:
         write(request.csv_file, csv_table.csv_of_comparisons(compared))
@@ -143,7 +153,7 @@ def _export(request: Request, compared: Sequence[Comparison]) -> None:
         click.echo(f"cprbm: {request.plot_file} is not drawn: a case has no station of both solvers.", err=True)
 
 
-def converge_all(request: Request, sizes: tuple[int, ...]) -> int:
+def converge_all(request: output.Request, sizes: tuple[int, ...]) -> int:
     """State limits and orders of all numbers of questions; exit code 1 for an incomplete series."""
     questions = request.questions()
     request = request.with_room("convergence" if "all" in request.arguments else "")
@@ -171,7 +181,7 @@ def converge_all(request: Request, sizes: tuple[int, ...]) -> int:
     return 0 if all(section.complete for section in finished) else INCOMPLETE
 
 
-def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -> None:
+def report(request: output.Request, sizes: tuple[int, ...], without: tuple[str, ...]) -> None:
     """Write the page of questions with verdicts, errors and run times; finished parts are taken from the folder."""
     request = replace(request, arguments=request.arguments or ("all",))
     questions = request.questions()
@@ -192,3 +202,113 @@ def report(request: Request, sizes: tuple[int, ...], without: tuple[str, ...]) -
     for chapter in found.chapters.values() if request.prints else ():
         click.echo(f"{chapter.name}: {chapter.word}. {chapter.sentence}")
     output.print_folder(request)
+
+
+Study = TypeVar("Study")
+Step = TypeVar("Step")
+
+
+def bench(
+    request: output.Request,
+    sizes: tuple[int, ...] | None,
+    numbers: tuple[Count, ...],
+    methods: tuple[str, ...],
+    stations: Literal["last", "all"],
+    repeat: int,
+    clock: running.Clock,
+) -> int:
+    """Time the methods on a scene; exit code 1 for an incomplete run of a solver of this project.
+
+    Raises:
+        click.UsageError: sizes are stated twice, or no method is possible.
+    """
+    if sizes is not None and numbers:
+        raise click.UsageError("found --sizes and -n; allowed: one of them.")
+    opened, whole = request.scene(), stations == "all"
+    counts = tuple(n if isinstance(n, int) else frozendict(n) for n in numbers) or (sizes or ())
+    for n in counts:
+        check(replace(request.choices, links=n), opened)
+    wanted = methods or (*running.OURS, *OPTIMISERS)
+    asked = [each for each in running.contenders(request.solvers, request.choices) if each.name in wanted]
+    asked += [load_tool(f"bench --method {name}").contender() for name in OPTIMISERS if name in wanted]
+    absent = {each.name: reason for each in asked if (reason := _absence(each, whole=whole))}
+    taking = tuple(each for each in asked if each.name not in absent)
+    if not taking:
+        reasons = "; ".join(f"{name}: {reason}" for name, reason in absent.items())
+        raise click.UsageError(f"No method is left: {reasons}.")
+    own = {each.name: running.sizes_of(each, counts) for each in taking}
+    plan = running.Plan(own, request.choices.kinematics_of(opened), repeat, request.at_most, whole, clock)
+    question = measures.benchmark_scene(opened)
+    request = request.with_room()
+    if request.out is not None:
+        request = replace(request, out=page.own_folder(request.out, opened.name))
+    with output.status(shown=not request.quiet) as say:
+        say("reference of the errors")
+        known = measures.reference(question, request.solvers)
+    session = running.Session(opened if whole else question, plan, taking, provenance.machine(), known, absent)
+    take_steps(request, session, session.jobs(), running.Session.do, bench_section)
+    failed = [row for row in session.rows() if row.contender.name in running.OURS and not row.outcome.completed]
+    for row in failed:
+        who = f"{row.contender.label} at N = {size_text(row.count)}"
+        click.echo(f"cprbm: {opened.name}: {who}: {row.outcome.why}", err=True)
+    return INCOMPLETE if failed else 0
+
+
+def _absence(contender: running.Contender, *, whole: bool) -> str:
+    """Reason against a method; empty for a possible method."""
+    alone = whole and contender.is_peer
+    return "an optimiser solves the last station only" if alone else contender.absence
+
+
+def calibration(request: output.Request) -> int:
+    """Compare stated with true errors; exit code 1 for a case that differs or did not complete."""
+    request = request.with_room()
+    with run_into(request.out, request.solvers, processes=request.processes) as run:
+        take = partial(calibrations.with_case, solvers=run.solvers, crew=run.crew)
+        found = take_steps(request, calibrations.Calibration(), calibrations.pieces(), take, calibrations.result_of)
+    verdicts = [trial.verdict for trial in found.trials]
+    return INCOMPLETE if any(each.word is Word.DIFFER or not each.completed for each in verdicts) else 0
+
+
+def table1(request: output.Request, repeat: int) -> int:
+    """Time both solvers on the cells of the paper's Table 1; exit code 1 for an incomplete solve."""
+    request = request.with_room()
+    session = timings.session(request.solvers, provenance.machine(), repeat, request.at_most)
+    take_steps(request, session, session.jobs(), running.Session.do, timings.result_of)
+    return 0 if timings.result_of(session).complete else INCOMPLETE
+
+
+def take_steps(
+    request: output.Request,
+    study: Study,
+    steps: Sequence[Step],
+    take: Callable[[Study, Step], Study],
+    section_of: Callable[[Study], Section],
+) -> Study:
+    """The finished study; every step writes the partial section, and an interrupted study shows its section."""
+    written: Section | None = None
+    with output.bar(len(steps), shown=not request.quiet) as progress:
+        try:
+            for step in progress.through(steps):
+                study, written = take(study, step), None
+                if request.out is not None or (request.json_file is not None and request.prints):
+                    written = _write_files(request, section_of(study))
+        finally:
+            section = written or _write_files(request, section_of(study))
+            progress.clear()
+            if not request.prints:
+                output.write_json(request.json_file, dict(section.data))
+            elif not request.quiet:
+                output.print_section(section)
+                output.print_folder(request, f"{section.name}.html")
+    return study
+
+
+def _write_files(request: output.Request, section: Section) -> Section:
+    """The section, whose files are written now."""
+    if request.prints:
+        output.write_json(request.json_file, dict(section.data))
+    if request.out is not None:
+        page.put_section(request.out, section)
+        page.put_page(request.out, page.Page(section.heading, "", further=(section,)), section.name)
+    return section

@@ -13,11 +13,11 @@ from comparisons.formats import at_station, component_names, components, number,
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.present import offset
 from comparisons.present.columns import NOTHING, Column, Table, follow, table_of
-from comparisons.present.row_tables import Judged, judged_rows, row_units, share
+from comparisons.present.row_tables import row_units, share
 from comparisons.present.table import brief_lines
 from comparisons.sentences import pressure, theory_sentence
 from comparisons.verdict import SEVERITY, Word
-from comparisons.verdict.rows import ROUND_OFF
+from comparisons.verdict.rows import ROUND_OFF, Row
 
 LINES, WIDTH = 30, 80
 """Most lines of a brief report, with an empty line below, and most columns."""
@@ -44,7 +44,7 @@ def brief(compared: Comparison | OffsetComparison, argument: str, page: Path | N
         errors = offset.error_table(compared)
         explained = _wrapped(f"{errors.title}. {errors.note}")
         return "\n".join((*first, "", *brief_lines(errors, width=WIDTH), *explained, *last))
-    theories = _wrapped(theory_sentence(compared.scene, compared.runs, compared.rows))
+    theories = _wrapped(theory_sentence(compared.runs, compared.rows))
     last = [*_found_sizes(compared), *theories, *last]
     rows = last_rows_of_stages(compared)
     tables = (nearest_rows(compared, rows, count) for count in range(min(ROWS, len(rows)), 0, -1))
@@ -58,26 +58,25 @@ def headline(name: str, verdict: Verdict, sentence: str) -> str:
     return f"{name}: {verdict.word.value}{reason}. {sentence}".rstrip()
 
 
-def last_rows_of_stages(compared: Comparison) -> tuple[Judged, ...]:
-    """Rows of the last station of every stage, with their words."""
+def last_rows_of_stages(compared: Comparison) -> tuple[Row, ...]:
+    """Rows of the last station of every stage."""
     last = {row.stage: row.station for row in compared.rows}
-    return tuple(judged for judged in judged_rows(compared) if judged.row.station == last[judged.row.stage])
+    return tuple(row for row in compared.rows if row.station == last[row.stage])
 
 
-def nearest_rows(compared: Comparison, rows: Sequence[Judged], count: int) -> Table:
+def nearest_rows(compared: Comparison, rows: Sequence[Row], count: int) -> Table:
     """Table of the rows nearest their limits, in the order of stages and probes; the note counts the other rows.
 
     A row has a line for every component.  The first line has difference, stated uncertainty and word.
     """
     order, body, stage = sorted(range(len(rows)), key=lambda place: _nearness(rows[place])), list[tuple[str, ...]](), ""
-    units = row_units(compared.scene, [rows[place].row for place in order[:count]])
-    for judged in (rows[place] for place in sorted(order[:count])):
-        row = judged.row
+    units = row_units(compared.scene, [rows[place] for place in order[:count]])
+    for row in (rows[place] for place in sorted(order[:count])):
         if row.stage != stage:
             stage = row.stage
             body.append((at_station(compared.scene, *row.where), *[""] * 6))
-        body += _lines(judged, *units[row.unit])
-    others = Counter(word.value if word else "without a word" for _, word, _ in (rows[at] for at in order[count:]))
+        body += _lines(row, *units[row.unit])
+    others = Counter(row.word.value if row.word else "without a word" for row in (rows[at] for at in order[count:]))
     note = ", ".join(f"{times} more {'row' if times == 1 else 'rows'} {word}" for word, times in others.items())
     return Table(
         "",
@@ -102,21 +101,19 @@ def summary(finished: Sequence[Comparison | OffsetComparison]) -> Table:
 
 
 def _agreeing(compared: Comparison | OffsetComparison) -> str:
-    words = [word for word in compared.verdict.words if word is not None]
+    words = [row.word for row in compared.rows if row.word is not None]
     return f"{words.count(Word.AGREE)} of {len(words)}"
 
 
-def _nearness(judged: Judged) -> tuple[int, float]:
+def _nearness(row: Row) -> tuple[int, float]:
     """Sorting key: the worst word first, and for one word the largest share of the stated uncertainty."""
-    row, word, _ = judged
-    return (*SEVERITY, None).index(word), 0.0 if word is None else -pressure(row)
+    return (*SEVERITY, None).index(row.word), 0.0 if row.word is None else -pressure(row)
 
 
-def _lines(judged: Judged, factor: float, unit: str) -> list[tuple[str, ...]]:
+def _lines(row: Row, factor: float, unit: str) -> list[tuple[str, ...]]:
     """Lines of a row; the value of a stress is the largest magnitude along the beam."""
-    row, word, _ = judged
     stated = share(row, row.bounds.total, digits=2) if row.bounds else None
-    measured = (share(row, row.difference, digits=2), stated, word and word.value)
+    measured = (share(row, row.difference, digits=2), stated, row.word and row.word.value)
     found = [
         dict(components(row.probe.quantity, values, factor, ROUND_OFF * row.scale)) for values in (row.cprbm, row.fea)
     ]

@@ -9,7 +9,7 @@ import io
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -20,9 +20,13 @@ from comparisons.present.picture import Kind, Part, names_by_place
 from cprbm_scene import Scene
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
-    from matplotlib.figure import Figure as Drawing
+    import matplotlib.axes
+    import matplotlib.axis
+    import matplotlib.figure
+
+Axes: TypeAlias = "matplotlib.axes.Axes"
+Drawing: TypeAlias = "matplotlib.figure.Figure"
+"""Matplotlib's classes for annotations: a module with a drawing loads no Matplotlib."""
 
 BLUE, RED, GREY, INK, GREEN, RULE = "#1f5fa8", "#c8321e", "#8a8a8a", "#202428", "#0a7d33", "#e4e4e4"
 LINES = (("-", "o"), ("--", "s"), (":", "^"), ("-.", "D"))
@@ -61,11 +65,10 @@ _RIGID: dict[str, Any] = {"facecolor": "#b9bfc6", "alpha": 0.55, "linewidth": 0.
 @contextmanager
 def canvas(width: float, height: float) -> Iterator[Drawing]:
     """Context with an empty drawing of ``width`` and ``height``, inches; draw and finish it inside the context."""
-    import matplotlib as mpl
-    from matplotlib.figure import Figure as Drawing
+    import matplotlib.figure
 
-    with mpl.rc_context(_STYLE):
-        yield Drawing(figsize=(width, height), layout="constrained")
+    with matplotlib.rc_context(_STYLE):
+        yield matplotlib.figure.Figure(figsize=(width, height), layout="constrained")
 
 
 def panels(drawing: Drawing, count: int, height: float) -> list[Axes]:
@@ -140,7 +143,7 @@ def draw_names(axes: Axes, scene: Scene) -> None:
         axes.annotate(text, (x, y), textcoords="offset points", xytext=(shift, 7), ha=side)
 
 
-def show_lengths(scene: Scene, axis: Axis, name: str = "") -> None:
+def show_lengths(scene: Scene, axis: matplotlib.axis.Axis, name: str = "") -> None:
     """Give an axis of lengths, m, ticks in the displayed unit, and a label."""
     from matplotlib.ticker import AutoLocator, FuncFormatter
 

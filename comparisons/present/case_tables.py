@@ -107,8 +107,8 @@ def search_table(scene: Scene, found: Sequence[Tolerance]) -> Table:
         Column[Tolerance]("solver", "solver"),
         Column("N", "n"),
         Column("extrapolated from", lambda one: ", ".join(map(str, one.extrapolated)) or None),
-        Column("largest u", "worst.fraction", percent),
-        Column("of", "worst", lambda row: f"{row.probe} at {load_text(scene, row.stage, row.station)}"),
+        Column("largest u", lambda one: one.worst and one.fraction, percent),
+        Column("of", "worst", lambda row: f"{row.probe.name} at {load_text(scene, row.stage, row.station)}"),
         Column("met", lambda one: "yes" if one.met else "no"),
         Column("solved", lambda one: ", ".join(map(str, one.solved))),
     ]
@@ -262,7 +262,7 @@ def reaction_tables(compared: Comparison) -> tuple[Table, ...]:
 
 def _reaction_table(compared: Comparison, drive: str, found: Sequence[WorkEnergyReaction]) -> Table:
     """Reactions of a drive at the stations that tables show."""
-    scene, run = compared.scene, compared.runs.perturbed
+    scene, run = compared.scene, compared.runs.answers.get("cprbm perturbed")
     ended = "" if run is None or run.completed else f" The perturbed run ended early: {run.ending.value}."
     stations = {stage.name: kept(stage) if is_long(stage) else stage.stations for stage in scene.stages}
     factor, unit = display_unit(scene, found[0].unit, max(abs(each.multiplier) for each in found))
@@ -314,8 +314,8 @@ def summary(scene: Scene, found: Sequence[WorkEnergyReaction]) -> str:
 
 def _certificate_table(compared: Comparison) -> Table:
     """Facts of the documented JSON of every solver."""
-    runs, solid = compared.runs, compared.runs.solid or ()
-    answers = dict(zip(("cprbm", "fea", "solid"), (runs.cprbm[0], runs.reference, *solid[-1:]), strict=False))
+    solid = compared.runs.solids
+    answers = dict(zip(("cprbm", "fea", "solid"), (*compared.runs.pair, *solid[-1:]), strict=False))
     facts = {name: solver(answer, compared.audits.get(name)) for name, answer in answers.items()}
     rows = ((label, *(_fact(follow(of, path)) for of in facts.values())) for label, path in _CERTIFICATE.items())
     note = "All numbers but iterations are relative to a scale of the problem; see docs/certificate.md."
@@ -333,17 +333,17 @@ def _fact(value: Any) -> str:  # noqa: ANN401 - all types of JSON
 def _seconds_table(compared: Comparison) -> Table:
     """Seconds stand alone, since every run has others."""
     runs = compared.runs
-    answers = {
-        f"CPRBM ({runs.theory})": runs.cprbm[0],
-        f"FEA ({runs.theory})": runs.reference,
-        f"CPRBM ({runs.other_theory})": runs.other,
-        "exact (bending)": runs.exact,
-        **{f"solid, {one.settings['elements']} along": one for one in runs.solid or ()},
+    labels = {
+        "cprbm": f"CPRBM ({runs.theory})",
+        "fea": f"FEA ({runs.theory})",
+        f"cprbm {runs.other_theory}": f"CPRBM ({runs.other_theory})",
+        "exact": "exact (bending)",
     }
+    answers = [(label, runs.answers[name]) for name, label in labels.items() if name in runs.answers]
+    answers += [(f"solid, {one.settings['elements']} along", one) for one in runs.solids]
     columns = [
         Column[tuple[str, Answer]]("answer", lambda at: at[0]),
         Column("stations", lambda at: len(at[1].stations)),
         Column("seconds", lambda at: at[1].seconds, number),
     ]
-    found = [(name, answer) for name, answer in answers.items() if answer is not None]
-    return table_of("Seconds", columns, found, "From the scene to certified answers, by each solver's own clock.")
+    return table_of("Seconds", columns, answers, "From the scene to certified answers, by each solver's own clock.")

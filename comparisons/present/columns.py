@@ -1,16 +1,22 @@
-"""Records of a presentation: columns and tables of texts, figures, and sections of a page."""
+"""Records of a presentation: columns and tables of texts, plain data of JSON, figures, and sections of a page."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from comparisons.writing import Plain, write
+import numpy as np
+
+from comparisons.writing import write
 
 T = TypeVar("T")
+
+Plain = dict[str, Any]
+"""Data in the types of JSON."""
 
 NOTHING = "–"
 """Text of a missing value."""
@@ -93,6 +99,24 @@ def without_empty(table: Table) -> Table:
 def records_of(columns: Sequence[Column[T]], items: Iterable[T]) -> list[Plain]:
     """Record of every item: values by header."""
     return [{column.header: column.of(item) for column in columns} for item in items]
+
+
+def plain(value: object) -> Any:  # noqa: ANN401 - all types of JSON
+    """``value`` in the types of JSON; None for a number without a finite value."""
+    match value:
+        case Mapping():
+            return {str(key): plain(item) for key, item in value.items()}
+        case list() | tuple():
+            return [plain(item) for item in value]
+        case np.ndarray():
+            whole = value.dtype.kind != "f" or bool(np.isfinite(value).all())
+            return value.tolist() if whole else plain(value.tolist())
+        case bool() | int() | str() | None:
+            return value
+        case float() | np.floating():
+            return float(value) if math.isfinite(value) else None
+        case _:
+            return str(value)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,11 +9,10 @@ from typing import Any, TypedDict
 
 from comparisons.case import Comparison
 from comparisons.formats import file_unit
+from comparisons.present.columns import Plain
 from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
-from comparisons.writing import Plain
-from cprbm_scene import Answer, Probe, Scene, StationAnswer
-from cprbm_scene.answer import Array, PointForce
-from cprbm_scene.statement import STRESSES
+from cprbm_scene.answer import Answer, Array, PointForce, StationAnswer
+from cprbm_scene.statement import STRESSES, Probe, Scene
 
 
 class Number(TypedDict):
@@ -90,10 +89,10 @@ def comparison_records(compared: Comparison) -> list[Plain]:
     """
     scene, records = compared.scene, list[Plain]()
     units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
-    for row, word in zip(compared.rows, compared.verdict.words, strict=True):
+    for row in compared.rows:
         cprbm, fea = (_parts(scene, row.probe, values) for values in (row.cprbm, row.fea))
         where = (scene.name, *row.where, units[row.stage], row.branch, row.probe.name)
-        judged = (row.difference, row.bounds and row.bounds.total, word.value if word else "")
+        judged = (row.difference, row.bounds and row.bounds.total, row.word.value if row.word else "")
         records += [
             dict(zip(_COMPARISON, (*where, *part, row.unit, cprbm.get(part), fea.get(part), *judged), strict=True))
             for part in cprbm | fea

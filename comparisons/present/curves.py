@@ -18,10 +18,9 @@ from comparisons.present.csv_table import pressing
 from comparisons.quantities import UNITS, arc_lengths, load_unit
 from comparisons.reactions import ENERGY, MESH_ALLOWANCE, WorkEnergyReaction, multiplier, reaction_probe
 from comparisons.stations import begins_at, station_of
-from cprbm_scene import Answer, Scene, Stage, StationAnswer
-from cprbm_scene.answer import Array
+from cprbm_scene.answer import Answer, Array, StationAnswer
 from cprbm_scene.curves import unit_vector as unit
-from cprbm_scene.statement import DisplacementDrive, Force, Probe, Quantity, RotationDrive
+from cprbm_scene.statement import DisplacementDrive, Force, Probe, Quantity, RotationDrive, Scene, Stage
 
 Look = Mapping[str, Any]
 """Matplotlib's keywords of a line."""
@@ -289,7 +288,7 @@ def contact_figures(compared: Comparison) -> Iterator[Figure]:
     """
     scene, last, lines = compared.scene, compared.rows[-1].where, dict[str, list[Line]]()
     dotted = {**CPRBM, "linestyle": ":", "marker": "o"}
-    for answer, look in ((compared.runs.reference, FEA), (compared.runs.cprbm[0], dotted)):
+    for answer, look in zip(reversed(compared.runs.pair), (FEA, dotted), strict=True):
         forces = sorted(pressing(scene, station_of(answer, *last)), key=lambda at: (at.source, at.target, float(at.s)))
         for pair, found in groupby(forces, key=lambda at: f"{at.source} on {at.target}"):
             s, sizes = np.array([(float(at.s), np.hypot(*at.force)) for at in found]).T

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import cycle
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +16,8 @@ from comparisons.present.canvas import (
     GREY,
     INK,
     RED,
+    Axes,
+    Drawing,
     canvas,
     common_legend,
     draw_names,
@@ -24,7 +25,7 @@ from comparisons.present.canvas import (
     finished,
     image,
     show_lengths,
-)  # fmt: skip
+)
 from comparisons.present.columns import Figure
 from comparisons.present.curves import contact_figures, curve_figures, reaction_figures, stress_figures
 from comparisons.present.picture import Bounds, Part, View, bounds_of, view_of
@@ -33,10 +34,6 @@ from comparisons.present.strips import Coloured
 from comparisons.stations import station_of
 from cprbm_scene import Answer, FreeEnd, Scene, StationAnswer
 from cprbm_scene.answer import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
 
 QUANTITIES: Mapping[Coloured, tuple[str, str, str]] = {
     "bending_stress": ("bending stress", "Pa", "RdYlBu_r"),
@@ -60,11 +57,12 @@ def comparison_figures(compared: Comparison) -> tuple[Figure, ...]:
     stations, scene, runs = shown_stations(compared), compared.scene, compared.runs
     if not stations:
         return ()
-    names = [rows[0].row.where for rows in stations]
-    answers = {f"FEA ({runs.theory})": runs.reference, "CPRBM": runs.cprbm[0]}
+    names = [rows[0].where for rows in stations]
+    cprbm, fea = runs.pair
+    answers = {f"FEA ({runs.theory})": fea, "CPRBM": cprbm}
     return (
         *(shapes(scene, answers, where) for where in ([names[-1:], names] if len(names) > 1 else [names])),
-        *curve_figures(scene, runs.reference, runs.cprbm[0]),
+        *curve_figures(scene, fea, cprbm),
         *reaction_figures(compared),
         *stress_figures(scene, *(station_of(answer, *names[-1]) for answer in answers.values())),
         *contact_figures(compared),
@@ -87,7 +85,7 @@ def designs_figure(designs: Sequence[Comparison]) -> Figure:
     """Drawing of one comparison, or of the finite elements of several, at the last stations; all have rows."""
     if len(designs) == 1:
         return comparison_figures(designs[0])[0]
-    views = [view_of(each.scene, each.runs.reference.stations[-1]) for each in designs]
+    views = [view_of(each.scene, each.runs.answers["fea"].stations[-1]) for each in designs]
     limits = [bounds_of(each.scene, [view], "moment") for each, view in zip(designs, views, strict=True)]
     low, high = np.min([each.low for each in limits], axis=0), np.max([each.high for each in limits], axis=0)
     with canvas(*_sides(low, high, _SHAPES, (0.9, 1.1))) as drawing:

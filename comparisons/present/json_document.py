@@ -6,26 +6,24 @@ from typing import Any
 
 from comparisons.audit import Audit
 from comparisons.case import Comparison
-from comparisons.opinions import Third, claim_met, claim_of, claimed_difference, contact_model, thirds_of
-from comparisons.present.columns import follow
+from comparisons.opinions import claim_met, claim_of, claimed_difference, contact_model, thirds_of
+from comparisons.present.columns import Plain, follow, plain
 from comparisons.quantities import arc_lengths, unit_of
 from comparisons.reactions import WorkEnergyReaction
 from comparisons.stations import CERTIFICATE_NUMBERS
 from comparisons.tolerances import Tolerance
 from comparisons.verdict.events import CriticalRow, released
 from comparisons.verdict.rows import Row
-from comparisons.writing import Plain, plain
-from cprbm_scene import Answer, Critical, Probe, Scene
-from cprbm_scene.answer import Array
-from cprbm_scene.statement import STRESSES
+from cprbm_scene.answer import Answer, Array, Critical
+from cprbm_scene.statement import STRESSES, Probe, Scene
 
 
 def comparison(compared: Comparison) -> Plain:
     """One case of ``compare``."""
     scene, runs, verdict = compared.scene, compared.runs, compared.verdict
-    answers = {"cprbm": runs.cprbm[0], "fea": runs.reference, "exact": runs.exact}
-    answers["solid"] = None if runs.solid is None else runs.solid[-1]  # its finest mesh
-    judged = zip(compared.rows, verdict.words, verdict.reasons, strict=True)
+    answers = {name: runs.answers[name] for name in ("cprbm", "fea", "exact") if name in runs.answers}
+    if runs.solids:
+        answers["solid"] = runs.solids[-1]  # the finest mesh
     return {
         "case": scene.name,
         "verdict": verdict.word.value,
@@ -36,12 +34,8 @@ def comparison(compared: Comparison) -> Plain:
         "solvers": {
             name: {**solver(answer, compared.audits.get(name)), **_search(compared.tolerances, name)}
             for name, answer in answers.items()
-            if answer is not None
         },
-        "rows": [
-            {**_row(compared, row), "verdict": follow(word, "value"), "reason": follow(why, "value")}
-            for row, word, why in judged
-        ],
+        "rows": [_row(compared, row) for row in compared.rows],
         "critical": [_critical_row(scene, each) for each in compared.criticals],
         "branches": [
             {
@@ -56,7 +50,7 @@ def comparison(compared: Comparison) -> Plain:
             for each in verdict.branches
         ],
         "work_energy": [_reaction(each) for each in compared.reactions],
-        **({} if runs.solid is None else {"solid": [_third(each) for each in thirds_of(compared)]}),
+        **({} if not runs.solids else {"solid": [_third(each) for each in thirds_of(compared)]}),
     }
 
 
@@ -165,10 +159,10 @@ def _search(tolerances: tuple[Tolerance, ...], name: str) -> Plain:
             "met": found.met,
             "links": found.n if links else None,
             "elements": None if links else found.n,
-            "estimate": None if row is None else plain(row.fraction),
-            "probe": None if row is None else row.probe,
-            "stage": None if row is None else row.stage,
-            "station": None if row is None else row.station,
+            "estimate": None if row is None else plain(found.fraction),
+            "probe": follow(row, "probe.name"),
+            "stage": follow(row, "stage"),
+            "station": follow(row, "station"),
             "extrapolated": list(found.extrapolated) or None,
             "extrapolated_probes": list(found.probes),
             "solved": list(found.solved),
@@ -210,12 +204,15 @@ def _row(compared: Comparison, row: Row) -> Plain:
         "scale": row.scale,
         "denominator": row.denominator,
         **_places(scene, row.probe),
+        "verdict": follow(row, "word.value"),
+        "reason": follow(row, "reason.value"),
     }
 
 
-def _third(found: Third) -> Plain:
+def _third(row: Row) -> Plain:
     """A row beside the solid: the extrapolated value, its uncertainty, and distances from it as fractions."""
-    row = found.row
+    found = row.third
+    assert found is not None
     off = {"cprbm": found.cprbm, "fea": found.fea, "other_theory": found.other}
     return {
         "probe": row.probe.name,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -11,22 +10,10 @@ from comparisons.formats import number, percent
 from comparisons.geometry import offset_curve
 from comparisons.offset_verdict import OffsetComparison, OffsetRow, claim_of_offset
 from comparisons.present.canvas import BLUE, RED, canvas, common_legend, finished
-from comparisons.present.columns import Column, Figure, Section, Table, table_of
-from comparisons.writing import Plain, plain
-from cprbm_scene import OffsetClaim
+from comparisons.present.columns import Column, Figure, Plain, Section, Table, plain, table_of
 from cprbm_scene.offset import Shown
 
 _SHOWN = 6  # columns and rows of the short table
-
-
-class OffsetStanding(NamedTuple):
-    """A claim beside a spacing: the row with the largest error, the largest share of t, and N above the bound."""
-
-    claim: OffsetClaim
-    spacing: str
-    worst: OffsetRow
-    over_offset: float
-    missed: list[int]
 
 
 def document(compared: OffsetComparison) -> Plain:
@@ -39,10 +26,7 @@ def document(compared: OffsetComparison) -> Plain:
             name: {"ending": "COMPLETED", "seconds": seconds, "settings": {}, "certificate": None}
             for name, seconds in compared.seconds.items()
         },
-        "rows": [
-            {**_row(compared, row), "verdict": word.value if word else None}
-            for row, word in zip(compared.rows, compared.verdict.words, strict=True)
-        ],
+        "rows": [_row(compared, row) for row in compared.rows],
     }
 
 
@@ -59,6 +43,7 @@ def _row(compared: OffsetComparison, row: OffsetRow) -> Plain:
         "pressure": plain(row.pressure),
         "claim": None if claim is None else claim.bound,
         "claim_met": None if claim is None or not np.isfinite(row.difference) else row.difference < claim.bound,
+        "verdict": row.word.value,
     }
 
 
@@ -103,16 +88,16 @@ def _claims_table(compared: OffsetComparison) -> Table:
             rows = [row for row in compared.rows if row.spacing == spacing and row.n >= claim.numbers_from]
             worst, over = max(rows, key=lambda row: row.difference), max(row.over_offset for row in rows)
             missed = sorted({row.n for row in rows if not row.difference < claim.bound})
-            standings.append(OffsetStanding(claim, spacing, worst, over, missed))
+            standings.append({"claim": claim, "spacing": spacing, "worst": worst, "over": over, "missed": missed})
     columns = [
-        Column[OffsetStanding]("claim", lambda at: at.claim.text or f"from N = {at.claim.numbers_from} on"),
+        Column[Plain]("claim", "claim", lambda claim: claim.text or f"from N = {claim.numbers_from} on"),
         Column("spacing", "spacing"),
         Column("source", "claim.bound", percent),
         Column("largest here", "worst.difference", percent),
         Column("at", "worst", lambda row: f"N, t = {row.n}, {row.offset:g}"),
-        Column("over t", "over_offset", percent),
-        Column("", lambda at: "not met" if at.missed else "met"),
-        Column("not met at N", lambda at: ", ".join(map(str, at.missed)) or None),
+        Column("over t", "over", percent),
+        Column("", "missed", lambda missed: "not met" if missed else "met"),
+        Column("not met at N", lambda at: ", ".join(map(str, at["missed"])) or None),
     ]
     return table_of(
         "Claims of the source",

@@ -21,12 +21,12 @@ from comparisons.formats import percent
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.present import json_document, offset
 from comparisons.present.case_tables import case_sections, claims_table
-from comparisons.present.columns import Figure, Section, Table
+from comparisons.present.columns import Figure, Plain, Section, Table
 from comparisons.present.csv_table import contact_csv
 from comparisons.present.figures import comparison_figures
 from comparisons.present.stepper import HEADERS, SHADES, Stepper, stepper
 from comparisons.present.table import STYLES, html_cells
-from comparisons.writing import Plain, text_of, write
+from comparisons.writing import text_of, write
 from cprbm_scene import Question
 
 _CONTACT_FORCES = "contact-forces.csv"
@@ -248,16 +248,8 @@ def put_case(
     for section in (Section("", (), tuple(figures), (), name, {"cases": [document_of(compared)]}), *further):
         put_section(own, section)
     if isinstance(compared, Comparison):
-        runs = compared.runs
-        others = {
-            "cprbm paper": runs.paper,
-            "cprbm perturbed": runs.perturbed,
-            "exact": runs.exact,
-            f"cprbm {runs.other_theory}": runs.other,
-        }
-        found = {name: each for name, each in others.items() if each is not None}
-        write(own / "answers.json.gz", packed({**dict(runs.everything()), **found}))
-        write(own / _CONTACT_FORCES, contact_csv(compared.scene, (runs.cprbm[0], runs.reference)))
+        write(own / "answers.json.gz", packed(compared.runs.answers))
+        write(own / _CONTACT_FORCES, contact_csv(compared.scene, compared.runs.pair))
     return case_chapter(compared, figures, further)
 
 

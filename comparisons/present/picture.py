@@ -10,8 +10,7 @@ import numpy as np
 
 from comparisons.geometry import edge_places, is_free_on_the_left, longest
 from comparisons.present.strips import Coloured, Strip, left_of, strip_of
-from cprbm_scene import Answer, FreeEnd, PinnedEnd, Scene, StationAnswer
-from cprbm_scene.answer import Array
+from cprbm_scene.answer import Answer, Array, StationAnswer
 from cprbm_scene.curves import unit_vector as unit
 from cprbm_scene.statement import (
     BeamMoment,
@@ -21,13 +20,16 @@ from cprbm_scene.statement import (
     EdgeContact,
     FixedBody,
     Force,
+    FreeEnd,
     LineContact,
     Load,
     Moment,
+    PinnedEnd,
     RigidContact,
+    Scene,
     SelfContact,
     TurningBody,
-)  # fmt: skip
+)
 
 Kind = Literal["edge", "rest", "beam", "body", "weld", "pin", "pivot", "stop", "contact"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from comparisons.case import Comparison
 from comparisons.formats import at_station, display_units, number, percent, vector, with_unit
@@ -12,14 +12,12 @@ from comparisons.geometry import bentness
 from comparisons.opinions import contact_model, thirds_of
 from comparisons.present.columns import Column, Table, columns_of, table_of
 from comparisons.quantities import norm
-from comparisons.verdict import Reason, Word
-from comparisons.verdict.calibration import EXACT_FACTOR, error_ratios, tally, true_errors
 from comparisons.verdict.events import Place
+from comparisons.verdict.judge import EXACT_FACTOR, error_ratios, tally, true_errors
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs import SOLVERS
-from cprbm_scene import Answer, Scene
-from cprbm_scene.answer import Array
-from cprbm_scene.statement import STRESSES, Quantity
+from cprbm_scene.answer import Answer, Array
+from cprbm_scene.statement import STRESSES, Quantity, Scene
 
 STRESS = "Errors in stress"
 GROUPS: Mapping[str, frozenset[Quantity]] = {
@@ -40,35 +38,22 @@ MANY_TIMES = 10.0
 """Fraction above which a distance prints with its unit."""
 
 _SOLVERS = ("CPRBM", "FEA")
-BOTH = {"CPRBM": "row.cprbm", "FEA": "row.fea"}
+BOTH = {"CPRBM": "cprbm", "FEA": "fea"}
 """Paths of the values of both solvers, by header."""
 
-ERROR = {"error": "row.difference"}
+ERROR = {"error": "difference"}
 """Path of the difference."""
 
-_VALUES = {**BOTH, "exact": "row.exact"}
+_VALUES = {**BOTH, "exact": "exact"}
 
 
-class Judged(NamedTuple):
-    """A row, its word and its reason; a row without a word takes no part in the verdict."""
-
-    row: Row
-    word: Word | None
-    reason: Reason | None
-
-
-def judged_rows(compared: Comparison) -> tuple[Judged, ...]:
-    """All rows with words and reasons."""
-    return tuple(map(Judged, compared.rows, compared.verdict.words, compared.verdict.reasons))
-
-
-def shown_stations(compared: Comparison) -> tuple[tuple[Judged, ...], ...]:
+def shown_stations(compared: Comparison) -> tuple[tuple[Row, ...], ...]:
     """Rows of the shown stations and of the last station, in order."""
-    by_station: dict[tuple[str, float], list[Judged]] = {}
-    for judged in judged_rows(compared):
-        by_station.setdefault(judged.row.where, []).append(judged)
-    shown = {(stage.name, value) for stage in compared.scene.stages for value in stage.shown} | {*[*by_station][-1:]}
-    return tuple(tuple(rows) for where, rows in by_station.items() if where in shown)
+    rows = compared.rows
+    shown = {(stage.name, value) for stage in compared.scene.stages for value in stage.shown}
+    shown |= {row.where for row in rows[-1:]}
+    places = dict.fromkeys(row.where for row in rows if row.where in shown)
+    return tuple(tuple(row for row in rows if row.where == where) for where in places)
 
 
 def row_units(scene: Scene, rows: Iterable[Row]) -> Mapping[str, tuple[float, str]]:
@@ -83,61 +68,60 @@ def share(row: Row, size: float, digits: int = 3) -> str | None:
     return None if math.isnan(size) else percent(row.fraction(floored), digits)
 
 
-def judgement(judged: Judged) -> str:
+def judgement(row: Row) -> str:
     """Word and reason of a row, or the cause why the row takes no part."""
-    row, word, reason = judged
-    if word is None:
+    if row.word is None:
         return "takes no part" if row.place is Place.COMPARED else row.place.value
-    return word.value if reason is None else f"{word.value} ({reason.value})"
+    return row.word.value if row.reason is None else f"{row.word.value} ({row.reason.value})"
 
 
-_PROBE = Column[Any]("probe", "row.probe.name")
+_PROBE = Column[Row]("probe", "probe.name")
 _WORD = Column("word", judgement)
 
 
-def share_columns(paths: Mapping[str, str]) -> list[Column[Any]]:
-    """Columns of sizes as shares, by header and path; the items of the table have a ``row``."""
-    return columns_of(lambda item, size: share(item.row, size), paths)
+def share_columns(paths: Mapping[str, str]) -> list[Column[Row]]:
+    """Columns of sizes as shares, by header and path."""
+    return columns_of(share, paths)
 
 
-def value_columns(scene: Scene, items: Sequence[Any], paths: Mapping[str, str]) -> list[Column[Any]]:
-    """Probe, unit, and columns of values by header and path; the ``items`` of the table have a ``row``."""
-    units = row_units(scene, (item.row for item in items))
+def value_columns(scene: Scene, rows: Sequence[Row], paths: Mapping[str, str]) -> list[Column[Row]]:
+    """Probe, unit, and columns of values by header and path."""
+    units = row_units(scene, rows)
 
-    def text(item: Any, values: Array) -> str:  # noqa: ANN401
-        return vector(values, units[item.row.unit][0], ROUND_OFF * item.row.scale)
+    def text(row: Row, values: Array) -> str:
+        return vector(values, units[row.unit][0], ROUND_OFF * row.scale)
 
-    return [_PROBE, Column("unit", lambda item: units[item.row.unit][1]), *columns_of(text, paths)]
+    return [_PROBE, Column("unit", lambda row: units[row.unit][1]), *columns_of(text, paths)]
 
 
-def value_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
+def value_table(compared: Comparison, rows: Sequence[Row]) -> Table:
     """Values of one station."""
     columns = [*value_columns(compared.scene, rows, _VALUES), *share_columns(ERROR), _WORD]
-    return table_of(f"Values at {at_station(compared.scene, *rows[0].row.where)}", columns, rows)
+    return table_of(f"Values at {at_station(compared.scene, *rows[0].where)}", columns, rows)
 
 
-def error_tables(compared: Comparison, last: Sequence[Judged]) -> tuple[Table, ...]:
+def error_tables(compared: Comparison, last: Sequence[Row]) -> tuple[Table, ...]:
     """Tables of the last station by quantity, with the largest error over all stations."""
     scene, runs = compared.scene, compared.runs
-    worst = _largest_by_probe((at.row, at.row.difference) for at in judged_rows(compared) if at.word is not None)
-    absence = f" No exact values: {runs.exact_absence}" if runs.exact_absence else ""
+    worst = _largest_by_probe((row, row.difference) for row in compared.rows if row.word is not None)
+    absence = f" No exact values: {runs.absences['exact']}" if "exact" in runs.absences else ""
     columns = [
         *value_columns(scene, last, _VALUES),
-        *share_columns({**ERROR, "error of max": "row.largest_difference"}),
-        Column("t/(3R)", lambda at: percent(bentness(scene.beams[at.row.probe.of]) / 3.0)
-               if at.row.probe.quantity in STRESSES else None),
-        Column("largest error", lambda at: worst.get(at.row.probe.name), lambda found: share(*found) or ""),
-        Column("at", lambda at: worst.get(at.row.probe.name), lambda found: at_station(scene, *found[0].where)),
+        *share_columns({**ERROR, "error of max": "largest_difference"}),
+        Column("t/(3R)", lambda row: percent(bentness(scene.beams[row.probe.of]) / 3.0)
+               if row.probe.quantity in STRESSES else None),
+        Column("largest error", lambda row: worst.get(row.probe.name), lambda found: share(*found) or ""),
+        Column("at", lambda row: worst.get(row.probe.name), lambda found: at_station(scene, *found[0].where)),
         _WORD,
     ]  # fmt: skip
-    groups = {title: [at for at in last if at.row.probe.quantity in quantities] for title, quantities in GROUPS.items()}
+    groups = {title: [row for row in last if row.probe.quantity in quantities] for title, quantities in GROUPS.items()}
     titles = [title for title, rows in groups.items() if rows]
     first = (
         f"CPRBM beside the finite elements, both in the theory {runs.theory}. Errors are fractions of the FEA's value, "
         f"or of the probe's largest value where the value may vanish. Exact values are those in bending.{absence}"
     )
     notes = dict.fromkeys(titles[:1], first) | {STRESS: _OF_STRESSES}
-    where = at_station(scene, *last[0].row.where) if last else ""
+    where = at_station(scene, *last[0].where) if last else ""
     return tuple(table_of(f"{title} at {where}", columns, groups[title], notes.get(title, "")) for title in titles)
 
 
@@ -148,15 +132,15 @@ def _largest_by_probe(sizes: Iterable[tuple[Row, float]]) -> dict[str, tuple[Row
     return {row.probe.name: (row, size) for _, row, size in descending[::-1]}
 
 
-def verdict_table(rows: Sequence[Judged]) -> Table:
+def verdict_table(rows: Sequence[Row]) -> Table:
     """Differences of one station beside the stated uncertainties."""
     paths = {
-        "difference": "row.difference",
-        "stated": "row.bounds.total",
-        "u CPRBM": "row.bounds.cprbm",
-        "u FEA": "row.bounds.fea",
-        "round-off": "row.bounds.round_off",
-        "theory": "row.theory",
+        "difference": "difference",
+        "stated": "bounds.total",
+        "u CPRBM": "bounds.cprbm",
+        "u FEA": "bounds.fea",
+        "round-off": "bounds.round_off",
+        "theory": "theory",
     }
     note = (
         "The difference must stay within the stated uncertainty, which follows from further discretisations of each "
@@ -165,20 +149,20 @@ def verdict_table(rows: Sequence[Judged]) -> Table:
     return table_of("Differences and stated uncertainties", [_PROBE, *share_columns(paths), _WORD], rows, note)
 
 
-def theory_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
+def theory_table(compared: Comparison, rows: Sequence[Row]) -> Table:
     """Values of one station in both theories; without rows where the CPRBM has no value in the other theory."""
     runs = compared.runs
     paths = {
-        f"CPRBM in {runs.other_theory}": "row.other",
-        f"CPRBM in {runs.theory}": "row.cprbm",
-        f"FEA in {runs.theory}": "row.fea",
+        f"CPRBM in {runs.other_theory}": "other",
+        f"CPRBM in {runs.theory}": "cprbm",
+        f"FEA in {runs.theory}": "fea",
     }
-    columns = [*value_columns(compared.scene, rows, paths), *share_columns({"theory": "row.theory"})]
+    columns = [*value_columns(compared.scene, rows, paths), *share_columns({"theory": "theory"})]
     note = "Theory: distance of the CPRBM's values in both theories, in the formulation auto."
-    return table_of("Both theories", columns, [at for at in rows if at.row.other is not None], note)
+    return table_of("Both theories", columns, [row for row in rows if row.other is not None], note)
 
 
-def exact_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
+def exact_table(compared: Comparison, rows: Sequence[Row]) -> Table:
     """True errors of one station beside the stated uncertainties, and counts over all stations."""
     columns, ratios, counts = [Column[Any]("probe", "CPRBM.row.probe.name")], error_ratios(compared.rows), []
     for solver, name in zip(SOLVERS, _SOLVERS, strict=True):
@@ -191,7 +175,7 @@ def exact_table(compared: Comparison, rows: Sequence[Judged]) -> Table:
     return table_of(
         "True errors in bending, beside the exact answer",
         columns,
-        [errors for at in rows if (errors := dict(zip(_SOLVERS, true_errors(at.row), strict=False)))],
+        [errors for row in rows if (errors := dict(zip(_SOLVERS, true_errors(row), strict=False)))],
         f"Over all stations: {'; '.join(counts)}. A ratio is the true error over the stated error with round-off. A "
         f"ratio above 1 is beyond the statement; above {EXACT_FACTOR:g} the row differs.",
     )
@@ -215,7 +199,7 @@ def paper_table(compared: Comparison) -> Table:
         Column("at", worst.get, lambda distance: at_station(scene, *distance[0].where)),
         Column(f"at {at_station(scene, *last)}" if found else "", at_last.get, text),
     ]
-    paper = runs.paper if runs.formulations is None else runs.formulations[0]
+    paper = runs.answers.get(runs.formulations[0])
     note = "Distances of the CPRBM's values at the same N; they take no part in the verdict. Fractions above tenfold "
     note += "stand as distances." + ("" if paper is None else _paper_note(scene, paper))
     names = dict.fromkeys(row.probe.name for row, _ in found)
@@ -235,14 +219,14 @@ def _paper_note(scene: Scene, paper: Answer) -> str:
 def solid_table(compared: Comparison) -> Table:
     """Rows of the last station beside the solid."""
     thirds = thirds_of(compared)
-    last = [one for one in thirds if one.row.where == thirds[-1].row.where]
+    last = [row for row in thirds if row.where == thirds[-1].where]
     off = {
-        "u solid": "uncertainty",
-        "CPRBM off": "cprbm",
-        "FEA off": "fea",
-        f"CPRBM in {compared.runs.other_theory} off": "other",
+        "u solid": "third.uncertainty",
+        "CPRBM off": "third.cprbm",
+        "FEA off": "third.fea",
+        f"CPRBM in {compared.runs.other_theory} off": "third.other",
     }
-    values = {**BOTH, "solid": "solid"}
+    values = {**BOTH, "solid": "third.solid"}
     return table_of(
         "The beam theories beside a solid, at the last station",
         [*value_columns(compared.scene, last, values), *share_columns(off)],

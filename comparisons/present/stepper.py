@@ -27,12 +27,11 @@ from comparisons.geometry import length, points
 from comparisons.present.columns import NOTHING, Column
 from comparisons.present.figures import colour_unit, view_title
 from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, names_by_place, view_of
-from comparisons.present.row_tables import BOTH, ERROR, judged_rows, share_columns, value_columns
+from comparisons.present.row_tables import BOTH, ERROR, share_columns, value_columns
 from comparisons.present.strips import Strip
 from comparisons.present.table import with_minus
-from comparisons.stations import complete_stations
-from cprbm_scene import StationAnswer
-from cprbm_scene.answer import Array
+from comparisons.verdict.runs import SOLVERS
+from cprbm_scene.answer import Array, StationAnswer
 from cprbm_scene.statement import STRESSES
 
 WIDE = 1000.0
@@ -86,8 +85,7 @@ class Stepper:
 def stepper(compared: Comparison) -> Stepper | None:
     """The common stations of both answers; None without a common station."""
     scene, beams = compared.scene, compared.scene.beams
-    cprbm, fea = (complete_stations(scene, answer) for answer in (compared.runs.cprbm[0], compared.runs.reference))
-    common = [where for where in fea if where in cprbm]
+    common, (cprbm, fea) = compared.runs.reached, (compared.runs.stations[solver] for solver in SOLVERS)
     if not common:
         return None
     views = [view_of(scene, fea[where]) for where in common]
@@ -101,7 +99,7 @@ def stepper(compared: Comparison) -> Stepper | None:
         return np.asarray((places - corner) * (scale, -scale))
 
     names = [probe.name for probe in scene.probes if probe.quantity not in STRESSES]
-    rows = {(at.row.probe.name, *at.row.where): at for at in judged_rows(compared)}
+    rows = {(row.probe.name, *row.where): row for row in compared.rows}
     _, unit_of, *values = value_columns(scene, [*rows.values()], BOTH)
     columns = [*values, *share_columns(ERROR), Column("word", "word.value")]
     units = {name: unit_of.cell(at) for (name, *_), at in rows.items()}

@@ -23,9 +23,8 @@ from typing import Literal
 import numpy as np
 
 from comparisons.geometry import length, points
-from cprbm_scene import Beam, Probe, Scene, StationAnswer
-from cprbm_scene.answer import Array
-from cprbm_scene.statement import Quantity
+from cprbm_scene.answer import Array, StationAnswer
+from cprbm_scene.statement import Beam, Probe, Quantity, Scene
 
 Coloured = Literal["bending_stress", "combined_stress", "moment"]
 

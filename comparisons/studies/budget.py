@@ -172,7 +172,8 @@ def account_of(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
     if missing:
         return Account(scene, choices, (), missing)
     silent = [f"{answer.ending.value}. {answer.sentence}" for answer in solids if not answer.completed]
-    paper = runs["cprbm"][0] if choices.formulation == "paper" else in_paper(scene, choices, memory.solvers)
+    beside = {"cprbm paper": runs["cprbm"][0]} if choices.formulation == "paper" else {}
+    paper = (beside or in_paper(scene, choices, memory.solvers)).get("cprbm paper")
     scales = probe_scales(scene, (runs["cprbm"][0], runs["fea"][0]))
     found = (
         _budget(scene, runs, paper, () if silent else solids, probe, stage, value, scales[stage.name, probe.name])

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from comparisons.choices import Count
 from comparisons.formats import at_station, number, percent
 from comparisons.opinions import claim_of
-from comparisons.present.canvas import canvas, finished
-from comparisons.present.columns import NOTHING, Column, Figure, Table, table_of
+from comparisons.present.canvas import Axes, canvas, finished
+from comparisons.present.columns import NOTHING, Column, Figure, Plain, Table, plain, table_of
 from comparisons.stations import last_station
 from comparisons.studies.budget import PARTS, Account, Budget
-from comparisons.writing import Plain, plain
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 LOOKS = {
     "contact": ("#7b4ea3", "contact: paper to auto"),

@@ -17,12 +17,11 @@ from comparisons.executor import ALONE, Crew
 from comparisons.formats import number, percent
 from comparisons.pairing import Solvers, exact_answer, exact_if_covered, paired
 from comparisons.present.canvas import GREY, canvas, finished
-from comparisons.present.columns import Figure, Section, Table
+from comparisons.present.columns import Figure, Plain, Section, Table
 from comparisons.stations import complete_part
 from comparisons.verdict import Word
-from comparisons.verdict.calibration import LARGEST_MEDIAN, SHARE_WITHIN, ErrorRatio, Tally, error_ratios, tally
+from comparisons.verdict.judge import LARGEST_MEDIAN, SHARE_WITHIN, ErrorRatio, Tally, error_ratios, tally
 from comparisons.verdict.runs import SOLVERS
-from comparisons.writing import Plain
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -90,7 +89,7 @@ def trial_of(scene: Scene, links: int, elements: int, exact: Answer, solvers: So
     """
     choices = Choices(links=links, elements=elements, theory="bending")
     runs = paired(scene, choices, replace(solvers, exact=None), crew, bare=True)
-    comparison = compare(scene, replace(runs, exact=exact))
+    comparison = compare(replace(runs, answers={**runs.answers, "exact": exact}))
     sizes = {"cprbm": links, "fea": elements}
     return Trial(scene.name, sizes, comparison.verdict, error_ratios(comparison.rows))
 

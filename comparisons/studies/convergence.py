@@ -7,10 +7,9 @@ logarithm of their errors' ratio over the logarithm of the ratio of sizes.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from math import log, nan
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,8 +17,8 @@ from comparisons.choices import Choices
 from comparisons.executor import Crew
 from comparisons.formats import at_station, percent
 from comparisons.offset_verdict import OffsetRow, compared_offset
-from comparisons.pairing import OffsetConstruction, Solvers, exact_or_why
-from comparisons.present.canvas import GREY, LINES, canvas, common_legend, finished, logarithmic
+from comparisons.pairing import OffsetConstruction, Solvers
+from comparisons.present.canvas import GREY, LINES, Axes, canvas, common_legend, finished, logarithmic
 from comparisons.present.columns import Column, Figure, Section, Table, table_of
 from comparisons.sentences import problem_sentences
 from comparisons.stations import at_shown, last_station
@@ -27,56 +26,15 @@ from comparisons.store import AnswerMemory
 from comparisons.studies import budget_section as budgets
 from comparisons.studies import convergence_tables as tables
 from comparisons.studies.budget import account_of
-from comparisons.studies.families import Family, Method, Series, critical_families, probe_families, size
+from comparisons.studies.families import Convergence, Family, Method, Series, critical_families, probe_families, size
 from comparisons.verdict.uncertainty import Limit
 from cprbm_scene import OffsetQuestion, Question, Scene
 from cprbm_scene.offset import FEWEST, MOST
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-STANDARD_SIZE = 40
-"""Size of the tables and of the budget, if the family has it."""
 
 _LEAST = 1e-13
 """Share of a probe's scale below which errors are round-off and not drawn."""
 
 _COLOURS = 10  # of Matplotlib's standard cycle, C0 to C9
-
-
-@dataclass(frozen=True, slots=True)
-class Convergence:
-    """A scene at all sizes.
-
-    Attributes:
-        scene: the question; sizes: N, ascending; series: answers of both solvers.
-        families: in the order of stages, stations and probes; of the CPRBM, then of the finite elements.
-        criticals: families of the critical points.
-        exact_absence: why the exact reference covers no station; else empty.
-    """
-
-    scene: Scene
-    sizes: tuple[int, ...]
-    series: tuple[Series, ...]
-    families: tuple[Family, ...]
-    criticals: tuple[Family, ...]
-    exact_absence: str = ""
-
-    @property
-    def completed(self) -> bool:
-        """True if every answer is complete."""
-        return not any(series.why for series in self.series)
-
-    @property
-    def shown(self) -> int:
-        """Size of the tables: the standard size, or else the middle size."""
-        return STANDARD_SIZE if STANDARD_SIZE in self.sizes else self.sizes[(len(self.sizes) - 1) // 2]
-
-    @property
-    def last(self) -> tuple[Family, ...]:
-        """Families at the last station."""
-        where = last_station(self.scene)
-        return tuple(family for family in self.families if (family.stage, family.station) == where)
 
 
 def convergence_of(scene: Scene, sizes: Sequence[int], choices: Choices, solvers: Solvers, crew: Crew) -> Convergence:
@@ -98,14 +56,13 @@ def convergence_of(scene: Scene, sizes: Sequence[int], choices: Choices, solvers
     jobs = [(getattr(solvers, method), scene, choices.of_size(n)) for method, _ in runs for n in sizes]
     known = [] if solvers.exact is None or theory != "bending" else [(solvers.exact, scene, choices)]
     answers = crew.answers([*jobs, *known])
-    exact, absence = exact_or_why(answers.pop() if known else None)
-    series = []
+    exact, series = answers.pop() if known else None, list[Series]()
     for place, (method, variant) in enumerate(runs):
         own = dict(zip(sizes, answers[place * len(sizes) :], strict=False))
         problems = {n: "; ".join(problem_sentences(scene, answer)) for n, answer in own.items()}
         series.append(Series(method, variant, theory, own, {n: why for n, why in problems.items() if why}))
     families, criticals = probe_families(scene, series, exact), critical_families(scene, series)
-    return Convergence(scene, tuple(sizes), tuple(series), tuple(families), tuple(criticals), absence)
+    return Convergence(scene, tuple(sizes), tuple(series), tuple(families), tuple(criticals), exact)
 
 
 def convergence_section(

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from statistics import median
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from comparisons.formats import at_station, display_unit, distance_text, number, percent, vector, with_unit
 from comparisons.present import json_document
-from comparisons.present.columns import Column, Table, table_of, without_empty
+from comparisons.present.columns import Column, Plain, Table, plain, table_of, without_empty
 from comparisons.stations import last_station
-from comparisons.studies.families import Family, size
+from comparisons.studies.families import Convergence, Family, size
 from comparisons.verdict.events import mechanism
-from comparisons.writing import Plain, plain
 from cprbm_scene import Scene
-
-if TYPE_CHECKING:
-    from comparisons.studies.convergence import Convergence
 
 NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
 
@@ -152,7 +148,7 @@ def _limits(found: Convergence) -> Table:
             ("probe", "unit", f"CPRBM at {found.shown}", "from its limit", "CPRBM limit", "±", "FEA limit", "±",
              "limits apart", "CPRBM limit from exact", "no limit because"),
             tuple(_limit_row(scene, found.shown, pair) for pair in pairs_of(found.last)),
-            note + (f" No exact values: {found.exact_absence}" if found.exact_absence else ""),
+            note + (f" No exact values: {found.exact.sentence}" if found.exact and not found.exact.stations else ""),
         )
     )  # fmt: skip
 

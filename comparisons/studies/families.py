@@ -19,18 +19,20 @@ import numpy as np
 
 from comparisons.choices import Kinematics
 from comparisons.quantities import COMPONENTS, OPEN_AT_ZERO, arc_lengths, load_unit, probe_scales, unit_of
-from comparisons.stations import ends_at_critical, find_station, span_of, station_of
+from comparisons.stations import ends_at_critical, find_station, last_station, span_of, station_of
 from comparisons.verdict.events import mechanism
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import ROUND_OFF
 from comparisons.verdict.uncertainty import OWN, STANDARD, Limit, limit, observed, orders
-from cprbm_scene import Answer, Critical, Probe, Scene, Stage
-from cprbm_scene.answer import Array
+from cprbm_scene.answer import Answer, Array, Critical
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.statement import CRITICAL, STRESSES
+from cprbm_scene.statement import CRITICAL, STRESSES, Probe, Scene, Stage
 
 _AS_LARGE = 1e-3  # share of the largest stress within which a stress counts as equal
 _BESIDE_A_KINK = 1.5  # elements: the element with the kink, and half of its neighbours
+
+STANDARD_SIZE = 40
+"""Size of the tables and of the budget, if the family has it."""
 
 Method = Literal["cprbm", "fea"]
 Component = str | float | None
@@ -138,6 +140,41 @@ class Family:
 
     def _distance(self, n: int, reference: Array | None) -> float | None:
         return None if reference is None or n not in self.used else size(self.values[n] - reference)
+
+
+@dataclass(frozen=True, slots=True)
+class Convergence:
+    """A scene at all sizes.
+
+    Attributes:
+        scene: the question; sizes: N, ascending; series: answers of both solvers.
+        families: in the order of stages, stations and probes; of the CPRBM, then of the finite elements.
+        criticals: families of the critical points.
+        exact: the exact answer; None in other theories than ``bending``.
+    """
+
+    scene: Scene
+    sizes: tuple[int, ...]
+    series: tuple[Series, ...]
+    families: tuple[Family, ...]
+    criticals: tuple[Family, ...]
+    exact: Answer | None = None
+
+    @property
+    def completed(self) -> bool:
+        """True if every answer is complete."""
+        return not any(series.why for series in self.series)
+
+    @property
+    def shown(self) -> int:
+        """Size of the tables: the standard size, or else the middle size."""
+        return STANDARD_SIZE if STANDARD_SIZE in self.sizes else self.sizes[(len(self.sizes) - 1) // 2]
+
+    @property
+    def last(self) -> tuple[Family, ...]:
+        """Families at the last station."""
+        where = last_station(self.scene)
+        return tuple(family for family in self.families if (family.stage, family.station) == where)
 
 
 def size(values: Array) -> float:

@@ -25,7 +25,7 @@ from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
 from comparisons.offset_verdict import OffsetComparison, compared_offset
 from comparisons.pairing import Solvers, paired
-from comparisons.present.columns import Section
+from comparisons.present.columns import Plain, Section
 from comparisons.present.page import (
     Chapter,
     figures_of,
@@ -39,7 +39,7 @@ from comparisons.store import Run, digest
 from comparisons.studies import table1
 from comparisons.studies.convergence import convergence_section
 from comparisons.verdict.runs import Runs
-from comparisons.writing import Plain, write
+from comparisons.writing import write
 from cprbm_scene import OffsetQuestion, Question, Scene, SceneError
 
 T = TypeVar("T")
@@ -130,7 +130,7 @@ class Report:
             found: Comparison | OffsetComparison = compared_offset(question, run.solvers.offset)
         else:
             runs = paired(question, self.choices, run.solvers, run.crew) if pending is None else pending()
-            found = compare(question, runs)
+            found = compare(runs)
             if self.times:
                 further["Run times"] = lambda: _run_times(question, self.timed, run.solvers)
         return found, tuple(_or_refusal(heading, section) for heading, section in further.items())

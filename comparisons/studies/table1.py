@@ -20,8 +20,7 @@ from comparisons.choices import Choices, Count
 from comparisons.formats import number
 from comparisons.pairing import Solvers
 from comparisons.present.canvas import BLUE, RED, canvas, finished
-from comparisons.present.columns import Column, Figure, Section, records_of, table_of
-from comparisons.writing import plain
+from comparisons.present.columns import Column, Figure, Section, plain, records_of, table_of
 from cprbm_scene import Scene
 from cprbm_scene.frozendict import frozendict
 

@@ -26,12 +26,12 @@ from threading import Lock
 import numpy as np
 
 from comparisons.formats import number
-from comparisons.present.columns import Section, Table
+from comparisons.present.columns import Plain, Section, Table, plain
 from comparisons.sweeps.demands import Bound, Goal, Measure, bounds_of, measure_of, read_demands
 from comparisons.sweeps.outcome import Asked, Outcome
 from comparisons.sweeps.points import SEED, Axis, Point, in_file_units, place_text, ranges_of
 from comparisons.sweeps.running import JOURNAL, Runner, Sweep, known_outcomes, tasks_of
-from comparisons.writing import Plain, append_line, plain
+from comparisons.writing import append_line
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.answer import Array
 

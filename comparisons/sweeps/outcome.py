@@ -124,8 +124,8 @@ def solve(scene: Scene, choices: Choices, asked: Asked, solvers: Solvers) -> Out
 
 
 def _compared(scene: Scene, choices: Choices, solvers: Solvers, begun: float) -> Outcome:
-    compared = compare(scene, paired(scene, choices, solvers))
-    verdict, pair = compared.verdict, (compared.runs.cprbm[0], compared.runs.reference)
+    compared = compare(paired(scene, choices, solvers))
+    verdict, pair = compared.verdict, compared.runs.pair
     passed = _passed(scene, pair[0])
     records = (
         {**each, "branch": (each["branch"] or 0) + passed[each["stage"], each["station"]]}

@@ -28,12 +28,11 @@ import numpy as np
 from comparisons.choices import Choices
 from comparisons.formats import number, percent, scaled_unit
 from comparisons.present.canvas import BLUE, RED, canvas, finished, panels
-from comparisons.present.columns import Figure, Section, Table
+from comparisons.present.columns import Figure, Plain, Section, Table, plain
 from comparisons.sweeps.demands import Bound, Measure, measures, meets
 from comparisons.sweeps.outcome import Asked, Outcome
 from comparisons.sweeps.points import SEED, axes_of, in_file_units
 from comparisons.sweeps.running import Sweep, tasks_of
-from comparisons.writing import Plain, plain
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.answer import Array
 

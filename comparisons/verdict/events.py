@@ -45,7 +45,7 @@ from comparisons.quantities import deflection, load_unit
 from comparisons.stations import Where, begins_at, ends_at_critical, event_tolerance, span_of
 from comparisons.verdict import Reason, Word
 from comparisons.verdict.point_forces import active_contacts
-from comparisons.verdict.runs import SOLVERS, Bounds, RunsTable, solver_of
+from comparisons.verdict.runs import SOLVERS, Bounds, Runs, solver_of
 from cprbm_scene import Answer, Critical, Loss, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Shape
 from cprbm_scene.frozendict import frozendict
@@ -154,56 +154,54 @@ def disagree_within_a_solver(states: Mapping[str, object]) -> bool:
     return any(len({state for name, state in states.items() if solver_of(name) == solver}) > 1 for solver in SOLVERS)
 
 
-def critical_rows(table: RunsTable) -> tuple[CriticalRow, ...]:
+def critical_rows(runs: Runs) -> tuple[CriticalRow, ...]:
     """All critical points of the two compared runs, in the order of stages."""
     found = list[CriticalRow]()
-    followed: dict[str, Answer] = {**table.following, "cprbm": table.pair[0], "fea": table.pair[1]}
-    for stage in table.scene.stages:
+    followed = {**runs.following, "cprbm": runs.answers["cprbm"], "fea": runs.answers["fea"]}
+    for stage in runs.scene.stages:
         own = {
             name: tuple(one for one in answer.critical if one.stage == stage.name) for name, answer in followed.items()
         }
         for place in range(max(len(own[name]) for name in SOLVERS)):
             here = {name: each[place] if len(each) > place else None for name, each in own.items()}
-            row = _critical_row(table, stage, place, here)
-            found.append(row if row.word is Word.AGREE else _with_passed_points(table, stage, row, here))
+            row = _critical_row(runs, stage, place, here)
+            found.append(row if row.word is Word.AGREE else _with_passed_points(runs, stage, row, here))
     return tuple(found)
 
 
-def _with_passed_points(
-    table: RunsTable, stage: Stage, row: CriticalRow, here: Mapping[str, Critical | None]
-) -> CriticalRow:
+def _with_passed_points(runs: Runs, stage: Stage, row: CriticalRow, here: Mapping[str, Critical | None]) -> CriticalRow:
     """The row with passed critical points in place of missing critical points, unless the solvers then differ."""
     for known in filter(None, (row.cprbm, row.fea)):
         points, turned = dict(here), {}
         for name, own in here.items():
             alike = [
                 one
-                for one in table.answers[name].gone_over
+                for one in runs.same_theory[name].gone_over
                 if one.end.stage == stage.name and mechanism(one.end) == mechanism(known)
             ]
             if alike and (own is None or mechanism(own) != mechanism(known)):
                 nearest = min(alike, key=lambda one: abs(one.end.value - known.value))
                 points[name], turned[name] = nearest.end, nearest.turned
-        found = replace(_critical_row(table, stage, row.place, points), turned=frozendict(turned))
+        found = replace(_critical_row(runs, stage, row.place, points), turned=frozendict(turned))
         if turned and not disagree_within_a_solver(found.mechanisms) and found.word is not Word.DIFFER:
             return found
     return row
 
 
-def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str, Critical | None]) -> CriticalRow:
-    span, allowed = span_of(table.scene, stage), event_tolerance(table.scene, stage)
+def _critical_row(runs: Runs, stage: Stage, place: int, here: Mapping[str, Critical | None]) -> CriticalRow:
+    span, allowed = span_of(runs.scene, stage), event_tolerance(runs.scene, stage)
     mechanisms = {name: None if one is None else mechanism(one) for name, one in here.items()}
     row = CriticalRow(
         stage=stage.name,
         place=place,
-        unit=load_unit(table.scene, stage),
+        unit=load_unit(runs.scene, stage),
         cprbm=here["cprbm"],
         fea=here["fea"],
         span=span,
         allowed=allowed,
-        largest=max(allowed, table.scene.verdict_limit * span) if table.runs.theory == "bending" else math.inf,
+        largest=max(allowed, runs.scene.verdict_limit * span) if runs.theory == "bending" else math.inf,
         mechanisms=mechanisms,
-        ended_before=_ended_before(table, here["cprbm"], here["fea"]),
+        ended_before=_ended_before(runs, here["cprbm"], here["fea"]),
     )
     present = {name: one for name, one in here.items() if one is not None}
     if len(present) < len(here):
@@ -211,54 +209,54 @@ def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str,
     located = sum(
         max(one.uncertainty for name, one in present.items() if solver_of(name) == solver) for solver in SOLVERS
     )
-    bounds = _on_load_axis(table, {name: one.value for name, one in present.items()}, located)
+    bounds = _on_load_axis(runs, {name: one.value for name, one in present.items()}, located)
     difference = abs(present["cprbm"].value - present["fea"].value)
-    return replace(row, difference=difference, theory=_step_of_theory(table, row), bounds=bounds)
+    return replace(row, difference=difference, theory=_step_of_theory(runs, row), bounds=bounds)
 
 
-def _step_of_theory(table: RunsTable, row: CriticalRow) -> float:
+def _step_of_theory(runs: Runs, row: CriticalRow) -> float:
     """θ; NaN without a CPRBM's critical point, and where the run in the other theory ends early."""
-    other, own = table.runs.other, row.cprbm
+    other, own = runs.other, row.cprbm
     if other is None or own is None or not (other.completed or ends_at_critical(other)):
         return math.nan
     mine = [one for one in other.critical if one.stage == row.stage][row.place :]
     return abs(mine[0].value - own.value) if mine and mechanism(mine[0]) == mechanism(own) else math.inf
 
 
-def _ended_before(table: RunsTable, cprbm: Critical | None, fea: Critical | None) -> bool:
+def _ended_before(runs: Runs, cprbm: Critical | None, fea: Critical | None) -> bool:
     """Whether the compared run without the critical point ended early, and has no station behind the point."""
     known = cprbm or fea
     if known is None or None not in (cprbm, fea):
         return False
-    without, answer = ("fea", table.pair[0]) if fea is None else ("cprbm", table.pair[1])
-    if without in table.following or known not in answer.critical:
+    without, answer = ("fea", runs.pair[0]) if fea is None else ("cprbm", runs.pair[1])
+    if without in runs.following or known not in answer.critical:
         return False
     before = sum(station.branch <= answer.critical.index(known) for station in answer.stations)
-    return len(table.stations[without]) <= before
+    return len(runs.stations[without]) <= before
 
 
-def far_closings(table: RunsTable) -> Iterator[Closing]:
+def far_closings(runs: Runs) -> Iterator[Closing]:
     """Closings of contacts at loads that differ by more than the runs excuse."""
     loads: dict[tuple[str, str, int], dict[str, float]] = {}
-    for name, answer in table.following.items():
+    for name, answer in runs.following.items():
         count = Counter[tuple[str, str]]()
         for event in (event for event in answer.events if event.kind == "closes"):
             key = event.stage, event.contact
             count[key] += 1
             loads.setdefault((*key, count[key]), {})[name] = event.value
-    stages = {stage.name: stage for stage in table.scene.stages}
+    stages = {stage.name: stage for stage in runs.scene.stages}
     for (stage, contact, _), here in loads.items():
-        if {*SOLVERS} <= here.keys() == table.following.keys():
-            bounds, pair = _on_load_axis(table, here, 0.0), (here["cprbm"], here["fea"])
-            allowed = event_tolerance(table.scene, stages[stage])
+        if {*SOLVERS} <= here.keys() == runs.following.keys():
+            bounds, pair = _on_load_axis(runs, here, 0.0), (here["cprbm"], here["fea"])
+            allowed = event_tolerance(runs.scene, stages[stage])
             if bounds is not None and abs(pair[0] - pair[1]) > max(allowed, bounds.total):
                 yield stages[stage], contact, pair, bounds
 
 
-def _on_load_axis(table: RunsTable, loads: Mapping[str, float], round_off: float) -> Bounds | None:
+def _on_load_axis(runs: Runs, loads: Mapping[str, float], round_off: float) -> Bounds | None:
     """Stated uncertainties of an event's loads."""
     values = {name: np.array([load]) for name, load in loads.items()}
-    return table.runs.bounds(values, lambda difference: float(np.abs(difference).max()), round_off)
+    return runs.bounds(values, lambda difference: float(np.abs(difference).max()), round_off)
 
 
 class Place(Enum):
@@ -287,20 +285,20 @@ class StationEvents:
 NO_EVENTS = StationEvents(0, Place.COMPARED)
 
 
-def station_events(table: RunsTable) -> dict[Where, StationEvents]:
+def station_events(runs: Runs) -> dict[Where, StationEvents]:
     """Events of all runs by every station that both compared runs reach."""
     found: dict[Where, StationEvents] = {}
-    for stage in table.scene.stages:
-        reached = [where for where in table.reached if where[0] == stage.name]
+    for stage in runs.scene.stages:
+        reached = [where for where in runs.reached if where[0] == stage.name]
         states = {
             name: {
-                where: _state(table.scene, stage, answer, index, table.stations[name][where])
+                where: _state(runs.scene, stage, answer, index, runs.stations[name][where])
                 for index, where in enumerate((stage.name, value) for value in stage.stations)
-                if where in reached and where in table.stations[name]
+                if where in reached and where in runs.stations[name]
             }
-            for name, answer in table.answers.items()
+            for name, answer in runs.same_theory.items()
         }
-        found |= {where: _events(table, stage, where, states) for where in reached}
+        found |= {where: _events(runs, stage, where, states) for where in reached}
     return found
 
 
@@ -318,7 +316,7 @@ def _state(scene: Scene, stage: Stage, answer: Answer, index: int, station: Stat
     return {BRANCH: station.branch, PASSED: passed, **{name: int(name in active) for name in scene.contacts}}
 
 
-def _events(table: RunsTable, stage: Stage, where: Where, states: Mapping[str, Mapping[Where, State]]) -> StationEvents:
+def _events(runs: Runs, stage: Stage, where: Where, states: Mapping[str, Mapping[Where, State]]) -> StationEvents:
     """Events by one station, with the states of the runs at all stations of the stage."""
     here = {name: mine[where] for name, mine in states.items() if where in mine}
     between, unsettled, contradictory = set[str](), set[str](), set[str]()
@@ -334,16 +332,16 @@ def _events(table: RunsTable, stage: Stage, where: Where, states: Mapping[str, M
             unsettled.add(part)
         else:
             contradictory.add(part)
-    tolerance = event_tolerance(table.scene, stage)
+    tolerance = event_tolerance(runs.scene, stage)
 
     def is_near(points: Iterable[Critical]) -> bool:
         return any(one.stage == stage.name and abs(where[1] - one.value) <= tolerance for one in points)
 
-    if is_near(one.end for answer in table.pair for one in answer.gone_over):
+    if is_near(one.end for answer in runs.pair for one in answer.gone_over):
         unsettled.add(PASSED)
-    if _on_mirror_images(table, table.at(where)):
+    if _on_mirror_images(runs, runs.at(where)):
         unsettled.add(MIRRORED)
-    is_between = bool(between) or is_near(one for answer in table.pair for one in answer.critical)
+    is_between = bool(between) or is_near(one for answer in runs.pair for one in answer.critical)
     return StationEvents(
         None if BRANCH in between else here[SOLVERS[0]][BRANCH],
         Place.BETWEEN if is_between else Place.COMPARED,
@@ -352,17 +350,17 @@ def _events(table: RunsTable, stage: Stage, where: Where, states: Mapping[str, M
     )
 
 
-def _on_mirror_images(table: RunsTable, here: Mapping[str, StationAnswer]) -> bool:
+def _on_mirror_images(runs: Runs, here: Mapping[str, StationAnswer]) -> bool:
     """Whether a compared run has met a bifurcation, and beams of some runs lie far from the compared CPRBM's."""
     points_met = (
         one
-        for answer, name in zip(table.pair, SOLVERS, strict=True)
+        for answer, name in zip(runs.pair, SOLVERS, strict=True)
         for one in (*answer.critical[: here[name].branch], *(each.end for each in answer.gone_over))
     )
     if not any(one.loss is Loss.BIFURCATION for one in points_met):
         return False
     first = here[SOLVERS[0]].shapes
-    beams = table.scene.beams
+    beams = runs.scene.beams
     bent = max(deflection(beam, first[name]) for name, beam in beams.items())
     apart = max(_distance(first[name], station.shapes[name]) for station in here.values() for name in beams)
     return apart > MIRROR_DISTANCE * bent

@@ -16,22 +16,38 @@ A contradiction is no evidence against a solver, and the row is undecided, in fo
 
 Rows with the reason NOT_UNIQUE take no case down.  Rows with the reasons COARSE and EVENT take no case down if the
 probe agrees at most of its stations.  The sentence of the verdict counts such rows.
+
+*Calibration*: true errors beside the exact answer against stated uncertainties.
+
+======  ==========================================================================================
+symbol  meaning
+======  ==========================================================================================
+e       true error |v − x| of the CPRBM or of the finite elements, both in ``bending``
+u       stated uncertainty of the solver, with round-off and q
+q       uncertainty of the exact value (:mod:`comparisons.verdict.rows`)
+F       2, the factor beyond which a row differs
+======  ==========================================================================================
+
+e ≤ u shall hold in at least 95 % of the rows, and the median of u/e shall be at most 10.  A solver states one u per
+probe, stage and branch.  This u covers the largest e of its rows, and u/e counts once, with the largest e.  A row with
+e ≤ q tells nothing about u.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from statistics import median
 
 import numpy as np
 
 from comparisons.stations import ABSENT_WHILE_OPEN
 from comparisons.verdict import Reason, Word
-from comparisons.verdict.calibration import true_errors
 from comparisons.verdict.events import MIRRORED, PASSED, Place
 from comparisons.verdict.point_forces import resultant
 from comparisons.verdict.rows import ROUND_OFF, Row
-from comparisons.verdict.runs import SOLVERS, RunsTable
+from comparisons.verdict.runs import SOLVERS, Runs, Solver
 from cprbm_scene import Scene
 
 Judged = tuple[Word | None, Reason | None]
@@ -41,15 +57,16 @@ RESOLVABLE = frozenset({Reason.COARSE, Reason.EVENT})
 """Reasons that a finer mesh or another station removes."""
 
 
-def judge_rows(table: RunsTable, rows: Sequence[Row]) -> list[Judged]:
-    """Word and reason of every row; no word where a row takes no part."""
-    notable = {row.where for row in rows if row.events.contradictory and _is_notable(table, row)}
-    return [_judge(table, row, faint=row.where not in notable) for row in rows]
+def judge_rows(runs: Runs, rows: Sequence[Row]) -> tuple[Row, ...]:
+    """The rows with words and reasons; no word where a row takes no part."""
+    notable = {row.where for row in rows if row.events.contradictory and _is_notable(runs, row)}
+    judged = ((row, *_judge(runs, row, faint=row.where not in notable)) for row in rows)
+    return tuple(replace(row, word=word, reason=reason) for row, word, reason in judged)
 
 
-def _judge(table: RunsTable, row: Row, *, faint: bool) -> Judged:
+def _judge(runs: Runs, row: Row, *, faint: bool) -> Judged:
     """Word and reason of a row; ``faint`` tells that a contact in one solver only has no notable effect."""
-    scene, bounds = table.scene, row.bounds
+    scene, bounds = runs.scene, row.bounds
     if row.place is Place.BETWEEN:
         return None, None
     if row.absent or (row.exact is not None and row.exact.shape != row.fea.shape):
@@ -59,9 +76,9 @@ def _judge(table: RunsTable, row: Row, *, faint: bool) -> Judged:
     if any(each.pressure > 1.0 for each in true_errors(row)):
         return Word.DIFFER, Reason.EXACT
     if row.difference > bounds.total:
-        return _contradiction(table, row, faint=faint)
+        return _contradiction(runs, row, faint=faint)
     limit = scene.limit(row.probe) * row.scale
-    by_theory = table.runs.theory == "bending" and row.theory > limit
+    by_theory = runs.theory == "bending" and row.theory > limit
     if bounds.total <= limit and not by_theory:
         return Word.AGREE, None
     if row.shared is not None:
@@ -71,15 +88,15 @@ def _judge(table: RunsTable, row: Row, *, faint: bool) -> Judged:
     return Word.UNDECIDED, Reason.COARSE if bounds.total > limit else Reason.THEORY
 
 
-def judge_case(rows: Sequence[Row], judged: Sequence[Judged]) -> tuple[Word, Reason | None]:
+def judge_case(rows: Sequence[Row]) -> tuple[Word, Reason | None]:
     """Word and reason of all rows together."""
     for word in (Word.DIFFER, Word.UNDECIDED):
-        reasons = {reason for found, reason in judged if found is word}
+        reasons = {row.reason for row in rows if row.word is word}
         for reason in (each for each in Reason if each in reasons):
-            if word is Word.DIFFER or _decides(rows, judged, reason):
+            if word is Word.DIFFER or _decides(rows, reason):
                 return word, reason
-    if not any(word is Word.AGREE for word, _ in judged):
-        return Word.UNDECIDED, next((reason for _, reason in judged if reason is not None), Reason.RUN_ENDED)
+    if not any(row.word is Word.AGREE for row in rows):
+        return Word.UNDECIDED, next((row.reason for row in rows if row.reason is not None), Reason.RUN_ENDED)
     return Word.AGREE, None
 
 
@@ -92,18 +109,18 @@ def _without_value(scene: Scene, row: Row) -> Judged:
     return Word.UNDECIDED, Reason.EVENT
 
 
-def _is_notable(table: RunsTable, row: Row) -> bool:
+def _is_notable(runs: Runs, row: Row) -> bool:
     """Whether a contact in one solver only has an effect: by its force, or by another probe's difference."""
     if row.probe.of not in row.events.contradictory or row.probe.quantity != "force":
         return row.bounds is not None and row.difference > row.bounds.total + 10.0 * ROUND_OFF * row.scale
-    stations = [table.stations[name][row.where] for name in SOLVERS]
+    stations = [runs.stations[name][row.where] for name in SOLVERS]
     forces = [np.hypot(*station.forces.force.T).max(initial=0.0) for station in stations]
     moments = [np.abs(beam.M).max() / beam.s[-1] for station in stations for beam in station.beams.values()]
-    return row.difference > table.scene.limit(row.probe) * float(max(*forces, *moments))
+    return row.difference > runs.scene.limit(row.probe) * float(max(*forces, *moments))
 
 
-def _contradiction(table: RunsTable, row: Row, *, faint: bool) -> Judged:
-    if _same_resultant(table, row):
+def _contradiction(runs: Runs, row: Row, *, faint: bool) -> Judged:
+    if _same_resultant(runs, row):
         return Word.UNDECIDED, Reason.NOT_UNIQUE
     if row.events.unsettled:
         return Word.UNDECIDED, _event_reason(row)
@@ -116,23 +133,122 @@ def _event_reason(row: Row) -> Reason:
     return Reason.BRANCH if row.events.unsettled & {PASSED, MIRRORED} else Reason.EVENT
 
 
-def _same_resultant(table: RunsTable, row: Row) -> bool:
+def _same_resultant(runs: Runs, row: Row) -> bool:
     """Whether the row's contact or joint shares its force, and the sums of the shared forces do not contradict."""
     if row.shared is None:
         return False
     beam, others = row.shared
-    sums = {name: resultant(station, {row.probe.of, *others}, beam) for name, station in table.at(row.where).items()}
-    bounds = table.runs.bounds(sums, lambda difference: float(np.linalg.norm(difference)))
+    sums = {name: resultant(station, {row.probe.of, *others}, beam) for name, station in runs.at(row.where).items()}
+    bounds = runs.bounds(sums, lambda difference: float(np.linalg.norm(difference)))
     v_c, v_f = (sums[name] for name in SOLVERS)
     return bounds is not None and float(np.linalg.norm(v_c - v_f)) <= bounds.total
 
 
-def _decides(rows: Sequence[Row], judged: Sequence[Judged], reason: Reason) -> bool:
+def _decides(rows: Sequence[Row], reason: Reason) -> bool:
     """Whether undecided rows of a reason make the case undecided."""
-    agreeing = Counter(row.probe.name for row, (word, _) in zip(rows, judged, strict=True) if word is Word.AGREE)
+    agreeing = Counter(row.probe.name for row in rows if row.word is Word.AGREE)
     if reason is Reason.NOT_UNIQUE:
         return not agreeing
     if reason not in RESOLVABLE:
         return True
-    unresolved = Counter(row.probe.name for row, (_, why) in zip(rows, judged, strict=True) if why in RESOLVABLE)
+    unresolved = Counter(row.probe.name for row in rows if row.reason in RESOLVABLE)
     return any(count >= agreeing[name] for name, count in unresolved.items())
+
+
+SHARE_WITHIN = 0.95
+LARGEST_MEDIAN = 10.0
+EXACT_FACTOR = 2.0
+"""A true error beyond this multiple of the stated uncertainty is no chance of where a mesh stands."""
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorRatio:
+    """True error e and stated uncertainty u of one row, in the probe's unit, both positive."""
+
+    solver: Solver
+    row: Row
+    true: float
+    stated: float
+
+    @property
+    def ratio(self) -> float:
+        """e/u: above 1 the statement is not true."""
+        return self.true / self.stated
+
+    @property
+    def pressure(self) -> float:
+        """e/(F u): above 1 the row differs."""
+        return self.ratio / EXACT_FACTOR
+
+    @property
+    def word(self) -> str:
+        """Position of the true error: ``within``, ``beyond`` or ``far beyond`` the stated uncertainty."""
+        if self.ratio <= 1.0:
+            return "within"
+        return "beyond" if self.pressure <= 1.0 else "far beyond"
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """Error ratios of one solver together.
+
+    Attributes:
+        rows: number of rows with an error above q; within: rows with e ≤ u.
+        over: median of u/e over the statements; None without rows.
+        worst: rows with the largest e/u, largest first.
+    """
+
+    solver: Solver
+    rows: int
+    within: int
+    over: float | None
+    worst: tuple[ErrorRatio, ...]
+
+    @property
+    def share(self) -> float | None:
+        """within/rows; None without rows."""
+        return self.within / self.rows if self.rows else None
+
+    @property
+    def holds(self) -> bool:
+        """Whether both conditions hold; true without rows."""
+        return self.share is None or self.over is None or (self.share >= SHARE_WITHIN and self.over <= LARGEST_MEDIAN)
+
+
+def true_errors(row: Row) -> Iterator[ErrorRatio]:
+    """Error ratios of a row by solver; none without an exact value."""
+    if row.true_errors is None or row.bounds is None:
+        return
+    bounds, true = row.bounds, row.true_errors
+    floor = bounds.round_off + true.allowance
+    yield ErrorRatio("cprbm", row, true.cprbm, bounds.cprbm + floor)
+    yield ErrorRatio("fea", row, true.fea, bounds.fea + floor)
+
+
+def error_ratios(rows: Iterable[Row]) -> tuple[ErrorRatio, ...]:
+    """Error ratios with a true error above q; of a closing load, repeated at later stations, one ratio per stage."""
+    found: list[ErrorRatio] = []
+    closings: set[tuple[str, str]] = set()
+    for row in rows:
+        key = row.probe.name, row.stage
+        if row.true_errors is None or key in closings:
+            continue
+        if row.probe.quantity == "closing_load":
+            closings.add(key)
+        found.extend(each for each in true_errors(row) if each.true > row.true_errors.allowance)
+    return tuple(found)
+
+
+def tally(ratios: Sequence[ErrorRatio], solver: Solver, *, worst: int = 3) -> Tally:
+    """The error ratios of one solver together."""
+    mine = sorted((each for each in ratios if each.solver == solver), key=lambda each: -each.ratio)
+    statements: dict[tuple[str, str, int | None], float] = {}
+    for each in mine:  # the largest e/u of a statement comes first
+        statements.setdefault((each.row.probe.name, each.row.stage, each.row.branch), 1.0 / each.ratio)
+    return Tally(
+        solver=solver,
+        rows=len(mine),
+        within=sum(each.ratio <= 1.0 for each in mine),
+        over=median(statements.values()) if statements else None,
+        worst=tuple(mine[:worst]),
+    )

@@ -24,14 +24,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, denominator, norm, probe_scales, unit_of
-from comparisons.stations import find_station
+from comparisons.stations import complete_stations
+from comparisons.verdict import Reason, Word
 from comparisons.verdict.events import NO_EVENTS, Place, StationEvents, station_events
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
-from comparisons.verdict.runs import Bounds, Runs, RunsTable
+from comparisons.verdict.runs import Bounds, Runs
 from comparisons.verdict.uncertainty import largest
-from cprbm_scene import Answer, Probe, Scene, Stage, StationAnswer
-from cprbm_scene.answer import Array, Flags
-from cprbm_scene.statement import STRESSES, Quantity
+from cprbm_scene.answer import Array, Flags, StationAnswer
+from cprbm_scene.statement import STRESSES, Probe, Quantity, Scene, Stage
 
 ROUND_OFF = 1e-9
 """Round-off of a value, and least uncertainty of an exact value, as shares of the probe's scale."""
@@ -47,6 +47,23 @@ class TrueErrors:
     cprbm: float
     fea: float
     allowance: float
+
+
+@dataclass(frozen=True, slots=True)
+class Third:
+    """A value of the solid beside a row, in the probe's unit.
+
+    Attributes:
+        solid: x (k,); uncertainty: u, as :mod:`comparisons.opinions` says.
+        cprbm, fea, other: distances from x of the CPRBM, of the finite elements, and of the CPRBM in the other theory;
+            NaN without a value.
+    """
+
+    solid: Array
+    uncertainty: float
+    cprbm: float
+    fea: float
+    other: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +85,8 @@ class Row:
         arc_length: places (k,) of a stress, m.
         counts: components (k,) in the difference: of a stress all away from point forces; None without a difference.
         exact: x; true_errors: distances from x.
+        word: None where the row takes no part in the verdict; reason: unless the word has none.
+        third: the row beside the solid; None without a solid.
     """
 
     probe: Probe
@@ -90,6 +109,9 @@ class Row:
     counts: Flags | None = None
     exact: Array | None = None
     true_errors: TrueErrors | None = None
+    word: Word | None = None
+    reason: Reason | None = None
+    third: Third | None = None
 
     @property
     def place(self) -> Place:
@@ -122,30 +144,24 @@ class Row:
         return 0.0 if value == 0.0 else None
 
 
-def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
-    """All rows of the stations that both compared answers reach."""
-    table = RunsTable(scene, runs)
-    return build_rows(table, station_events(table))
-
-
-def build_rows(table: RunsTable, events: Mapping[tuple[str, float], StationEvents]) -> tuple[Row, ...]:
+def rows_of(runs: Runs) -> tuple[Row, ...]:
     """All rows of the stations that both compared runs reach, in the order of stations and probes."""
-    scene = table.scene
-    scales = probe_scales(scene, table.pair)
+    scene, events, found = runs.scene, station_events(runs), list[Row]()
+    scales = probe_scales(scene, runs.pair)
     stages = {stage.name: stage for stage in scene.stages}
-    found = []
-    for where in table.reached:
-        stations = table.at(where)
+    opinions = [each and complete_stations(scene, each) for each in (runs.answers.get("exact"), runs.other)]
+    for where in runs.reached:
+        stations, branch = runs.at(where), events[where].branch
         exact, other = (
-            _station(answer, where, events[where].branch) for answer in (table.runs.exact, table.runs.other)
+            at if at and at.branch == branch else None for at in (each and each.get(where) for each in opinions)
         )
-        missing = tuple(name for name in table.answers if name not in stations)
+        missing = tuple(name for name in runs.same_theory if name not in stations)
         for probe in scene.probes_in(where[0]):
             pair = stations["cprbm"], stations["fea"]
             row = bare_row(scene, pair, probe, stages[where[0]], where[1], scales[where[0], probe.name])
             shared = sharing_sources(scene, stations.values(), probe.of) if probe.quantity in SHARED else None
             row = replace(row, events=events[where], shared=shared, missing=missing)
-            found.append(_measured(table, row, stations, exact, other))
+            found.append(_measured(runs, row, stations, exact, other))
     return _with_largest_uncertainties(found)
 
 
@@ -180,14 +196,14 @@ def bare_row(
 
 
 def _measured(
-    table: RunsTable,
+    runs: Runs,
     row: Row,
     stations: Mapping[str, StationAnswer],
     exact: StationAnswer | None,
     other: StationAnswer | None,
 ) -> Row:
     """The row with its difference, step of theory, stated uncertainties and true errors."""
-    runs, probe = table.runs, row.probe
+    probe = row.probe
     values = {name: station.values[probe.name] for name, station in stations.items()}
     row = replace(
         row,
@@ -200,7 +216,7 @@ def _measured(
     counts = np.ones(row.fea.shape, dtype=bool)
     if row.arc_length is not None:
         every = (*stations.values(), *(() if other is None else (other,)))
-        counts = away_from_point_forces(table.scene, probe.of, row.arc_length, every)
+        counts = away_from_point_forces(runs.scene, probe.of, row.arc_length, every)
     if not counts.any():
         return row
 
@@ -231,12 +247,6 @@ def _true_errors(row: Row, exact: StationAnswer | None, size: Callable[[Array], 
         return None
     allowance = max(exact.certificate.residual, exact.certificate.residual_floor, ROUND_OFF) * row.scale
     return TrueErrors(size(row.cprbm - row.exact), size(row.fea - row.exact), allowance)
-
-
-def _station(answer: Answer | None, where: tuple[str, float], branch: int | None) -> StationAnswer | None:
-    """The station of an answer on a branch."""
-    found = None if answer is None or branch is None else find_station(answer, *where)
-    return None if found is None or found.branch != branch else found
 
 
 def _with_largest_uncertainties(rows: Sequence[Row]) -> tuple[Row, ...]:

@@ -1,4 +1,4 @@
-"""All answers to one scene in a comparison: by their parts in the verdict, by station, and their stated uncertainties.
+"""All answers to one scene in a comparison: by name of the run, by station, and their stated uncertainties.
 
 ======  ==========================================================================================
 symbol  meaning
@@ -14,11 +14,28 @@ u is the uncertainty of :mod:`comparisons.verdict.uncertainty` on the grids N, N
 theory.  Two right solvers therefore have
 
     |v_c − v_f| ≤ u_c + u_f + r.
+
+====================  ============================================================================
+run                   answer
+====================  ============================================================================
+cprbm, fea            the compared answers at N links and n elements
+cprbm finer           the CPRBM at 2N links, always in ``auto``
+fea finer             the finite elements at 2n elements
+cprbm auto            the CPRBM at N links in ``auto``, if another formulation is chosen
+cprbm beside          the CPRBM at N + N/7 links in ``auto``; fea beside at n + n/7 elements
+cprbm paper           at N links in ``paper`` and in ``bending``, beside ``auto``
+cprbm perturbed       at N links at :func:`comparisons.reactions.perturbed_scene`
+exact                 the exact answer at the covered stations, in ``bending``
+cprbm bending, shear  at N links in ``auto`` in the other theory
+====================  ============================================================================
+
+Where the answers at N and n have nothing in common, no further run of the theory is there.  The last four runs are no
+part of the verdict, except that the exact answer contradicts, and the other theory leaves rows undecided.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, TypeAlias
@@ -33,6 +50,14 @@ from cprbm_scene.frozendict import frozendict
 Solver = Literal["cprbm", "fea"]
 SOLVERS: tuple[Solver, ...] = ("cprbm", "fea")
 """The solvers, and the names of the two compared runs."""
+
+SAME_THEORY = ("cprbm", "cprbm finer", "fea", "fea finer", "cprbm auto", "cprbm beside", "fea beside")
+"""Names of the runs in the theory of the comparison."""
+
+NAMES = (*SAME_THEORY, "cprbm paper", "cprbm perturbed", "exact", "cprbm bending", "cprbm shear")
+"""Names of all runs, in the order of a file of answers."""
+
+TWICE: Mapping[str, float] = frozendict({"cprbm finer": 2.0, "fea finer": 2.0})
 
 Uncertainties: TypeAlias = Mapping[tuple[str, float, str], Error]
 """Stated uncertainties by stage, station and probe."""
@@ -52,53 +77,34 @@ class Bounds:
         return self.cprbm + self.fea + self.round_off
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # slots refuse cached properties
 class Runs:
     """All answers to one scene in a comparison; a failed run is a failed answer.
 
     Attributes:
+        scene: the question.
         theory: beam theory of the comparison.
-        cprbm: the CPRBM at N and 2N links, at 2N always in the formulation ``auto``; at N alone where the answers at N
-            and n have nothing in common.
-        fea: the finite elements at n and 2n elements; at n alone likewise.
-        auto: the CPRBM at N links in ``auto``, if another formulation is chosen.
-        paper: the CPRBM at N links in ``paper`` and in ``bending``, beside ``auto``; no part of the verdict.
-        beside: the CPRBM in ``auto`` at N + N/7 links.
-        ratio: N over N + N/7.
-        fea_beside: the finite elements at n + n/7.
-        fea_ratio: n over n + n/7.
-        other: the CPRBM at N links in ``auto`` in :attr:`other_theory`; None without this run.
-        other_absence: why the CPRBM refuses the other theory; empty otherwise.
-        perturbed: the CPRBM at N links at :func:`comparisons.reactions.perturbed_scene`; no part of the verdict.
-        exact: the exact answer at the covered stations; None without any, and outside ``bending``.
-        exact_absence: why the exact reference covers no station; empty if the reference was not asked.
-        solid: the solid at n and 2n elements, or on the meshes of a tolerance, from coarse to fine; no part of the
+        answers: by name of the run, in the order of ``NAMES``.
+        absences: why the CPRBM refuses the other theory, and why no station has an exact answer; by name of the run.
+        sizes: N of further runs over N of the compared run, by name of the run, ascending.
+        solids: the solid at n and 2n elements, or on the meshes of a tolerance, from coarse to fine; no part of the
             verdict.
         settled: stated uncertainties by stage, station and probe, by name of a run with extrapolated values or further
             grids.
     """
 
+    scene: Scene
     theory: Kinematics
-    cprbm: tuple[Answer, ...]
-    fea: tuple[Answer, ...]
-    auto: Answer | None = None
-    paper: Answer | None = None
-    beside: Answer | None = None
-    ratio: float = 1.0
-    fea_beside: Answer | None = None
-    fea_ratio: float = 1.0
-    other: Answer | None = None
-    other_absence: str = ""
-    perturbed: Answer | None = None
-    exact: Answer | None = None
-    exact_absence: str = ""
-    solid: tuple[Answer, ...] | None = None
+    answers: Mapping[str, Answer]
+    absences: Mapping[str, str] = frozendict()
+    sizes: Mapping[str, float] = TWICE
+    solids: tuple[Answer, ...] = ()
     settled: Mapping[str, Uncertainties] = frozendict()
 
     @property
-    def reference(self) -> Answer:
-        """The finite elements' answer at n elements."""
-        return self.fea[0]
+    def pair(self) -> tuple[Answer, Answer]:
+        """The two compared answers."""
+        return self.answers["cprbm"], self.answers["fea"]
 
     @property
     def other_theory(self) -> Kinematics:
@@ -106,20 +112,47 @@ class Runs:
         return other_theory(self.theory)
 
     @property
-    def formulations(self) -> tuple[Answer, Answer] | None:
-        """The CPRBM at N links in ``paper`` and in ``auto``, in one theory; None without both runs."""
-        if self.auto is not None:
-            return self.cprbm[0], self.auto
-        even = self.cprbm[0] if self.theory == "bending" else self.other
-        return None if self.paper is None or even is None else (self.paper, even)
+    def other(self) -> Answer | None:
+        """The CPRBM's answer in the other theory; None without this run."""
+        return self.answers.get(f"cprbm {self.other_theory}")
 
-    def everything(self) -> Iterator[tuple[str, Answer]]:
-        """Names and answers of all runs in the theory of the comparison."""
-        for name, answers in (("cprbm", self.cprbm), ("fea", self.fea)):
-            for level, answer in enumerate(answers):
-                yield f"{name} finer" if level else name, answer
-        others = {"cprbm auto": self.auto, "cprbm beside": self.beside, "fea beside": self.fea_beside}
-        yield from ((name, answer) for name, answer in others.items() if answer is not None)
+    @property
+    def formulations(self) -> tuple[str, str]:
+        """Names of the CPRBM's runs at N links in ``paper`` and in ``auto``, in one theory."""
+        if "cprbm auto" in self.answers:
+            return "cprbm", "cprbm auto"
+        return "cprbm paper", "cprbm" if self.theory == "bending" else "cprbm bending"
+
+    @cached_property
+    def same_theory(self) -> Mapping[str, Answer]:
+        """Answers in the theory of the comparison, by name of the run."""
+        return {name: self.answers[name] for name in SAME_THEORY if name in self.answers}
+
+    @cached_property
+    def problems(self) -> Mapping[str, tuple[str, ...]]:
+        """Problems of every run of the theory that is not complete, by name."""
+        found = {name: problems(self.scene, answer) for name, answer in self.same_theory.items()}
+        return {name: each for name, each in found.items() if each}
+
+    @cached_property
+    def stations(self) -> Mapping[str, Mapping[Where, StationAnswer]]:
+        """Complete stations of every run of the theory."""
+        return {name: complete_stations(self.scene, answer) for name, answer in self.same_theory.items()}
+
+    @cached_property
+    def reached(self) -> tuple[Where, ...]:
+        """Stations of both compared runs, in order."""
+        both = [self.stations[name] for name in SOLVERS]
+        return tuple(where for where in stations_of(self.scene) if all(where in each for each in both))
+
+    def at(self, where: Where) -> dict[str, StationAnswer]:
+        """Stations of all runs of the theory with this station, by name of the run."""
+        return {name: stations[where] for name, stations in self.stations.items() if where in stations}
+
+    @cached_property
+    def following(self) -> Mapping[str, Answer]:
+        """Runs of the theory up to the last station, or up to the critical point at the end of the path."""
+        return {name: each for name, each in self.same_theory.items() if each.completed or ends_at_critical(each)}
 
     def bounds(
         self,
@@ -131,14 +164,14 @@ class Runs:
         """Stated uncertainties of a row; None where a solver lacks the value on the finer grid.
 
         Args:
-            values: values (k,) by name of the run, as :meth:`everything` names the runs.
+            values: values (k,) by name of the run.
             size: norm of a difference (k,).
             round_off: r.
             known: uncertainties of settled runs, by name.
         """
         even = values.get("cprbm auto", values["cprbm"])
-        of_cprbm = known.get("cprbm") or _error(even, values, "cprbm", self.ratio)
-        of_fea = known.get("fea") or _error(values["fea"], values, "fea", self.fea_ratio)
+        of_cprbm = known.get("cprbm") or self._error(even, values, "cprbm")
+        of_fea = known.get("fea") or self._error(values["fea"], values, "fea")
         if of_cprbm is None or of_fea is None:
             return None
         return Bounds(
@@ -147,65 +180,33 @@ class Runs:
             round_off=round_off,
         )
 
+    def _error(self, value: Array, values: Mapping[str, Array], solver: Solver) -> Error | None:
+        """Uncertainty of the ``value`` of a solver; None without a value at 2N."""
+        finer = {
+            size: values[name] for name, size in self.sizes.items() if name in values and solver_of(name) == solver
+        }
+        return error([1.0, *finer], [value, *finer.values()]) if f"{solver} finer" in values else None
+
+
+def runs_of(
+    scene: Scene,
+    theory: Kinematics,
+    results: Mapping[str, Answer | str],
+    sizes: Mapping[str, float] = TWICE,
+    settled: Mapping[str, Uncertainties] = frozendict(),
+) -> Runs:
+    """Runs from results by name: answers, or the reasons of absences; an exact answer without a station is absent."""
+    answers = {name: each for name in NAMES if isinstance(each := results.get(name), Answer)}
+    absences = {name: each for name, each in results.items() if isinstance(each, str) and each}
+    if "exact" in answers and not answers["exact"].stations:
+        absences["exact"] = answers.pop("exact").sentence
+    solids = tuple(each for name, each in results.items() if name.startswith("solid") and isinstance(each, Answer))
+    return Runs(scene, theory, answers, absences, sizes, solids, settled)
+
 
 def other_theory(theory: Kinematics) -> Kinematics:
     """``bending``, the paper's theory; ``shear`` for ``bending``."""
     return "shear" if theory == "bending" else "bending"
-
-
-def _error(value: Array, values: Mapping[str, Array], name: str, ratio: float) -> Error | None:
-    """Uncertainty of the ``value`` of the runs of a name; None without a run at 2N."""
-    if f"{name} finer" not in values:
-        return None
-    grids = [(1.0, value), (2.0, values[f"{name} finer"])]
-    if f"{name} beside" in values:
-        grids.insert(1, (1.0 / ratio, values[f"{name} beside"]))
-    sizes, found = zip(*grids, strict=True)
-    return error(sizes, found)
-
-
-@dataclass(frozen=True)
-class RunsTable:
-    """All runs of a comparison by their names; a CPRBM run's name begins with ``cprbm``."""
-
-    scene: Scene
-    runs: Runs
-
-    @cached_property
-    def answers(self) -> Mapping[str, Answer]:
-        """Answer of every run."""
-        return dict(self.runs.everything())
-
-    @property
-    def pair(self) -> tuple[Answer, Answer]:
-        """The two compared answers."""
-        return self.runs.cprbm[0], self.runs.reference
-
-    @cached_property
-    def problems(self) -> Mapping[str, tuple[str, ...]]:
-        """Problems of every run that is not complete, by name."""
-        found = {name: problems(self.scene, answer) for name, answer in self.answers.items()}
-        return {name: each for name, each in found.items() if each}
-
-    @cached_property
-    def stations(self) -> Mapping[str, Mapping[Where, StationAnswer]]:
-        """Complete stations of every run."""
-        return {name: complete_stations(self.scene, answer) for name, answer in self.answers.items()}
-
-    @cached_property
-    def reached(self) -> tuple[Where, ...]:
-        """Stations of both compared runs, in order."""
-        both = [self.stations[name] for name in SOLVERS]
-        return tuple(where for where in stations_of(self.scene) if all(where in each for each in both))
-
-    def at(self, where: Where) -> dict[str, StationAnswer]:
-        """Stations of all runs with this station, by name of the run."""
-        return {name: stations[where] for name, stations in self.stations.items() if where in stations}
-
-    @cached_property
-    def following(self) -> Mapping[str, Answer]:
-        """Runs up to the last station, or up to the critical point at the end of the path."""
-        return {name: answer for name, answer in self.answers.items() if answer.completed or ends_at_critical(answer)}
 
 
 def solver_of(name: str) -> str:

@@ -108,7 +108,7 @@ def numbers_of_answer(scene: Scene, answer: Answer) -> Entry:
 def numbers_of_comparison(comparison: Comparison) -> Entry:
     """The numbers of a comparison, by the keys of the documented JSON."""
     document = json_document.comparison(comparison)
-    runs = [answer for _, answer in comparison.runs.everything()]
+    runs = [*comparison.runs.same_theory.values()]
     return {
         "outcome": "answered",
         "verdict": document["verdict"],

@@ -27,7 +27,7 @@ HEADERS = ["probe", "unit", "CPRBM", "FEA", "difference", "stated", "word"]
 def comparison():
     """Two solvers that differ by a few parts in ten million."""
     scene = cases.opened("hinge")
-    return compare(scene, paired(scene, Choices(), Solvers(MadeUp("cprbm", 2e-7), MadeUp("fea", -5e-8))))
+    return compare(paired(scene, Choices(), Solvers(MadeUp("cprbm", 2e-7), MadeUp("fea", -5e-8))))
 
 
 def cell(table, row, header):
@@ -78,7 +78,7 @@ def test_every_probe_of_the_last_station_stands_once_in_the_tables_of_errors(com
 def test_the_contact_model_has_a_table_in_both_formulations(formulation):
     """f is 1e-3 larger in ``paper``: 0.8·0.67·1e-3 of a rotation behind contact, over the finite elements' value."""
     scene, solvers = cases.opened("hinge"), Solvers(MadeUp("cprbm", 2e-3, paper=1e-3), MadeUp("fea", 0.0))
-    found = compare(scene, paired(scene, Choices(formulation=formulation), solvers))
+    found = compare(paired(scene, Choices(formulation=formulation), solvers))
     shown = cell(titled(tables_of(found), "The formulation paper beside auto"), "BD.rotation", "at load 0.67 N·m")
     assert percentage(shown) == pytest.approx(0.8 * 0.67e-3 / (0.8 * 0.67 + 0.02), rel=1e-2)
 
@@ -86,15 +86,16 @@ def test_the_contact_model_has_a_table_in_both_formulations(formulation):
 def test_the_distance_of_paper_at_its_largest_and_at_its_last_station_and_why_it_ended():
     scene, solvers = cases.opened("hinge"), Solvers(MadeUp("cprbm", 2e-3, paper=1e-3), MadeUp("fea", 0.0))
     runs = paired(scene, Choices(), solvers)
+    whole = runs.answers["cprbm paper"]
     early = replace(
-        runs.paper,
+        whole,
         ending=Ending.LEFT_BOUNDARY,
         sentence="joint 3 presses beyond the end",
-        stations=runs.paper.stations[:4],
+        stations=whole.stations[:4],
         notes=("the chord is held",),
     )
-    for paper, last in ((runs.paper, 0.67), (early, 0.268)):
-        found = compare(scene, replace(runs, paper=paper))
+    for paper, last in ((whole, 0.67), (early, 0.268)):
+        found = compare(replace(runs, answers={**runs.answers, "cprbm paper": paper}))
         table = titled(tables_of(found), "The formulation paper beside auto")
         rows = [row for row in found.rows if row.probe.name == "BD.rotation" and row.station <= last]
         shares = {row.station: contact_model(found.runs, row) / row.denominator for row in rows}
@@ -107,7 +108,7 @@ def test_the_distance_of_paper_at_its_largest_and_at_its_last_station_and_why_it
         assert ("In paper: the chord is held." in table.note) is (paper is early)
         assert ("It ended before load 0.335 N·m: joint 3 presses beyond the end." in table.note) is (paper is early)
         assert all(contact_model(found.runs, row) is None for row in found.rows if row.station > last)
-    without = compare(scene, replace(runs, paper=None))
+    without = compare(replace(runs, answers={name: runs.answers[name] for name in runs.answers if "paper" not in name}))
     assert without.verdict == found.verdict
     assert not [table for table in tables_of(without) if table.title == "The formulation paper beside auto"]
 
@@ -116,9 +117,10 @@ def test_the_distance_of_paper_at_its_largest_and_at_its_last_station_and_why_it
 def test_a_distance_above_tenfold_has_its_unit(comparison, denominator, text):
     """A force that the formulation ``paper`` changes by 0.402 N, as a share of a denominator."""
     row = [row for row in comparison.rows if row.probe.name == "contact.force"][-1]
-    auto = comparison.runs.cprbm[0]
+    auto = comparison.runs.answers["cprbm"]
     changed = with_value("contact.force", row.cprbm + 0.402)(auto.stations[-1])
-    runs = replace(comparison.runs, paper=replace(auto, stations=(*auto.stations[:-1], changed)))
+    paper = replace(auto, stations=(*auto.stations[:-1], changed))
+    runs = replace(comparison.runs, answers={**comparison.runs.answers, "cprbm paper": paper})
     only = replace(comparison, runs=runs, rows=(replace(row, denominator=denominator),))
     assert cell(paper_table(only), "contact.force", "largest distance") == text
 
@@ -145,7 +147,7 @@ def test_a_row_of_the_branch_table_is_an_interval_of_stations(comparison):
 
 
 def test_one_answer_makes_its_own_tables(comparison):
-    values, events = answer_tables(comparison.scene, comparison.runs.cprbm[0])
+    values, events = answer_tables(comparison.scene, comparison.runs.answers["cprbm"])
     assert [row[0] for row in values.rows] == [f"{station:g}" for station in comparison.scene.stages[0].stations]
     assert events.rows[0][:2] == ("load", "contact")
 

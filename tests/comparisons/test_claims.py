@@ -34,7 +34,7 @@ EVERYWHERE = Claim(probe="BD.rotation", bound=0.005, text="rotation within 0.5 %
 
 
 def test_a_claim_without_a_station_stands_at_every_row_of_its_probe(hinge, right):
-    comparison = compare(claiming(hinge, EVERYWHERE), paired(hinge, Choices(), right))
+    comparison = compare(paired(claiming(hinge, EVERYWHERE), Choices(), right))
     found = json_document.comparison(comparison)["rows"]
     mine = [each for each in found if each["probe"] == "BD.rotation"]
     assert len(mine) == 10
@@ -46,7 +46,7 @@ def test_a_claim_without_a_station_stands_at_every_row_of_its_probe(hinge, right
 
 
 def test_it_has_one_line_with_the_worst_station_and_how_often_it_is_met(hinge, right):
-    comparison = compare(claiming(hinge, EVERYWHERE), paired(hinge, Choices(), right))
+    comparison = compare(paired(claiming(hinge, EVERYWHERE), Choices(), right))
     fractions = {row.station: claim_difference(row) for row in comparison.rows if row.probe.name == "BD.rotation"}
     worst = max(fractions, key=fractions.get)
     met = sum(fraction <= 0.005 for fraction in fractions.values())
@@ -110,7 +110,7 @@ def test_a_row_without_a_difference_meets_nothing(hinge):
 
 def test_a_force_is_claimed_as_a_share_of_its_own_value(hinge, right):
     scene = claiming(hinge, Claim(probe="contact.force", station=0.335, bound=0.01))
-    comparison = compare(scene, paired(hinge, Choices(), right))
+    comparison = compare(paired(scene, Choices(), right))
     sheet = next(sheet for sheet in tables_of(comparison) if sheet.title == "Claims of the source")
     (small,) = (each for each in comparison.rows if each.probe.name == "contact.force" and each.station == 0.335)
     assert sheet.rows[0][2] == percent(claim_difference(small))

@@ -18,8 +18,9 @@ from comparisons.cli.main import run
 from comparisons.pairing import Solvers, paired
 from comparisons.present import json_document
 from comparisons.present.case_tables import answer_tables
+from comparisons.present.columns import plain
 from comparisons.present.csv_table import contact_csv, csv_of, numbers
-from comparisons.writing import plain, text_of
+from comparisons.writing import text_of
 from cprbm_scene import Answer, Certificate, Ending, Scene, StationAnswer, scene_from
 from tests.robustness.toml import toml_of
 from tests.verdict.made_up import CERTIFICATE, MadeUp
@@ -60,7 +61,7 @@ BENT = {
 def case():
     hinge = cases.opened("hinge")
     right = Solvers(cprbm=MadeUp("cprbm", 2e-3), fea=MadeUp("fea", -5e-4))
-    data = json_document.comparison(compare(hinge, paired(hinge, Choices(), right)))
+    data = json_document.comparison(compare(paired(hinge, Choices(), right)))
     return json.loads(text_of(data), parse_constant=lambda constant: pytest.fail(constant))
 
 
@@ -120,7 +121,7 @@ def test_claims_stand_at_their_station_only(case):
 
 def test_a_case_without_rows_and_a_single_solver_have_documents_too(hinge, right):
     early = Solvers(MadeUp("cprbm", 0.0, until=0), right.fea)
-    data = json_document.comparison(compare(hinge, paired(hinge, Choices(), early)))
+    data = json_document.comparison(compare(paired(hinge, Choices(), early)))
     assert (data["verdict"], data["rows"], data["solvers"]["cprbm"]["certificate"]) == ("UNDECIDED", [], None)
     data = json_document.solution(hinge, right.cprbm(hinge, Choices()))
     assert set(data) == {"case", "solvers", "rows"}

@@ -8,7 +8,7 @@ import pytest
 import cprbm
 from comparisons.cli.doctor import trouble_with
 from comparisons.cli.main import run
-from comparisons.importing.curves import fit
+from comparisons.importing.scene_text import fit
 from cprbm_scene import Arc, Line, Spline, read
 
 needs_ezdxf = pytest.mark.skipif(bool(trouble_with("ezdxf")), reason="ezdxf cannot be imported here")

@@ -84,14 +84,14 @@ def test_without_a_common_station_no_other_run_is_waited_for(hinge, tmp_path, wo
     with crew_of(workers) as crew:
         runs = paired(hinge, Choices(), solvers, crew)
     assert time.perf_counter() - began < 30.0
-    assert [name for name, _ in runs.everything()] == ["cprbm", "fea"]
-    assert runs.paper is runs.exact is None
+    assert [*runs.same_theory] == ["cprbm", "fea"]
+    assert not {"cprbm paper", "exact"} & runs.answers.keys()
     assert runs.other.ending is Ending.STEP_TOO_SMALL
     asked = {path.name for path in tmp_path.iterdir()}
     assert {"cprbm-bending-auto-40", "fea-bending-auto-80", "cprbm-shear-auto-40"} <= asked
     if workers == 1:
         assert len(asked) == 3
-    verdict = compare(hinge, runs).verdict
+    verdict = compare(runs).verdict
     assert verdict.word is Word.UNDECIDED
     assert "it ended early" in verdict.because
 
@@ -99,7 +99,7 @@ def test_without_a_common_station_no_other_run_is_waited_for(hinge, tmp_path, wo
 def test_a_critical_value_keeps_all_runs(hinge, tmp_path):
     critical = (Critical("load", 0.1, 1e-6, Loss.FOLD, "", 0.0, 0.0, 1.0, None),)
     solvers = Solvers(Noted("cprbm", tmp_path, critical), Noted("fea", tmp_path, critical))
-    assert len(list(paired(hinge, Choices(), solvers).everything())) == 6
+    assert len(paired(hinge, Choices(), solvers).same_theory) == 6
 
 
 def test_a_helper_run_that_fails_stays_among_the_runs(hinge, right):
@@ -107,7 +107,7 @@ def test_a_helper_run_that_fails_stays_among_the_runs(hinge, right):
         answer = right.cprbm(scene, choices)
         return answer if choices.links == 40 else replace(answer, ending=Ending.STEP_TOO_SMALL, stations=())
 
-    runs = dict(paired(hinge, Choices(), Solvers(coarse, right.fea)).everything())
+    runs = paired(hinge, Choices(), Solvers(coarse, right.fea)).same_theory
     assert runs["cprbm finer"].ending is Ending.STEP_TOO_SMALL
     assert len(runs) == 6
 
@@ -133,11 +133,11 @@ def test_a_scene_beyond_the_rule_has_no_exact_values_and_says_so(hinge, right):
         update={"stages": (stage.model_copy(update={"stations": tuple(np.linspace(0.01, 0.6, 101))}),)}
     )
     runs = paired(long, Choices(), replace(right, exact=exact_by_rule))
-    assert runs.exact is None
-    assert runs.exact_absence.startswith("3 pieces of beams at 101 stations are beyond the rule")
-    assert "--exact" in runs.exact_absence
-    notes = [sheet.note for sheet in tables_of(compare(long, runs))]
-    assert sum(f"No exact values: {runs.exact_absence}" in note for note in notes) == 1
+    assert "exact" not in runs.answers
+    assert runs.absences["exact"].startswith("3 pieces of beams at 101 stations are beyond the rule")
+    assert "--exact" in runs.absences["exact"]
+    notes = [sheet.note for sheet in tables_of(compare(runs))]
+    assert sum(f"No exact values: {runs.absences['exact']}" in note for note in notes) == 1
 
 
 def test_what_is_asked_of_the_exact_reference():
@@ -150,7 +150,8 @@ def test_what_is_asked_of_the_exact_reference():
 
 def test_both_formulations_are_there_whichever_was_chosen(hinge):
     solvers = Solvers(MadeUp("cprbm", 2e-3, paper=1e-3), MadeUp("fea", 0.0))
-    found = [paired(hinge, Choices(formulation=one), solvers).formulations for one in ("auto", "paper")]
+    runs = [paired(hinge, Choices(formulation=one), solvers) for one in ("auto", "paper")]
+    found = [[each.answers[name] for name in each.formulations] for each in runs]
     rotations = [[answer.stations[0].values["BD.rotation"] for answer in pair or ()] for pair in found]
     assert rotations[0] == rotations[1]
     assert rotations[0][0] != rotations[0][1]
@@ -168,8 +169,8 @@ def test_both_formulations_are_there_whichever_was_chosen(hinge):
 )
 def test_paper_stands_beside_auto_where_it_was_told_all_and_is_quick(right, case, links, asked):
     runs = paired(cases.opened(case), Choices(links=links), right)
-    assert (runs.paper is not None) is asked
-    assert "paper" not in dict(runs.everything())
+    assert ("cprbm paper" in runs.answers) is asked
+    assert "cprbm paper" not in runs.same_theory
 
 
 @pytest.mark.parametrize("workers", [1, 2])
@@ -177,10 +178,10 @@ def test_a_refusal_of_paper_alone_is_none(hinge, right, workers):
     solvers = Solvers(RefusingPaper(), right.fea)
     with crew_of(workers) as crew:
         runs = paired(hinge, Choices(), solvers, crew)
-        assert runs.paper is runs.formulations is None
+        assert "cprbm paper" not in runs.answers
         with pytest.raises(SceneError):
             paired(hinge, Choices(formulation="paper"), solvers, crew)
-        assert paired(hinge, Choices(), solvers, crew).paper is None, "a refusal leaves the crew as it was"
+        assert "cprbm paper" not in paired(hinge, Choices(), solvers, crew).answers, "the crew is as it was"
 
 
 class RefusingPaper:
@@ -209,8 +210,8 @@ def test_two_processes_give_the_answers_of_one(hinge, right, monkeypatch, semaph
         monkeypatch.setattr("multiprocessing.synchronize.SemLock.__init__", refused)
     with crew_of(2) as crew:
         one, two = paired(hinge, Choices(), right), paired(hinge, Choices(), right, crew)
-    assert [name for name, _ in one.everything()] == [name for name, _ in two.everything()]
-    for (_, mine), (_, theirs) in zip(one.everything(), two.everything(), strict=True):
+    assert [*one.same_theory] == [*two.same_theory]
+    for mine, theirs in zip(one.same_theory.values(), two.same_theory.values(), strict=True):
         assert mine.settings == theirs.settings
         for a, b in zip(mine.stations, theirs.stations, strict=True):
             assert {name: values.tolist() for name, values in a.values.items()} == {
@@ -225,11 +226,11 @@ def test_one_case_can_be_begun_before_another_has_ended(hinge, right):
         first, second = (begin(scene, Choices(), right, crew) for scene in (hinge, wrapped))
         refused = begin(hinge, Choices(), Solvers(Refusing(), right.fea), crew)
         last = begin(wrapped, Choices(), right, crew)
-        assert second().reference.scene == "wrapped"
-        assert first().reference.scene == "hinge"
+        assert second().answers["fea"].scene == "wrapped"
+        assert first().answers["fea"].scene == "hinge"
         with pytest.raises(SceneError):
             refused()
-        assert last().reference.scene == "wrapped"
+        assert last().answers["fea"].scene == "wrapped"
 
 
 def test_without_processes_nothing_is_done_before_it_is_waited_for(hinge, right):

@@ -42,7 +42,7 @@ CURVE = {
 
 
 def curves_of(compared):
-    return curve_figures(compared.scene, compared.runs.reference, compared.runs.cprbm[0])
+    return curve_figures(compared.scene, compared.runs.answers["fea"], compared.runs.answers["cprbm"])
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +76,7 @@ def jumping():
         for stage in whole.stages
     )
     scene = whole.model_copy(update={"stages": stages, "claims": ()})
-    return compare(scene, paired(scene, Choices(), Solvers(Jumping("cprbm"), Jumping("fea"))))
+    return compare(paired(scene, Choices(), Solvers(Jumping("cprbm"), Jumping("fea"))))
 
 
 def test_points_and_edges_move_with_their_bodies(linkage, station):
@@ -160,7 +160,7 @@ def test_limits_span_the_shown_colours_and_arrows(solved):
 def test_the_rays_of_a_stop_turn_with_its_body(jumping):
     """The body of the stop turns by the angle of the station, and two of the four rays with it."""
     scene = jumping.scene
-    last = next(at for at in jumping.runs.reference.stations if at.value > 1.57)
+    last = next(at for at in jumping.runs.answers["fea"].stations if at.value > 1.57)
     names = {name for name, body in scene.bodies.items() if "B" in body.points}
     turned = replace(last, bodies=frozendict(dict.fromkeys(names, np.array([0.0, 0.0, last.value]))))
     angles = []
@@ -186,7 +186,7 @@ def test_a_drive_that_goes_back_and_forth_has_all_its_figures(jumping):
 def test_a_curve_needs_two_stations_and_may_go_back(hinge, right):
     def of(*stages):
         scene = hinge.model_copy(update={"stages": stages, "claims": ()})
-        return list(curves_of(compare(scene, paired(scene, Choices(), right))))
+        return list(curves_of(compare(paired(scene, Choices(), right))))
 
     load = hinge.stages[0]
     assert of(load.model_copy(update={"stations": (0.3,), "shown": (0.3,)})) == []

@@ -89,7 +89,7 @@ def driven(*stages, **shown):
 
 
 def comparison_of(scene, cprbm=None):
-    return compare(scene, paired(scene, Choices(), Solvers(cprbm or Spring(), Spring("fea", share=1.01))))
+    return compare(paired(scene, Choices(), Solvers(cprbm or Spring(), Spring("fea", share=1.01))))
 
 
 def of_one_solver(scene, solver, choices=COARSE):
@@ -125,7 +125,7 @@ def test_without_a_reaction_probe_of_a_moved_drive_there_is_no_perturbed_scene(h
     fewer = push.model_copy(update={"probes": tuple(probe for probe in push.probes if probe.name != "M.reaction")})
     for scene in (hinge, driven(("pull", (0.5,))), driven(("push", (0.0,))), fewer):
         assert perturbed_scene(scene) is None
-    comparison = compare(hinge, paired(hinge, Choices(), right))
+    comparison = compare(paired(hinge, Choices(), right))
     assert comparison.reactions == ()
     assert json_document.comparison(comparison)["work_energy"] == []
     assert list(curves.reaction_figures(comparison)) == []
@@ -291,7 +291,7 @@ def jumping(**planted):
     )
     scene = scene.model_copy(update={"stages": stages, "claims": ()})
     solvers = Solvers(Jumping("cprbm", **planted), Jumping("fea", **planted))
-    return compare(scene, paired(scene, Choices(), solvers))
+    return compare(paired(scene, Choices(), solvers))
 
 
 def test_no_difference_is_taken_across_a_jump():
@@ -324,7 +324,7 @@ def test_a_stop_that_takes_hold_within_the_step_is_named():
         return replace(answer, stations=stations)
 
     after = radians(75.0) + PERTURBATION * radians(75.0)
-    cprbm, perturbed = planted(runs.cprbm[0], None), planted(runs.perturbed, after)
+    cprbm, perturbed = planted(runs.answers["cprbm"], None), planted(runs.answers["cprbm perturbed"], after)
     at = reactions(comparison.scene, cprbm, cprbm, perturbed)[2]
     assert (at.absence, at.changes, at.work_energy) == (Absence.CONTACT, ("stopB",), None)
 
@@ -345,10 +345,12 @@ def test_stations_behind_the_end_of_the_perturbed_run_say_so():
 def test_an_energy_that_is_no_number_leaves_no_value():
     comparison = comparison_of(driven(("push", (0.001, 0.002))))
     runs = comparison.runs
-    first = runs.perturbed.stations[0]
+    first = runs.answers["cprbm perturbed"].stations[0]
     spoilt = replace(first, values={**first.values, "scene.potential_energy": frozen_array([np.nan])})
-    perturbed = replace(runs.perturbed, stations=(spoilt, *runs.perturbed.stations[1:]))
-    found = compare(comparison.scene, replace(runs, perturbed=perturbed)).reactions
+    perturbed = replace(
+        runs.answers["cprbm perturbed"], stations=(spoilt, *runs.answers["cprbm perturbed"].stations[1:])
+    )
+    found = compare(replace(runs, answers={**runs.answers, "cprbm perturbed": perturbed})).reactions
     assert [at.absence for at in found] == [Absence.NOT_REACHED, None]
 
 
@@ -375,7 +377,8 @@ def test_json_table_and_figure_show_it():
 
 def test_the_verdict_does_not_use_it():
     comparison = comparison_of(driven(("push", (0.002, 0.004))))
-    without = compare(comparison.scene, replace(comparison.runs, perturbed=None))
+    answers = {name: each for name, each in comparison.runs.answers.items() if name != "cprbm perturbed"}
+    without = compare(replace(comparison.runs, answers=answers))
     assert without.verdict == comparison.verdict
     assert without.reactions == ()
 

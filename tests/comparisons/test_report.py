@@ -259,8 +259,8 @@ def solved():
     hinge = cases.opened("hinge")
     choices = Choices(links=13, elements=12, kinematics="bending")
     answers = cprbm_answer(hinge, choices), fea_answer(hinge, choices)
-    runs = Runs("bending", (answers[0], answers[0]), (answers[1], answers[1]))
-    return Comparison(hinge, runs, (), Verdict(Word.UNDECIDED, (), (), completed=False))
+    runs = Runs(hinge, "bending", dict(zip(("cprbm", "fea"), answers, strict=True)))
+    return Comparison(runs, (), Verdict(Word.UNDECIDED, (), completed=False))
 
 
 def places(shown):
@@ -274,7 +274,7 @@ def test_points_stand_where_the_answer_says_that_they_went(solved):
     assert steps.points == ("A", "C", "B", "D")
     fixed = np.array(solved.scene.bodies["AC"].points["A"])
     other = np.array(solved.scene.bodies["AC"].points["C"])
-    for shown, answer in zip(steps.stations, solved.runs.reference.stations, strict=True):
+    for shown, answer in zip(steps.stations, solved.runs.answers["fea"].stations, strict=True):
         A, C, B, D = places(shown)
         scale = np.hypot(*(A - C)) / np.hypot(*(fixed - other))
         for place, name in ((B, "B"), (D, "D")):
@@ -286,8 +286,8 @@ def test_points_stand_where_the_answer_says_that_they_went(solved):
 def test_contact_is_drawn_where_it_is_closed(solved):
     steps = stepper.stepper(solved)
     zone, push = (steps.moving.index(kind) for kind in ("zone", "push"))
-    largest = max(answer.values["contact.force"][0] for answer in solved.runs.reference.stations)
-    for (_, paths, *_), answer in zip(steps.stations, solved.runs.reference.stations, strict=True):
+    largest = max(answer.values["contact.force"][0] for answer in solved.runs.answers["fea"].stations)
+    for (_, paths, *_), answer in zip(steps.stations, solved.runs.answers["fea"].stations, strict=True):
         force = answer.values["contact.force"][0]
         assert bool(paths[zone]) == (force > 0.0)
         assert bool(paths[push]) == (force > 0.02 * largest)
@@ -332,7 +332,7 @@ def test_a_line_with_fewer_points_is_the_same_line():
 
 @pytest.fixture(scope="module")
 def comparison():
-    return compare(cases.opened("hinge"), paired(cases.opened("hinge"), Choices(), counting()[0]))
+    return compare(paired(cases.opened("hinge"), Choices(), counting()[0]))
 
 
 @pytest.fixture(scope="module")
@@ -378,7 +378,7 @@ def test_the_page_of_compare_shows_verdict_claims_and_certificates(put):
 
 def test_a_case_that_did_not_complete_has_a_chapter_too(right):
     early = Solvers(MadeUp("cprbm", 0.0, until=2), right.fea)
-    found = compare(cases.opened("hinge"), paired(cases.opened("hinge"), Choices(), early))
+    found = compare(paired(cases.opened("hinge"), Choices(), early))
     chapter = page.case_chapter(found, page.figures_of(found))
     assert chapter.word == "UNDECIDED"
     assert any(section.figures for section in chapter.sections)  # of the two stations that both solvers reached
@@ -396,7 +396,8 @@ def test_a_percentage_stays_on_the_line_of_its_number(comparison):
 
 
 def test_a_page_has_all_chapters_or_the_section_of_a_study_alone(comparison):
-    other = replace(comparison, scene=comparison.scene.model_copy(update={"name": "other"}))
+    renamed = comparison.scene.model_copy(update={"name": "other"})
+    other = replace(comparison, runs=replace(comparison.runs, scene=renamed))
     text = page.html(page.report_page([page.case_chapter(each, ()) for each in (comparison, other)]))
     assert '<article id="hinge"' in text
     assert '<article id="other"' in text

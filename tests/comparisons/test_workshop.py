@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from comparisons import workshop
+from comparisons.cli import commands
 from comparisons.cli.main import run
 
 ROOT = Path(__file__).parents[2]
@@ -114,6 +114,6 @@ def test_an_old_name_runs_the_tool_and_names_the_new_one(capsys):
     assert captured.err == "cprbm: 'cprbm stress' is now 'cprbm robustness'; the next release drops the old name.\n"
 
 
-@pytest.mark.parametrize("name", [name for name, tool in workshop.TOOLS.items() if tool.purpose])
+@pytest.mark.parametrize("name", [name for name, tool in commands.TOOLS.items() if tool.purpose])
 def test_the_list_of_commands_says_of_a_tool_what_its_own_help_does(name):
-    assert workshop.load(name).command.help.splitlines()[0] == workshop.TOOLS[name].purpose
+    assert commands.load_tool(name).command.help.splitlines()[0] == commands.TOOLS[name].purpose

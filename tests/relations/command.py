@@ -6,8 +6,8 @@ import click
 
 from comparisons.cli.commands import SolvingCommand
 from comparisons.cli.options import COUNT, OUTPUT, candidates, count, folder
-from comparisons.cli.request import Request
-from comparisons.cli.studies import take_steps
+from comparisons.cli.output import Request
+from comparisons.cli.verdicts import take_steps
 from comparisons.pairing import solvers_of
 from comparisons.store import run_into
 from tests.relations import study

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from comparisons.formats import number
-from comparisons.present.columns import Section, Table
-from comparisons.writing import Plain
+from comparisons.present.columns import Plain, Section, Table
 from tests.relations.measured import TARGET
 from tests.relations.relations import RELATIONS
 from tests.relations.study import Relations, Seen

@@ -11,8 +11,7 @@ import click
 from comparisons.cases import opened
 from comparisons.cli.commands import SolvingCommand
 from comparisons.cli.options import OUTPUT, folder, positive, whole
-from comparisons.cli.output import bar, print_tables, write_json
-from comparisons.cli.request import Request
+from comparisons.cli.output import Request, bar, print_tables, write_json
 from comparisons.pairing import solvers_of
 from tests.robustness import tables
 from tests.robustness.limited import Limits

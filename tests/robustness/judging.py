@@ -16,7 +16,7 @@ An answer is *wrong* if it is certified and
 * a value is further from the finest that was found than F times what is stated of it; or
 * it is further from the exact answer, where one is known, than F times what is stated of it,
 
-with the F of :mod:`comparisons.verdict.calibration`: a stated uncertainty is to hold in 95 % of the rows and not in
+with the F of :mod:`comparisons.verdict.judge`: a stated uncertainty is to hold in 95 % of the rows and not in
 all.
 """
 
@@ -34,7 +34,7 @@ from comparisons.pairing import Solvers, paired
 from comparisons.quantities import norm
 from comparisons.stations import ends_at_critical, problems, station_of
 from comparisons.verdict import Word
-from comparisons.verdict.calibration import EXACT_FACTOR, true_errors
+from comparisons.verdict.judge import EXACT_FACTOR, true_errors
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs import Bounds, Runs
 from cprbm_scene import Answer, Scene, SceneError
@@ -123,7 +123,7 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Auditing) -> 
     exact = solvers.exact(scene, finding.choices)
     if not exact.stations:
         return finding
-    comparison = compare(scene, replace(finding.runs, exact=exact), memory.audit)
+    comparison = compare(replace(finding.runs, answers={**finding.runs.answers, "exact": exact}), memory.audit)
     return _of_comparison(finding.choices, comparison)
 
 
@@ -141,7 +141,7 @@ def _at_one_size(scene: Scene, choices: Choices, memory: Auditing) -> _Finding:
         return _Finding(
             Way.ENDED, _why(early), choices, ending=early[0][1].ending.name, reached=reached, early=_whose(early)
         )
-    return _of_comparison(choices, compare(scene, paired(scene, choices, solvers, memory, bare=True), memory.audit))
+    return _of_comparison(choices, compare(paired(scene, choices, solvers, memory, bare=True), memory.audit))
 
 
 def _as_far_as_it_goes(scene: Scene, finding: _Finding, memory: Auditing) -> _Finding:
@@ -153,16 +153,16 @@ def _as_far_as_it_goes(scene: Scene, finding: _Finding, memory: Auditing) -> _Fi
     if finding.reached == 0:
         return finding
     runs = paired(scene, finding.choices, memory.solvers, memory, bare=True)
-    part = _of_comparison(finding.choices, compare(scene, runs, memory.audit))
+    part = _of_comparison(finding.choices, compare(runs, memory.audit))
     return part if part.way is Way.WRONG else replace(finding, rows=part.rows, runs=part.runs)
 
 
 def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
     """The way in which a verdict is one of the seven."""
     verdict, runs = comparison.verdict, comparison.runs
-    early = [(name, answer) for name, answer in runs.everything() if not answer.completed]
+    early = [(name, answer) for name, answer in runs.same_theory.items() if not answer.completed]
     sentence, ending = verdict.sentence, ""
-    untrue = [answer for _, answer in runs.everything() if answer.completed and problems(comparison.scene, answer)]
+    untrue = [answer for answer in runs.same_theory.values() if answer.completed and problems(comparison.scene, answer)]
     if verdict.word is Word.DIFFER or untrue:
         way = Way.WRONG
     elif verdict.word is Word.AGREE:
@@ -175,7 +175,7 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
         way = Way.UNDECIDED
     doubts = any(audit.complaints for audit in comparison.audits.values())
     gone = {name for row in comparison.criticals for name in row.turned}
-    over = all(ends_at_critical(answer) or name in gone for name, answer in runs.everything())
+    over = all(ends_at_critical(answer) or name in gone for name, answer in runs.same_theory.items())
     return _Finding(
         way, sentence, choices, runs, comparison.rows, ending, early=_whose(early), doubts=doubts, over=over
     )
@@ -257,8 +257,8 @@ def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]
     if row.bounds is None:
         return
     for solver, mine, answer, own in (
-        ("cprbm", row.cprbm, finer.cprbm[1], row.bounds.cprbm),
-        ("fea", row.fea, finer.fea[1], row.bounds.fea),
+        ("cprbm", row.cprbm, finer.answers["cprbm finer"], row.bounds.cprbm),
+        ("fea", row.fea, finer.answers["fea finer"], row.bounds.fea),
     ):
         try:
             station = station_of(answer, row.stage, row.station)
@@ -285,7 +285,7 @@ def _outcome(scene: Scene, finding: _Finding) -> Outcome:
         beyond=max((each.ratio for row, _ in rows for each in true_errors(row)), default=None),
         links=links,
         elements=elements,
-        met=() if finding.runs is None else tuple(sorted(met(scene, finding.runs.reference))),
+        met=() if finding.runs is None else tuple(sorted(met(scene, finding.runs.answers["fea"]))),
     )
 
 

@@ -14,8 +14,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from comparisons.present.columns import Plain
 from comparisons.provenance import program
-from comparisons.writing import Plain, append_line, whole_lines
+from comparisons.writing import append_line, whole_lines
 from tests.robustness.outcomes import Outcome, packed, unpacked
 
 

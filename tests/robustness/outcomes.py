@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from enum import Enum
 from typing import Any
 
-from comparisons.writing import Plain, plain
+from comparisons.present.columns import Plain, plain
 
 
 class Way(Enum):

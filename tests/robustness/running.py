@@ -9,7 +9,8 @@ from functools import partial
 from pathlib import Path
 
 from comparisons.pairing import Solvers
-from comparisons.writing import Plain, write
+from comparisons.present.columns import Plain
+from comparisons.writing import write
 from cprbm_scene import Scene, SceneError, scene_from
 from tests.robustness.drawing import Drawn, drawn
 from tests.robustness.judging import Effort, judged

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
-from comparisons.writing import Plain
+from comparisons.present.columns import Plain
 
 _NAMED = ("contacts", "loads", "drives", "stops", "pins", "beams", "bodies")
 _REFERENCES = ("beam", "body", "point", "towards", "steps", "of", "between", "points")

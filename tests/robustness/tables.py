@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from comparisons.formats import number, percent
-from comparisons.present.columns import Table
-from comparisons.writing import Plain, plain
+from comparisons.present.columns import Plain, Table, plain
 from tests.robustness.outcomes import Outcome, Way, packed, shares, totals
 from tests.robustness.running import Stress
 

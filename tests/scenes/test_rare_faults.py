@@ -18,7 +18,7 @@ CHOICES = Choices(links=40, elements=40, kinematics="bending")
 def word(question: Scene, wrong):
     """The verdict's word where the CPRBM is replaced."""
     solvers = replace(solvers_of(None), cprbm=wrong)
-    return compare(question, paired(question, CHOICES, solvers, bare=True)).verdict.word
+    return compare(paired(question, CHOICES, solvers, bare=True)).verdict.word
 
 
 @pytest.mark.parametrize("name", ["two-corners-at-one-place", "flat-beside-its-pin"])

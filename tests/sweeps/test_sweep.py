@@ -59,6 +59,15 @@ def test_a_grid_has_a_row_per_number_and_a_larger_grid_takes_the_points_over(sce
     assert sum(row["key"] in known for row in table(tmp_path / "s", "last.csv")) == 6
 
 
+def test_a_number_that_is_constant_but_for_round_off_has_a_map(scene, tmp_path):
+    """The force at the clamp is the load, whatever the thickness and the length."""
+    text = scene.read_text("utf-8").replace('of = "B"\nquantity = "displacement"', 'of = "A"\nquantity = "reaction"')
+    scene.write_text(text, "utf-8")
+    assert swept(scene, tmp_path / "s", "--vary", "t=1.9mm..2.1mm:2", "--vary", "L=90..110:2") == 0
+    assert len({row["value"] for row in table(tmp_path / "s") if row["component"] == "y"}) > 1
+    assert (tmp_path / "s" / "parameters.svg").exists()
+
+
 def test_executors_give_the_same_table_bit_for_bit(scene, tmp_path):
     """Serial, threads, and processes of the caller; 60 points."""
     vary = {"t": list(np.linspace(1.6e-3, 2.4e-3, 12)), "L": list(np.linspace(0.09, 0.11, 5))}

@@ -8,7 +8,7 @@ from dataclasses import replace
 from comparisons.choices import Choices
 from comparisons.executor import Solver
 from comparisons.pairing import Solvers
-from comparisons.verdict.runs import Runs
+from comparisons.verdict.runs import Runs, solver_of
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
@@ -18,8 +18,7 @@ COARSE = Choices(elements=20)
 
 def remembered(runs: Runs) -> Solvers:
     """Solvers that hand out answers which are there already."""
-    further = runs.beside, runs.perturbed, runs.other
-    cprbm = [*runs.cprbm, *(answer for answer in further if answer is not None)]
+    cprbm = [answer for name, answer in runs.answers.items() if solver_of(name) == "cprbm"]
 
     def by_cprbm(scene: Scene, choices: Choices) -> Answer:
         asked = {(stage.name, value) for stage in scene.stages for value in stage.stations}
@@ -32,7 +31,7 @@ def remembered(runs: Runs) -> Solvers:
         )
 
     def by_fea(scene: Scene, choices: Choices) -> Answer:
-        answers = (*runs.fea, *(() if runs.fea_beside is None else (runs.fea_beside,)))
+        answers = [answer for name, answer in runs.answers.items() if solver_of(name) == "fea"]
         return next(answer for answer in answers if answer.settings["elements"] == choices.elements)
 
     return Solvers(by_cprbm, by_fea)

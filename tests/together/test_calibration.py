@@ -1,6 +1,6 @@
 """Are the stated uncertainties true?  Beside elasticas whose truth is known from outside.
 
-The project's own rule stands in :mod:`comparisons.verdict.calibration`: the true error lies within the stated error in
+The project's own rule stands in :mod:`comparisons.verdict.judge`: the true error lies within the stated error in
 at least 95 % of the rows, and the stated error is at most ten times the true error in the median.  A statement counts
 once, with the largest error of its rows.  The truth is from tests.references, which import no solver and nothing of the
 exact answers in the house.  Only the bending theory has it, so the finite elements are run in that theory.
@@ -19,7 +19,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.studies.calibration import Calibration, Trial, result_of, tallies, trial_of
 from comparisons.verdict import Word
-from comparisons.verdict.calibration import Tally
+from comparisons.verdict.judge import Tally
 from comparisons.verdict.rows import rows_of
 from comparisons.writing import text_of
 from cprbm_scene import scene_from
@@ -90,6 +90,6 @@ def test_a_contact_that_closes_at_once():
     data["stages"][0]["stations"] = [0.067]
     scene = scene_from(data)
     runs = paired(scene, Choices(kinematics="bending"), Solvers())
-    row = next(row for row in rows_of(scene, runs) if row.probe.name == "contact.force")
+    row = next(row for row in rows_of(runs) if row.probe.name == "contact.force")
     assert row.bounds is not None
     assert row.difference <= row.bounds.total

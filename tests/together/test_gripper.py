@@ -31,7 +31,7 @@ def at(case: str, stations: tuple[float, ...]) -> Scene:
 def driven():
     scene = at("gripper-driven", DISPLACEMENTS)
     with crew_of(2) as crew:
-        return compare(scene, paired(scene, Choices(links=PAPERS), Solvers(), crew))
+        return compare(paired(scene, Choices(links=PAPERS), Solvers(), crew))
 
 
 def test_driven_the_verdict_is_agree_and_the_reactions_claim_is_met(driven):
@@ -60,7 +60,7 @@ def test_the_displacements_claims_are_met_in_both_formulations(formulation):
 def test_contacts_that_are_ignored_do_not_pass():
     scene = at("gripper", (16.0,))
     runs = paired(scene, COARSE, replace(Solvers(), cprbm=without_contact(cprbm_answer)))
-    assert compare(scene, runs).verdict.word is Word.DIFFER
+    assert compare(runs).verdict.word is Word.DIFFER
 
 
 def sweep(links):

@@ -20,11 +20,11 @@ from tests.references import hinge as exact
 def test_the_verdict_at_even_and_odd_numbers_of_links(links, word):
     scene = hinge(stages=[{"name": "load", "steps": "M", "stations": [0.2, 0.67]}])
     runs = paired(scene, Choices(links=links, elements=30, formulation="paper", kinematics="bending"), Solvers())
-    assert compare(scene, runs).verdict.word is word
+    assert compare(runs).verdict.word is word
     # reference: tests.references.hinge
     truth = exact.solve(exact.PAPER, 0.67)
     true = {"B.displacement": truth.displacement_B, "contact.force": [truth.contact_force]}
-    for row in rows_of(scene, runs):
+    for row in rows_of(runs):
         if row.probe.name in true and row.station == 0.67:
             assert row.bounds is not None
             assert np.linalg.norm(row.cprbm - true[row.probe.name]) <= row.bounds.cprbm

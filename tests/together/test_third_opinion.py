@@ -16,12 +16,12 @@ from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
 def thick():
     """A cantilever nine times as long as thick under a small force, by all three."""
     scene = bar(straight(0.31), 0.034, stations=(0.011,), probes=(("tip", "displacement"), ("beam", "bending_stress")))
-    return compare(scene, paired(scene, Choices(links=8, elements=16), with_solid(Solvers())))
+    return compare(paired(scene, Choices(links=8, elements=16), with_solid(Solvers())))
 
 
 def test_what_bending_alone_misses_is_timoshenkos_shear(thick):
     # 6 P L/(5 G A), less what the held ends keep from warping
-    (one,) = (found for found in thirds_of(thick) if found.row.probe.quantity == "displacement")
+    (one,) = (found.third for found in thirds_of(thick) if found.probe.quantity == "displacement")
     shear = 1.2 * 0.011 * 0.31 / (0.5 * YOUNG * WIDTH * 0.034)
     # both solvers answer in the scene's theory, bending; the CPRBM's other theory is shear
     for bending in (one.cprbm, one.fea):
@@ -32,7 +32,7 @@ def test_what_bending_alone_misses_is_timoshenkos_shear(thick):
 
 def test_the_stress_of_a_straight_cantilever_is_the_beams(thick):
     # M t/(2 I) away from its ends, linear elasticity's own (Timoshenko & Goodier, section 21)
-    (one,) = (found for found in thirds_of(thick) if found.row.probe.quantity == "bending_stress")
+    (one,) = (found.third for found in thirds_of(thick) if found.probe.quantity == "bending_stress")
     s = np.linspace(0.0, 0.31, 81)
     inner = (s > 0.034) & (s < 0.31 - 0.034)
     exact = 0.011 * (0.31 - s) * 6 / (WIDTH * 0.034**2)

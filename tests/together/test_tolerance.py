@@ -112,7 +112,7 @@ def test_the_true_error_is_within_the_tolerance(case, solver, tolerance):
     answer, found = solve_within(scene, solver, BENDING, tolerance, SOLVERS, silent)
     assert found.met
     assert found.worst is not None
-    assert found.worst.fraction <= tolerance
+    assert found.fraction <= tolerance
     true = errors(scene, answer, truth)
     assert sum(error > tolerance for error in true) <= 0.05 * len(true), max(true)
 

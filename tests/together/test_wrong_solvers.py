@@ -38,12 +38,12 @@ from tests.together.planted import COARSE, asked_of, remembered, stiffer, withou
 
 def with_cprbm(scene: Scene, runs: Runs, wrong: Solver) -> Verdict:
     """The verdict on a wrong CPRBM beside the right finite elements, at the standard settings."""
-    return compare(scene, paired(scene, Choices(), replace(remembered(runs), cprbm=wrong))).verdict
+    return compare(paired(scene, Choices(), replace(remembered(runs), cprbm=wrong))).verdict
 
 
 def with_fea(scene: Scene, runs: Runs, wrong: Solver) -> Verdict:
     """The verdict on wrong finite elements beside the right CPRBM, in one theory and coarse."""
-    return compare(scene, paired(scene, COARSE, replace(remembered(runs), fea=wrong))).verdict
+    return compare(paired(scene, COARSE, replace(remembered(runs), fea=wrong))).verdict
 
 
 def thin(scene: Scene) -> Scene:
@@ -74,9 +74,9 @@ def spoilt(solver: Solver, probe: str) -> Solver:
 
 def test_the_right_ones_agree(hinge, hinge_runs, coarse_runs):
     right = paired(hinge, Choices(), remembered(hinge_runs))
-    assert compare(hinge, right).verdict.word is Word.AGREE
+    assert compare(right).verdict.word is Word.AGREE
     coarse = paired(hinge, COARSE, remembered(coarse_runs))
-    assert compare(hinge, coarse).verdict.word is Word.AGREE
+    assert compare(coarse).verdict.word is Word.AGREE
 
 
 @pytest.mark.parametrize("altered", [stiffer, thin], ids=["too stiff", "thickness forgotten"])
@@ -100,7 +100,7 @@ def tapered() -> Scene:
 
 def in_bending(scene: Scene, solvers: Solvers) -> Word:
     """The verdict in one theory, in which nothing excuses a difference."""
-    return compare(scene, paired(scene, Choices(), solvers)).verdict.word
+    return compare(paired(scene, Choices(), solvers)).verdict.word
 
 
 def test_the_right_ones_agree_on_the_tapered_beam(tapered):

@@ -24,7 +24,7 @@ def compared(
     scene: Scene, cprbm: Solver, fea: Solver, choices: Choices | None = None, *, exact: Solver | None = None
 ) -> Comparison:
     """The comparison of two made-up solvers."""
-    return compare(scene, paired(scene, choices or Choices(), Solvers(cprbm, fea, exact=exact)))
+    return compare(paired(scene, choices or Choices(), Solvers(cprbm, fea, exact=exact)))
 
 
 def row_of(comparison: Comparison, probe: str, station: float = 0.67) -> Row:
@@ -34,14 +34,13 @@ def row_of(comparison: Comparison, probe: str, station: float = 0.67) -> Row:
 
 def said_of(comparison: Comparison, probe: str, station: float = 0.67) -> str:
     """Word and reason of a row, as ``UNDECIDED COARSE``; empty where the row takes no part."""
-    index = comparison.rows.index(row_of(comparison, probe, station))
-    both = comparison.verdict.words[index], comparison.verdict.reasons[index]
-    return " ".join(each.value for each in both if each is not None)
+    row = row_of(comparison, probe, station)
+    return " ".join(each.value for each in (row.word, row.reason) if each is not None)
 
 
 def counted(comparison: Comparison) -> Counter[str]:
     """Numbers of the words and reasons of all rows that take part."""
-    rows = zip(comparison.verdict.words, comparison.verdict.reasons, strict=True)
+    rows = ((row.word, row.reason) for row in comparison.rows)
     return Counter(" ".join(each.value for each in row if each is not None) for row in rows if row[0] is not None)
 
 

@@ -83,7 +83,7 @@ def test_a_passed_critical_point_is_in_the_json_the_table_and_the_archive(crank)
     assert end["released"] == pytest.approx(0.3)
     assert data["solvers"]["fea"]["gone_over"] == []
     assert data["critical"][0]["gone_over"]["cprbm"] == 0.29
-    answer = found.runs.cprbm[0]
+    answer = found.runs.answers["cprbm"]
     kept = packed({"C": answer})
     assert unpacked(kept)["C"].gone_over == answer.gone_over
     (sheet,) = (one for one in answer_tables(scene, answer) if one.title.startswith("Critical values"))

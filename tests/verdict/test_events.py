@@ -14,7 +14,7 @@ from comparisons.pairing import Solvers, paired
 from comparisons.stations import begins_at, event_tolerance, span_of
 from comparisons.verdict import Word
 from comparisons.verdict.events import Place, critical_rows
-from comparisons.verdict.runs import Runs, RunsTable
+from comparisons.verdict.runs import Runs
 from cprbm_scene import Answer, Critical, Ending, Loss, Stage
 from cprbm_scene.frozendict import frozendict
 from tests.verdict.comparing import altered, compared, counted, ending, only, opened, said_of, word_of
@@ -41,7 +41,7 @@ def between(comparison):
 
 
 def criticals(scene, cprbm=C, fea=F):
-    return critical_rows(RunsTable(scene, paired(scene, Choices(), Solvers(cprbm, fea))))
+    return critical_rows(paired(scene, Choices(), Solvers(cprbm, fea)))
 
 
 # -- Critical points
@@ -160,7 +160,8 @@ def test_of_a_load_one_per_cent_of_the_span_is_allowed_and_the_first_is_compared
 ):
     """The span is 0.67 N·m."""
     first, second = loads("cprbm", *cprbm), loads("fea", *fea)
-    rows = critical_rows(RunsTable(hinge, Runs("bending", (first,) * 2, (second,) * 2)))
+    answers = {"cprbm": first, "cprbm finer": first, "fea": second, "fea finer": second}
+    rows = critical_rows(Runs(hinge, "bending", answers))
     assert [row.word for row in rows] == words
     assert [row.place for row in rows] == list(range(len(words)))
 

@@ -14,7 +14,7 @@ from comparisons.pairing import Solvers, solvers_of
 from comparisons.present import json_document
 from comparisons.studies import calibration as study
 from comparisons.studies.calibration import result_of
-from comparisons.verdict.calibration import EXACT_FACTOR, error_ratios, tally
+from comparisons.verdict.judge import EXACT_FACTOR, error_ratios, tally
 from comparisons.writing import text_of
 from cprbm_scene import Ending, Stage
 from tests.tables import tables_of
@@ -44,7 +44,7 @@ def test_a_true_error_is_the_distance_from_the_exact_value(hinge):
 @pytest.mark.parametrize("exact", [None, nobody])
 def test_without_an_exact_answer_nothing_is_said(hinge, exact):
     found = beside(hinge, exact)
-    assert found.runs.exact is None
+    assert "exact" not in found.runs.answers
     assert all(row.exact is None and row.true_errors is None for row in found.rows)
     assert "exact" not in found.verdict.sentence
     assert "exact" not in json_document.comparison(found)["solvers"]

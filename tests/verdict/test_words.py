@@ -16,7 +16,7 @@ from comparisons.pairing import Solvers, paired
 from comparisons.verdict import Reason, Word, worst_of
 from comparisons.verdict.judge import judge_case, judge_rows
 from comparisons.verdict.rows import Row
-from comparisons.verdict.runs import Bounds, RunsTable
+from comparisons.verdict.runs import Bounds
 from cprbm_scene import Probe, Stage
 from cprbm_scene.answer import PointForces, frozen_array
 from tests.verdict.comparing import altered, compared, counted, only, opened, row_of, said_of, word_of
@@ -24,7 +24,7 @@ from tests.verdict.made_up import MadeUp, with_value
 
 C, F = MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4)
 HINGE = cases.opened("hinge")
-TABLE = RunsTable(HINGE, paired(HINGE, Choices(), Solvers(C, F)))
+RUNS = paired(HINGE, Choices(), Solvers(C, F))
 LIMIT = 0.015  # of the hinge
 
 
@@ -97,7 +97,7 @@ def test_an_audit_that_fails_is_undecided_and_hides_no_difference(hinge):
         return replace(audit(scene, answer), complaints=complaints)
 
     agreeing, differing = (
-        compare(hinge, paired(hinge, Choices(), Solvers(cprbm, F)), look) for cprbm in (C, replace(C, stiffness=1.02))
+        compare(paired(hinge, Choices(), Solvers(cprbm, F)), look) for cprbm in (C, replace(C, stiffness=1.02))
     )
     assert (word_of(agreeing), word_of(differing)) == ("UNDECIDED AUDIT", "DIFFER VALUES")
     assert agreeing.verdict.completed
@@ -197,6 +197,10 @@ def test_rows_that_are_all_not_unique_do_not_agree(hinge):
 SHARES = st.floats(min_value=0.0, max_value=0.1)
 
 
+def judged(word, reason):
+    return replace(row(0.0, 0.0, None), word=word, reason=reason)
+
+
 def row(difference, theory, bounds):
     value = frozen_array([1.0])
     probe = Probe(of="BD", quantity="rotation")
@@ -208,7 +212,7 @@ def row(difference, theory, bounds):
 @given(SHARES, SHARES | st.just(math.nan), SHARES, SHARES, SHARES)
 def test_a_word_follows_from_the_inequality(difference, theory, c, f, r):
     """|v_c − v_f| ≤ u_c + u_f + r with the sum and θ within the limit; without θ the sum alone counts."""
-    word, reason = judge_rows(TABLE, [row(difference, theory, Bounds(c, f, r))])[0]
+    (found,) = judge_rows(RUNS, [row(difference, theory, Bounds(c, f, r))])
     total = c + f + r
     if difference > total:
         expected = (Word.DIFFER, Reason.VALUES)
@@ -218,7 +222,7 @@ def test_a_word_follows_from_the_inequality(difference, theory, c, f, r):
         expected = (Word.UNDECIDED, Reason.THEORY)
     else:
         expected = (Word.AGREE, None)
-    assert (word, reason) == expected
+    assert (found.word, found.reason) == expected
 
 
 WORDS = {
@@ -260,14 +264,13 @@ WORDS = {
 )
 def test_words_of_rows_of_one_probe_make_the_word_of_the_case(rows, case):
     """A contradiction decides; a minority of unresolved rows, and rows that are not unique, decide nothing."""
-    found = row(0.0, 0.0, None)
-    assert judge_case([found] * len(rows), [WORDS[each] for each in rows]) == WORDS[case]
+    assert judge_case([judged(*WORDS[each]) for each in rows]) == WORDS[case]
 
 
 def test_a_minority_of_all_rows_decides_where_it_is_the_majority_of_a_probe():
-    one, other = (replace(row(0.0, 0.0, None), probe=Probe(of=of, quantity="rotation")) for of in ("a", "b"))
-    judged = [WORDS["A"]] * 10 + [WORDS["C"], WORDS["C"], WORDS["A"]]
-    assert judge_case([one] * 10 + [other] * 3, judged) == WORDS["C"]
+    rows = [("a", "A")] * 10 + [("b", "C"), ("b", "C"), ("b", "A")]
+    found = [replace(judged(*WORDS[word]), probe=Probe(of=of, quantity="rotation")) for of, word in rows]
+    assert judge_case(found) == WORDS["C"]
 
 
 def test_the_worst_of_words():
@@ -277,5 +280,5 @@ def test_the_worst_of_words():
 
 
 def test_a_row_without_a_value_or_a_statement_takes_no_part_or_is_undecided():
-    assert judge_rows(TABLE, [row(math.nan, math.nan, None)])[0] == (None, None)
-    assert judge_rows(TABLE, [row(0.0, 0.0, None)])[0] == (Word.UNDECIDED, Reason.RUN_ENDED)
+    found = judge_rows(RUNS, [row(math.nan, math.nan, None), row(0.0, 0.0, None)])
+    assert [(each.word, each.reason) for each in found] == [(None, None), (Word.UNDECIDED, Reason.RUN_ENDED)]
