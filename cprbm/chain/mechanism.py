@@ -27,6 +27,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -178,6 +179,11 @@ class Mechanism:
         """Displacement of a named point along ``direction``."""
         form = self.point(point, direction)
         return form - Form(form.constant)
+
+    @cached_property
+    def motions(self) -> dict[str, list[Form]]:
+        """Displacements along x and y of all named points."""
+        return {point: [self.displacement(point, along) for _, along in AXES] for point in self.scene.owners}
 
     def rotation(self, body: str) -> Form:
         """Rotation of a body."""

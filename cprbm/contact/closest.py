@@ -89,11 +89,11 @@ def curve_point(
     z: Array, curves: CurveArrays, piece: int, xi: float, weights: Array
 ) -> tuple[float, float]:  # pragma: no cover
     """C; writes the weights (2, STENCIL)."""
-    x = y = 0.0
+    x, y, square, cube = 0.0, 0.0, xi * xi, xi * xi * xi
     for i in range(STENCIL):
         w, v = curves.real[piece, i], curves.imaginary[piece, i]
-        p = weights[0, i] = w[0] + xi * (w[1] + xi * (w[2] + xi * w[3]))
-        q = weights[1, i] = v[0] + xi * (v[1] + xi * (v[2] + xi * v[3]))
+        p = weights[0, i] = w[0] + xi * w[1] + square * w[2] + cube * w[3]
+        q = weights[1, i] = v[0] + xi * v[1] + square * v[2] + cube * v[3]
         node = curves.stencil[piece, i]
         x += p * z[node] - q * z[node + 1]
         y += q * z[node] + p * z[node + 1]

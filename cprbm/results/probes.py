@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -51,33 +52,32 @@ FARTHEST = 1.5
 """Distance, in links, of e from the outermost force; a larger one shows another law of g."""
 
 
+VALUES: dict[Quantity, tuple[Literal["", "length", "force", "moment"], Callable[[Statics, Probe], ArrayLike]]] = {
+    "displacement": ("length", lambda statics, probe: statics.view.displacement(probe.of)),
+    "rotation": ("", lambda statics, probe: statics.view.mechanism.rotation(probe.of).value(statics.view.z)),
+    "bending_stress": ("", lambda statics, probe: statics.bending_stress(probe.of, probe.points)),
+    "combined_stress": ("", lambda statics, probe: statics.combined_stress(probe.of, probe.points)),
+    "reaction": ("force", lambda statics, probe: _reaction(statics, probe.of)[0]),
+    "reaction_moment": ("moment", lambda statics, probe: _reaction(statics, probe.of)[1]),
+    "potential_energy": ("moment", lambda statics, _: potential(statics.view.solved.system, statics.view.solved.state)),
+    "angle": ("", lambda statics, probe: stop_angle(statics.view.mechanism, probe.of).value(statics.view.z)),
+    "moment": ("moment", lambda statics, probe: abs(_moment(statics.view, probe.of))),
+    "force": ("force", lambda statics, probe: contact_force(statics.view, probe.of)),
+    "centre": ("length", lambda statics, probe: contact_centre(statics.view, probe.of)),
+    "ends": ("length", lambda statics, probe: contact_ends(statics.view, probe.of)),
+    "closing_load": ("", lambda statics, probe: closing_load(statics.view, probe.of)),
+}
+"""Unit and value of every quantity."""
+
+
 def probe_values(statics: Statics, stage: str) -> dict[str, Array]:
     """Values by the probes' names, SI; empty for a probe that is not asked in the stage."""
-    return {
-        probe.name: frozen_array(np.ravel(_value(statics, probe) if probe.asked_in(stage) else []))
-        for probe in statics.view.scene.probes
-    }
-
-
-def _value(statics: Statics, probe: Probe) -> ArrayLike:
-    view, of = statics.view, probe.of
-    m, units = view.mechanism, view.mechanism.units
-    values: dict[Quantity, Callable[[], ArrayLike]] = {
-        "displacement": lambda: view.displacement(of) * units.length,
-        "rotation": lambda: m.rotation(of).value(view.z),
-        "bending_stress": lambda: statics.bending_stress(of, probe.points),
-        "combined_stress": lambda: statics.combined_stress(of, probe.points),
-        "reaction": lambda: _reaction(statics, of)[0] * units.force,
-        "reaction_moment": lambda: _reaction(statics, of)[1] * units.moment,
-        "potential_energy": lambda: potential(view.solved.system, view.solved.state) * units.moment,
-        "angle": lambda: stop_angle(m, of).value(view.z),
-        "moment": lambda: abs(_moment(view, of)) * units.moment,
-        "force": lambda: contact_force(view, of) * units.force,
-        "centre": lambda: np.array(contact_centre(view, of)) * units.length,
-        "ends": lambda: np.array(contact_ends(view, of)) * units.length,
-        "closing_load": lambda: [view.closing[of]] if of in view.closing and contact_force(view, of) > 0.0 else [],
-    }
-    return values[probe.quantity]()
+    found, units = {}, statics.view.mechanism.units
+    for probe in statics.view.scene.probes:
+        unit, value = VALUES[probe.quantity]
+        asked = np.ravel(value(statics, probe) if probe.asked_in(stage) else [])
+        found[probe.name] = frozen_array(asked * getattr(units, unit) if unit else asked)
+    return found
 
 
 def _reaction(statics: Statics, of: str) -> tuple[Array, float]:
@@ -119,6 +119,11 @@ def contact_centre(view: View, contact: str) -> list[float]:
     found = view.pressed[contact]
     weights = [float(np.hypot(*each.forces[0])) for each in found]
     return [float(np.average([each.arcs[0] for each in found], weights=weights))] if sum(weights) > 0.0 else []
+
+
+def closing_load(view: View, contact: str) -> list[float]:
+    """Value (SI) of the load or drive at which a contact first closed; empty for an open contact."""
+    return [view.closing[contact]] if contact in view.closing and contact_force(view, contact) > 0.0 else []
 
 
 def _moment(view: View, of: str) -> float:

@@ -145,7 +145,7 @@ def _spread_forces(view: View, contact: str, geometry: Geometry) -> Iterator[Poi
     pair = next(k for k, each in enumerate(geometry.pairs) if each.name == contact)
     pull = contact_terms(geometry, view.z, contacts.places, contacts.pressing(pair))[1]
     for beam in view.scene.contacts[contact].beams:
-        arcs, places = view.mechanism.chains[beam].arcs, view.nodes(beam)
+        arcs, places = view.mechanism.chains[beam].arcs, view.nodes[beam]
         nodes, angles = view.mechanism.beam_nodes(beam), view.mechanism.beam_angles(beam)
         forces = -pull[np.column_stack([nodes, nodes + 1])]
         for node in np.flatnonzero(forces.any(axis=1)).tolist():
@@ -238,7 +238,7 @@ class Statics:
         begin, end = (fraction * samples.chain.length for fraction in load.along)
         until, chain = np.clip(samples.s, begin, end), samples.chain
         places = np.unique([begin, *until, *chain.arcs[(chain.arcs > begin) & (chain.arcs < end)]])
-        integral = np.cumsum(chain.line.integrals(places) @ self.view.nodes(load.beam), axis=0)
+        integral = np.cumsum(chain.line.integrals(places) @ self.view.nodes[load.beam], axis=0)
         return until - begin, np.concatenate([np.zeros((1, 2)), integral])[np.searchsorted(places, until)]
 
 
@@ -250,7 +250,7 @@ def _point_loads(view: View, beam: str) -> Iterator[PointForce]:
         if value == 0.0 or not isinstance(load, BeamForce | BeamMoment) or load.beam != beam:
             continue
         at, line = load.at * view.mechanism.chains[beam].length, view.mechanism.chains[beam].line
-        place = (line.weights(np.array([at])) @ view.nodes(beam))[0]
+        place = (line.weights(np.array([at])) @ view.nodes[beam])[0]
         if isinstance(load, BeamMoment):
             yield PointForce(name, beam, at, place, np.zeros(2), value / units.moment)
         else:

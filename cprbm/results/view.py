@@ -19,7 +19,6 @@ from typing import NamedTuple
 import numpy as np
 
 from cprbm.chain import Mechanism, hidden_angles
-from cprbm.chain.mechanism import AXES
 from cprbm.contact import STENCIL, gap_frame
 from cprbm.equilibrium.sharing import shared_multipliers
 from cprbm.equilibrium.solving import Solved
@@ -76,7 +75,7 @@ class Pressed(NamedTuple):
     ``share`` is the offset of the place with the same force, beside a weld; ``on_first``: on the pair's first curve.
     """
 
-    arcs: tuple[float, ...]
+    arcs: list[float]
     places: tuple[Array, ...]
     forces: tuple[Array, ...]
     surface: Array
@@ -116,14 +115,16 @@ class View:
         """Unknowns, with the forces of repeated rows."""
         return shared_multipliers(self.solved)
 
-    def nodes(self, beam: str) -> Array:
-        """Positions (N + 2, 2) of a beam's nodes, in units."""
-        return np.asarray(self.z[self.mechanism.beam_nodes(beam)[:, None] + [0, 1]])
+    @cached_property
+    def nodes(self) -> dict[str, Array]:
+        """Positions (N + 2, 2) of the nodes of all beams, in units."""
+        m = self.mechanism
+        return {beam: np.asarray(self.z[m.beam_nodes(beam)[:, None] + [0, 1]]) for beam in m.chains}
 
     @cached_property
     def lines(self) -> dict[str, Array]:
         """Positions (k, 2) of the samples of all beams, in units."""
-        return {beam: samples.line @ self.nodes(beam) for beam, samples in self.samples.items()}
+        return {beam: samples.line @ self.nodes[beam] for beam, samples in self.samples.items()}
 
     def angles(self, beam: str) -> Array:
         """Angles (k,) of the sections at a beam's samples, with the flexibility beside loads at places of the beam."""
@@ -140,16 +141,16 @@ class View:
 
     def displacement(self, point: str) -> Array:
         """Displacement (2,) of a named point, in units."""
-        return np.array([self.mechanism.displacement(point, direction).value(self.z) for _, direction in AXES])
+        return np.array([form.value(self.z) for form in self.mechanism.motions[point]])
 
     def place(self, point: str) -> Array:
         """Position (2,) of a named point, in units."""
-        return np.array([self.mechanism.point(point, direction).value(self.z) for _, direction in AXES])
+        return self.mechanism.units.place(self.scene.place_of(point)) + self.displacement(point)
 
     def end(self, beam: str, end: str) -> tuple[float, Array]:
         """Arc length and position of a beam's end, in units."""
         chain, at = self.mechanism.chains[beam], 0 if end == "start" else -1
-        return float(chain.arcs[at]), self.nodes(beam)[at]
+        return float(chain.arcs[at]), self.nodes[beam][at]
 
     @cached_property
     def _hidden_forces(self) -> Array:
@@ -178,7 +179,14 @@ class View:
             on_first = bool(places.curve[k] == pair.first)
             # of a beam with itself the smaller arc length counts as the first
             backward = arcs[0] > arcs[1] if places.curve[k] == places.other[k] else not on_first
-            way = slice(None, None, -1 if backward else 1)
-            both = tuple(arcs[way]), tuple(at[way]), tuple(np.array([force, -force])[way])
-            found[pair.name].append(Pressed(*both, surface, bool(places.moves[k]), int(places.shares[k]), on_first))
+            one = Pressed(
+                arcs[::-1] if backward else arcs,
+                (at[1], at[0]) if backward else (at[0], at[1]),
+                (-force, force) if backward else (force, -force),
+                surface,
+                bool(places.moves[k]),
+                int(places.shares[k]),
+                on_first,
+            )
+            found[pair.name].append(one)
         return {name: sorted(pressed, key=lambda each: each.arcs[0]) for name, pressed in found.items()}
