@@ -295,7 +295,13 @@ class EllipseContact(RigidContact):
         return Spline.model_construct(kind="spline", points=points, start_direction=end, end_direction=end)
 
 
-def measures(contact: RigidContact) -> tuple[tuple[Point, ...], list[tuple[str, float]]]:
+EdgeContact = LineContact | HalfPlaneContact | FunctionContact
+"""Contacts with edges on which a beam may lie up to its own pin; the edge then holds the pin like a stop."""
+
+Rigid = CircleContact | EdgeContact | SplineContact | EllipseContact
+
+
+def measures(contact: Rigid) -> tuple[tuple[Point, ...], list[tuple[str, float]]]:
     """Places of a rigid shape, the first on the shape or at its center, and sizes by their keys, m."""
     match contact:
         case CircleContact(center=center, radius=radius):
@@ -310,14 +316,9 @@ def measures(contact: RigidContact) -> tuple[tuple[Point, ...], list[tuple[str, 
             ]
         case HalfPlaneContact(point=point):
             return (point,), []
-    raise TypeError(type(contact))
-
-
-EdgeContact = LineContact | HalfPlaneContact | FunctionContact
-"""Contacts with edges on which a beam may lie up to its own pin; the edge then holds the pin like a stop."""
 
 
 Contact = Annotated[
-    BeamContact | SelfContact | CircleContact | EdgeContact | SplineContact | EllipseContact,
+    BeamContact | SelfContact | Rigid,
     Field(discriminator="kind"),
 ]
