@@ -298,7 +298,7 @@ def distance(contact: Rigid, p: Array) -> Array:
             sign *= 1.0 if (contact.range[0] < contact.range[1]) == (contact.axis == "x") else -1.0
         case EllipseContact():
             sign = -sign  # the curve runs counter-clockwise, with the inside on the left
-    return _from_curve(shape_of(contact.curve), sign, p, closed=isinstance(contact, EllipseContact))
+    return _from_curve(shape_of(contact), sign, p, closed=isinstance(contact, EllipseContact))
 
 
 def _from_line(points: Array, sign: float, p: Array, *, closed: bool) -> Array:

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import combinations, islice, pairwise
-from math import cos, dist, sin
+from math import dist
 from typing import Annotated, ClassVar, Literal
 
-import numpy as np
 from pydantic import Field
 
-from cprbm_scene.curve_records import MOST_POINTS, Polynomial, Spline, SplinePoints, graph_rules, shape_of
+from cprbm_scene.curve_records import MOST_POINTS, Ellipse, Graph, SmoothLine, shape_of
 from cprbm_scene.curves import unit_vector
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.units import (
-    Angle,
-    Coefficients,
     Direction,
     Length,
     Name,
@@ -213,86 +210,34 @@ class HalfPlaneContact(RigidContact):
     """Normal of the edge, towards the free side."""
 
 
-class FunctionContact(RigidContact):
+class FunctionContact(RigidContact, Graph):
     """Contact of a beam with the graph of a polynomial f.
 
     As with a :class:`LineContact`, the solid lies behind the edge and ends at the edge's ends.
     """
 
     kind: Literal["beam-function"]
-    axis: Literal["x", "y"]
-    """Variable of f: ``x`` for y = f(x), ``y`` for x = f(y)."""
-    coefficients: Coefficients
-    """Coefficients of f, lowest power first."""
-    range: tuple[Length, Length]
-    """Ends of the edge."""
     side: Literal["above", "below"]
     """Free side: at a coordinate above or below f."""
 
-    @property
-    def curve(self) -> Polynomial:
-        """The edge as a curve."""
-        return Polynomial.model_construct(
-            kind="polynomial", axis=self.axis, coefficients=self.coefficients, range=self.range
-        )
 
-    def rules(self) -> Iterator[Mistake]:
-        """Coefficients and ranges without a graph of finite slope."""
-        return islice(graph_rules(self.curve), 1)
-
-
-class SplineContact(RigidContact):
+class SplineContact(RigidContact, SmoothLine):
     """Contact of a beam with a rigid edge along a spline.
 
     As with a :class:`LineContact`, the solid lies behind the edge and ends at the edge's ends.
     """
 
     kind: Literal["beam-spline"]
-    points: SplinePoints
-    """At least three points of the edge, or the path of a table with points."""
-    start_direction: Direction | None = None
-    """Tangent at the first point."""
-    end_direction: Direction | None = None
-    """Tangent at the last point."""
     side: Literal["left", "right"]
     """Free side, seen along the points."""
 
-    @property
-    def curve(self) -> Spline:
-        """The edge as a curve."""
-        return Spline.model_construct(
-            kind="spline",
-            points=self.points,
-            start_direction=self.start_direction,
-            end_direction=self.end_direction,
-        )
 
-    def rules(self) -> Iterator[Mistake]:
-        """Mistakes of the spline."""
-        return self.curve.rules()
-
-
-class EllipseContact(RigidContact):
+class EllipseContact(RigidContact, Ellipse):
     """Contact of a beam with a rigid ellipse, from outside or inside."""
 
     kind: Literal["beam-ellipse"]
-    center: Point
-    """Center at the initial place."""
-    semi_axes: tuple[PositiveLength, PositiveLength]
-    """Semi-axes of the ellipse."""
-    angle: Angle = 0.0
-    """Angle of the first axis, counter-clockwise from x."""
     side: Literal["outside", "inside"] = "outside"
     """Side of the beam."""
-
-    @property
-    def curve(self) -> Spline:
-        """The edge as a closed curve, counter-clockwise, within a·(2π/512)⁴/384 = 6e-11 a of the ellipse."""
-        turn, c, s = np.linspace(0.0, 2.0 * np.pi, 513), cos(self.angle), sin(self.angle)
-        x, y = self.semi_axes[0] * np.cos(turn), self.semi_axes[1] * np.sin(turn)
-        places = np.array(self.center) + np.column_stack((x * c - y * s, x * s + y * c))
-        points, end = tuple((x, y) for x, y in places.tolist()), (-s, c)
-        return Spline.model_construct(kind="spline", points=points, start_direction=end, end_direction=end)
 
 
 EdgeContact = LineContact | HalfPlaneContact | FunctionContact
@@ -306,14 +251,14 @@ def measures(contact: Rigid) -> tuple[tuple[Point, ...], list[tuple[str, float]]
     match contact:
         case CircleContact(center=center, radius=radius):
             return (center,), [("radius", radius)]
-        case EllipseContact(center=center, curve=curve):
-            return (center, curve.start), [("semi_axes", shape_of(curve).length)]
+        case EllipseContact(center=center):
+            shape = shape_of(contact)
+            return (center, (shape.origin[0], shape.origin[1])), [("semi_axes", shape.length)]
         case LineContact(points=points):
             return points, [(f"points[{i}]", dist(*ends)) for i, ends in enumerate(pairwise(points), start=1)]
-        case FunctionContact(curve=curve) | SplineContact(curve=curve):
-            return (curve.start, curve.end), [
-                ("range" if isinstance(contact, FunctionContact) else "points", shape_of(curve).length)
-            ]
+        case FunctionContact() | SplineContact():
+            key = "range" if isinstance(contact, FunctionContact) else "points"
+            return (contact.start, contact.end), [(key, shape_of(contact).length)]
         case HalfPlaneContact(point=point):
             return (point,), []
 

@@ -74,7 +74,7 @@ class Curve:
         panels: Array | None = None,
         samples: Array | Sequence[float] = (0.0, 1.0),
     ) -> None:
-        self._origin, self._size, self._q = np.array(origin), size, q
+        self.origin, self._size, self._q = np.array(origin), size, q
         self._panels, self.samples = panels, np.asarray(samples)
         self._inverted = lru_cache(maxsize=_REMEMBERED)(self._inverse)
 
@@ -89,7 +89,7 @@ class Curve:
 
     def place(self, w: Array) -> Array:
         """Points (n, 2), m, at parameters ``w`` (n,)."""
-        return np.asarray(self._origin + self._size * self._q(w, 0))
+        return np.asarray(self.origin + self._size * self._q(w, 0))
 
     @cached_property
     def length(self) -> float:

@@ -126,7 +126,7 @@ def _rigid_curve(m: Mechanism, frames: Frames, contact_name: str, contact: Rigid
             ascends = contact.range[1] > contact.range[0]
             left = (contact.side == "above") == (ascends == (contact.axis == "x"))
             side = 1 if left else -1
-            points = place(shape_of(contact.curve).point(np.linspace(0.0, 1.0, PIECES + 1)))
+            points = place(shape_of(contact).point(np.linspace(0.0, 1.0, PIECES + 1)))
             m.rows.extend(pin_rows(m, contact_name, contact, points, side))
             return _smooth(m, frames, name, contact, side), side
         case SplineContact():
@@ -143,11 +143,9 @@ def _smooth(
 ) -> Curve:
     """Smooth edge of a body, at even arc lengths, and the sides of the solid behind an open edge."""
     u = np.linspace(0.0, 1.0, PIECES + 1)
-    points, tangents = m.units.place(shape_of(contact.curve).point(u)), shape_of(contact.curve).tangent(u)
+    points, tangents = m.units.place(shape_of(contact).point(u)), shape_of(contact).tangent(u)
     sides = NO_SIDES if isinstance(contact, EllipseContact) else sides_behind(points, side, REACH)
-    return frames.smooth_edge(
-        name, contact.body, points, tangents, shape_of(contact.curve).length / m.units.length, sides
-    )
+    return frames.smooth_edge(name, contact.body, points, tangents, shape_of(contact).length / m.units.length, sides)
 
 
 def pin_rows(m: Mechanism, name: str, contact: EdgeContact, points: Array, side: int) -> Iterator[Row]:
