@@ -1,10 +1,10 @@
-"""Records of contacts: two beams, a beam with itself, a beam with a rigid circle or edge."""
+"""Records of stops and contacts: two beams, a beam with itself, a beam with a rigid circle or edge."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import combinations, islice, pairwise
-from math import dist
+from math import dist, isnan, nan
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
@@ -13,7 +13,9 @@ from cprbm_scene.curve_records import MOST_POINTS, Ellipse, Graph, SmoothLine, s
 from cprbm_scene.curves import unit_vector
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
+from cprbm_scene.part_records import BeamName, BodyName, PointName
 from cprbm_scene.units import (
+    Angle,
     Direction,
     Length,
     Name,
@@ -26,6 +28,38 @@ from cprbm_scene.units import (
 
 BACKWARDS = 1e-3
 """1 + cos of the angle between two pieces of a line, below which the line turns back on itself: 2.6 degrees."""
+
+
+class Stop(Record):
+    """Limits of the angle between a pinned beam and the body at the pin.
+
+    The angle runs counter-clockwise from the line between the pin and ``towards``, another point of the same body, to
+    the direction of the beam away from the pin.  As drawn the angle lies in (−π, π].  The angle is continuous and
+    grows as the beam's ``end`` turns counter-clockwise against the body.  A reached limit holds by a moment, without
+    friction.
+    """
+
+    beam: BeamName
+    """Beam with a pinned end."""
+    end: Literal["start", "end"]
+    """Pinned end of the beam."""
+    towards: PointName
+    """Another point of the body at the pin."""
+    least: Angle | None = None
+    """Least angle."""
+    most: Angle | None = None
+    """Largest angle; a stop has at least one limit."""
+
+    def rules(self) -> Iterator[Mistake]:
+        """No limit, or limits in the wrong order."""
+        least, most = (nan if limit is None else limit for limit in (self.least, self.most))
+        return broken(
+            isnan(least) and isnan(most) and Mistake("", "neither 'least' nor 'most'", "at least one of the two, rad"),
+            least >= most
+            and Mistake(
+                "", f"least = {least:g} rad and most = {most:g} rad", "a least angle that is less than the most"
+            ),
+        )
 
 
 class Related(Record):
@@ -99,7 +133,7 @@ class BeamContact(Record):
 class _OneBeam(Record):
     """Contact of a single beam."""
 
-    beam: Annotated[Name, Of("beam")]
+    beam: BeamName
     """The beam of the contact."""
     thick: bool = True
     """Contact of edges, half of the thickness from the neutral line; otherwise of neutral lines."""
@@ -120,7 +154,7 @@ class SelfContact(_OneBeam):
 class RigidContact(_OneBeam):
     """Fields of all contacts of a beam with a rigid shape on a body, stated at the initial place."""
 
-    body: Annotated[Name, Of("body")]
+    body: BodyName
     """Body of the rigid shape."""
     paper: PaperRigid | None = None
     """Data for the formulation ``paper``."""

@@ -17,37 +17,6 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
-from cprbm_scene.beam_records import (
-    Beam,
-    BeamEnd,
-    FreeEnd,
-    Material,
-    PaperBeam,
-    PinnedEnd,
-    Profile,
-    Size,
-    WeldedEnd,
-)
-from cprbm_scene.body_records import (
-    Assembly,
-    BeamForce,
-    BeamMoment,
-    Body,
-    BodyLoad,
-    BodyPin,
-    DisplacementDrive,
-    DistributedLoad,
-    Drive,
-    FixedBody,
-    Force,
-    FreeBody,
-    Load,
-    Moment,
-    RotationDrive,
-    SlidingBody,
-    Stop,
-    TurningBody,
-)
 from cprbm_scene.contact_records import (
     BeamContact,
     CircleContact,
@@ -63,13 +32,49 @@ from cprbm_scene.contact_records import (
     RigidContact,
     SelfContact,
     SplineContact,
+    Stop,
     measures,
 )
 from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.parameters import Parameter, Tolerance, register
-from cprbm_scene.question_records import CRITICAL, STRESSES, Claim, Probe, Quantity, Stage
+from cprbm_scene.part_records import (
+    Beam,
+    BeamEnd,
+    Body,
+    BodyPin,
+    FixedBody,
+    FreeBody,
+    FreeEnd,
+    Material,
+    PaperBeam,
+    PinnedEnd,
+    Profile,
+    Size,
+    SlidingBody,
+    TurningBody,
+    WeldedEnd,
+)
+from cprbm_scene.question_records import (
+    CRITICAL,
+    STRESSES,
+    Assembly,
+    BeamForce,
+    BeamMoment,
+    BodyLoad,
+    Claim,
+    DisplacementDrive,
+    DistributedLoad,
+    Drive,
+    Force,
+    Load,
+    Moment,
+    Probe,
+    Quantity,
+    RotationDrive,
+    Stage,
+)
 from cprbm_scene.units import (
     NAME,
     Name,

@@ -18,7 +18,7 @@ from pydantic.fields import FieldInfo
 
 from comparisons.writing import write
 from cprbm_scene import statement as records
-from cprbm_scene.beam_records import Imperfection, PaperBeam
+from cprbm_scene.part_records import Imperfection, PaperBeam
 from cprbm_scene.units import Coefficients, Measured, Of, Record, Unit
 
 if TYPE_CHECKING:
