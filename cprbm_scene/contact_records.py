@@ -11,20 +11,10 @@ from pydantic import Field
 
 from cprbm_scene.curve_records import MOST_POINTS, Ellipse, Graph, SmoothLine, shape_of
 from cprbm_scene.curves import unit_vector
+from cprbm_scene.fields import Angle, Direction, Length, Name, Named, Of, Point, PositiveLength, Record
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
 from cprbm_scene.part_records import BeamName, BodyName, PointName
-from cprbm_scene.units import (
-    Angle,
-    Direction,
-    Length,
-    Name,
-    Named,
-    Of,
-    Point,
-    PositiveLength,
-    Record,
-)
 
 BACKWARDS = 1e-3
 """1 + cos of the angle between two pieces of a line, below which the line turns back on itself: 2.6 degrees."""

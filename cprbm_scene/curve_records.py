@@ -21,9 +21,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
 
 from cprbm_scene.curves import Curve, circular_arc, graph, slowest, spline, steepest, straight_line
-from cprbm_scene.files import read_points
-from cprbm_scene.mistakes import Mistake, broken, written_place
-from cprbm_scene.units import (
+from cprbm_scene.fields import (
     OR_EXPRESSION,
     Angle,
     Coefficients,
@@ -34,6 +32,8 @@ from cprbm_scene.units import (
     Reading,
     Record,
 )
+from cprbm_scene.mistakes import Mistake, broken, written_place
+from cprbm_scene.units import read_points
 
 SHORTEST = 1e-6
 STEEPEST = 1e3

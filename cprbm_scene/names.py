@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect
 from collections.abc import Collection, Container, Iterator, Mapping
 
+from cprbm_scene.fields import Of, Record
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import LISTED, Mistake, broken, unknown_name
 from cprbm_scene.statement import (
@@ -23,7 +24,6 @@ from cprbm_scene.statement import (
     SlidingBody,
     TurningBody,
 )
-from cprbm_scene.units import Of, Record
 
 RESERVED = "scene"
 """Name of the scene itself in a probe."""

@@ -13,8 +13,8 @@ from pydantic import Field
 
 from cprbm_scene.curve_records import CurveField, shape_of
 from cprbm_scene.curves import SAMPLES
+from cprbm_scene.fields import Name, Named, Positive, PositiveLength, PositiveShare, Record, Text, Title
 from cprbm_scene.mistakes import Mistake, broken
-from cprbm_scene.units import Name, Named, Positive, PositiveLength, PositiveShare, Record, Text, Title
 
 FEWEST, MOST = 4, 200
 """Allowed numbers of springs."""

@@ -19,22 +19,10 @@ from pydantic import Discriminator, Field, Tag
 
 from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, NeutralLine, shape_of, with_half_waves
 from cprbm_scene.curves import SAMPLES, Array
+from cprbm_scene.fields import Direction, Length, Measured, Name, Named, Number, Of, Point, PositiveLength, Record
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, SceneError, broken, first_broken, unknown_name, written_place
-from cprbm_scene.units import (
-    NUMBER,
-    STRESS,
-    Direction,
-    Length,
-    Measured,
-    Name,
-    Named,
-    Number,
-    Of,
-    Point,
-    PositiveLength,
-    Record,
-)
+from cprbm_scene.units import NUMBER, STRESS
 
 THINNEST, THICKEST = 1e-5, 0.2
 MOST_CURVED = 0.5

@@ -17,8 +17,9 @@ import math
 from collections.abc import Iterator
 
 from cprbm_scene.curve_records import shape_of
+from cprbm_scene.fields import Units
 from cprbm_scene.statement import BodyLoad, Load, Scene
-from cprbm_scene.units import SIZES, Units
+from cprbm_scene.units import SIZES
 
 LARGE = 1000.0
 """r above which a load is implausible: a cantilever under r = 1000 is straight but for 3 % of its length."""

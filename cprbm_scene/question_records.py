@@ -12,16 +12,7 @@ from typing import Annotated, Any, ClassVar, Literal, cast
 
 from pydantic import Field, WithJsonSchema, create_model, model_validator
 
-from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, broken
-from cprbm_scene.part_records import BeamName, BodyName, PointName
-from cprbm_scene.units import (
-    ANGLE,
-    FORCE,
-    LENGTH,
-    LINE_LOAD,
-    MOMENT,
-    STRESS,
+from cprbm_scene.fields import (
     Direction,
     Measured,
     Name,
@@ -33,10 +24,12 @@ from cprbm_scene.units import (
     Record,
     Share,
     Text,
-    Unit,
     Units,
-    mistake,
 )
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake, broken, mistake
+from cprbm_scene.part_records import BeamName, BodyName, PointName
+from cprbm_scene.units import ANGLE, FORCE, LENGTH, LINE_LOAD, MOMENT, STRESS, Unit
 
 SHORTEST_STRETCH = 1e-6
 """Least length of a distributed load, of the beam's length."""

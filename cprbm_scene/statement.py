@@ -36,9 +36,24 @@ from cprbm_scene.contact_records import (
     measures,
 )
 from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
+from cprbm_scene.fields import (
+    NAME,
+    Name,
+    Named,
+    NamedByWords,
+    Of,
+    Parameter,
+    Point,
+    PositiveShare,
+    Reading,
+    Record,
+    Text,
+    Title,
+    Tolerance,
+    Units,
+)
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
-from cprbm_scene.parameters import Parameter, Tolerance, register
 from cprbm_scene.part_records import (
     Beam,
     BeamEnd,
@@ -74,20 +89,6 @@ from cprbm_scene.question_records import (
     Quantity,
     RotationDrive,
     Stage,
-)
-from cprbm_scene.units import (
-    NAME,
-    Name,
-    Named,
-    NamedByWords,
-    Of,
-    Point,
-    PositiveShare,
-    Reading,
-    Record,
-    Text,
-    Title,
-    Units,
 )
 
 __all__ = [
@@ -244,7 +245,7 @@ class Scene(Record):
                 reading.units = units
                 return Units()
             case "parameters", Mapping() as parameters:
-                return register(reading, parameters)
+                return reading.register(parameters)
         parts = value if isinstance(value, Mapping) else {each.name: each for each in value}
         reading.parts[str(info.field_name)] = parts
         return value

@@ -12,12 +12,13 @@ from pydantic import BaseModel, ValidationError
 
 from comparisons import cases
 from cprbm_scene import OffsetQuestion, Scene, SceneError, read, read_question, scene_from, statement
-from cprbm_scene.files import DEEPEST, LONGEST
+from cprbm_scene.fields import Measured
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import MOST
 from cprbm_scene.plausibility import notes
+from cprbm_scene.reading import DEEPEST
 from cprbm_scene.statement import Record, Units
-from cprbm_scene.units import Measured
+from cprbm_scene.units import LONGEST
 from tests.cprbm_scene.conftest import HINGE as FILE
 from tests.cprbm_scene.editing import HINGE, REMOVED, edited, mistakes, two_lines
 from tests.robustness.toml import toml_of
