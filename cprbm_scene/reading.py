@@ -249,7 +249,7 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
         kind = Scene if all(key.startswith(_FIRST) for key in left_out) else PartialScene
         scene, mistakes = _validated(kind, draft.data, file, reading)
         if scene is not None:
-            scene._origin = Origin(left_out=left_out)
+            scene._origin = Origin(reading)
             mistakes = list(islice(unknown_names(scene, MECHANICAL), _AT_ONCE))
             found += () if mistakes else first_of(map(draft.of_file, mistakes_in(scene)))
         first = [each for each in mistakes if each.key.startswith(_FIRST)]
@@ -261,7 +261,7 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
             break
     if scene is None or found:
         raise SceneError([replace(each, file=file) for each in first_of(found)])
-    scene._origin = Origin(reading.units, settings, partial(scene_from, data, file=file))
+    scene._origin = Origin(reading, partial(scene_from, data, file=file))
     return scene
 
 

@@ -161,15 +161,13 @@ MECHANISM = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Units of a scene's file, set parameters, and a reading with other parameters: no part of the question.
+    """Reading of a scene's file, and a reading with other parameters: no part of the question.
 
-    ``left_out`` are keys of parts with mistakes that a scene lacks while the reader checks the other parts.
+    ``left_out`` of the reading are keys of parts with mistakes that a scene lacks while the reader checks the others.
     """
 
-    units: Units = field(default=Units(), compare=False)
-    settings: Mapping[str, float | str] = field(default_factory=dict, compare=False)
+    reading: Reading = field(default_factory=Reading, compare=False)
     again: Callable[..., Scene] | None = field(default=None, compare=False)
-    left_out: frozenset[str] = field(default=frozenset(), compare=False)
 
 
 class Scene(Record):
@@ -284,7 +282,7 @@ class Scene(Record):
             >>> hinge.beams["beam1"].thickness
             0.0019
         """
-        again, settings = self._origin.again, self._origin.settings
+        again, settings = self._origin.again, self._origin.reading.settings
         if again is None or not self.parameters or again(parameters=settings) != self:
             raise ValueError("found a scene without parameters or altered after reading; allowed: a scene from a file")
         return again(parameters={**settings, **values})
@@ -296,11 +294,11 @@ class Scene(Record):
     @property
     def display_units(self) -> Units:
         """Units of the scene's file, for tables and figures; ``model_fields_set`` lists the stated ones."""
-        return self._origin.units
+        return self._origin.reading.units
 
     def left_out(self, *tables: str) -> list[str]:
         """Names, but for forbidden names, of the parts of ``tables`` with mistakes that the reader left out."""
-        keys = (key.partition(".") for key in sorted(self._origin.left_out))
+        keys = (key.partition(".") for key in sorted(self._origin.reading.left_out))
         return [
             name
             for table, _, name in keys
@@ -313,7 +311,7 @@ class Scene(Record):
 
     def whole(self, tables: Collection[str] = MECHANISM) -> bool:
         """False if the reader left out parts of the ``tables``."""
-        return not any(key.partition(".")[0] in tables for key in self._origin.left_out)
+        return not any(key.partition(".")[0] in tables for key in self._origin.reading.left_out)
 
     def limit(self, probe: Probe) -> float:
         """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cprbm_scene import Scene, SceneError, scene_from
-from cprbm_scene.requirements import requirements
+from cprbm_scene.solving import requirements
 from cprbm_scene.statement import BeamForce, DisplacementDrive, DistributedLoad
 from tests.cprbm_scene.editing import edited, mistakes
 from tests.cprbm_scene.scenes import DRIVEN, LINKAGE, LOADED, PUSH, SLIDES, SLIDING, SLOTTED, TURN, TURNED, WITH_FORCE

@@ -1,0 +1,179 @@
+"""Common parts of all solvers: requirements of a scene, active contacts, progress, and a single thread of BLAS.
+
+A solver states the met requirements and refuses the others by name.
+
+A contact is active where its forces exceed a floor: round-off leaves forces of 1e-15 N in contacts that only touch.
+
+For small matrices further threads of BLAS take time.  In a process with a loaded BLAS only threadpoolctl can limit the
+threads.  Without threadpoolctl BLAS keeps the threads of the process; the program ``cprbm`` limits these threads at the
+start (:mod:`comparisons.threads`).
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from functools import lru_cache
+from itertools import pairwise
+from typing import Any, Literal, cast
+
+import numpy as np
+
+from cprbm_scene.answer import Array, ContactState, Event, PointForces, StationAnswer, frozen_array
+from cprbm_scene.clearance import overlap_at_rest
+from cprbm_scene.freedoms import Freedoms, unsupported
+from cprbm_scene.mistakes import Mistake, SceneError, broken
+from cprbm_scene.statement import BeamContact, CircleContact, EllipseContact, Scene, SplineContact
+
+Requirement = Literal["theory", "overlap at rest", "from", "together", "support", "edge"]
+
+
+def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
+    """Kinds of requirements, with keys, values found, and values for a solver without the feature."""
+    first, file, contacts = scene.stages[0].name, scene.file, [*scene.contacts.items()]
+    overlaps = ((name, overlap_at_rest(scene, each)) for name, each in contacts if isinstance(each, BeamContact))
+    rules: dict[Requirement, Iterator[Mistake]] = {
+        "theory": broken(scene.theory != "bending" and Mistake("theory", repr(scene.theory), "'bending'", file)),
+        "from": (
+            Mistake(
+                f"drives.{name}.from",
+                f"a drive that is free before the stage {drive.begins!r}",
+                "drives that hold from the start",
+                file,
+            )
+            for name, drive in scene.drives.items()
+            if not scene.holds(drive, first)
+        ),
+        "together": (
+            Mistake(f"stages[{i}].steps", f"{list(stage.together)}", "one name", file)
+            for i, stage in enumerate(scene.stages)
+            if stage.together
+        ),
+        "support": (
+            Mistake(mistake.key, mistake.found, "joints, guides and drives that hold it", file)
+            for mistake, _ in unsupported(scene, Freedoms(scene))
+        ),
+        "edge": (
+            Mistake(
+                f"contacts.{name}",
+                f"{each.kind!r}, {each.side}",
+                "a circle from outside, a line, a half-plane or a function",
+                file,
+            )
+            for name, each in contacts
+            if isinstance(each, SplineContact | EllipseContact)
+            or (isinstance(each, CircleContact) and each.side == "inside")
+        ),
+        "overlap at rest": (
+            Mistake(
+                f"contacts.{name}",
+                f"beams that overlap at the start by {overlap:.3g} m",
+                "beams that touch or are apart",
+                file,
+            )
+            for name, overlap in overlaps
+            if overlap
+        ),
+    }
+    return ((kind, mistake) for kind, mistakes in rules.items() for mistake in mistakes)
+
+
+def refuse(scene: Scene, solver: str, *met: Requirement) -> None:
+    """Refuse a scene with requirements beyond those ``met`` by a ``solver``.
+
+    Args:
+        scene: the problem statement.
+        solver: name of the solver for the message.
+        met: kinds of requirements for which the solver has equations.
+
+    Raises:
+        SceneError: the scene has further requirements; the error names every key.
+    """
+    found = [mistake for kind, mistake in requirements(scene) if kind not in met]
+    if found:
+        raise SceneError([Mistake(e.key, e.found, f"{e.allowed}, for {solver}", e.file) for e in found])
+
+
+ACTIVE = 1e-9
+"""Floor of an active contact's force, over the largest force at the station: round-off leaves far less."""
+
+UNLOADED = 1e-12
+"""The same over the natural force, the largest E·I over the square of the longest beam: no load acts below."""
+
+
+def contact_states(
+    names: Iterable[str], forces: PointForces, touching: Mapping[str, Array], natural: tuple[float, float]
+) -> Mapping[str, ContactState]:
+    """States of the contacts ``names`` by their forces; ``natural`` are the scene's length (m) and force (N).
+
+    A moment counts as a force at the natural length.  Without any forces a contact that touches is active.
+    """
+    size = np.hypot(forces.force[:, 0], forces.force[:, 1]) + np.abs(forces.moment) / natural[0]
+    floor = max(ACTIVE * float(np.max(size, initial=0.0)), UNLOADED * natural[1])
+    source, nowhere = np.array(forces.source, dtype=str), frozen_array(np.zeros((0, 2)))
+    return {
+        name: ContactState(
+            bool(size[source == name].sum() > floor) if len(size) else name in touching, touching.get(name, nowhere)
+        )
+        for name in names
+    }
+
+
+def openings(scene: Scene, stations: Sequence[StationAnswer]) -> tuple[Event, ...]:
+    """Events of contacts that are active at one station and inactive at the next station of the same branch.
+
+    Between two stages the interval begins where the stepped load or drive stands before the later stage.
+    """
+    found, reached = [], dict.fromkeys((*scene.loads, *scene.drives), 0.0)
+    steps = {stage.name: stage.steps for stage in scene.stages}
+    for before, after in pairwise(stations):
+        reached[steps[before.stage]] = before.value
+        if before.branch == after.branch:
+            low, high = sorted((reached[steps[after.stage]], after.value))
+            found += [
+                Event(after.stage, name, "opens", 0.5 * (low + high), (low, high))
+                for name, contact in before.contacts.items()
+                if contact.active and not after.contacts[name].active
+            ]
+    return tuple(found)
+
+
+def station_reached(logger: logging.Logger, scene: Scene, reached: int, station: StationAnswer) -> None:
+    """Log, at the level INFO, that a solver has come to the ``station`` with the number ``reached`` of the scene."""
+    steps, whole = {stage.name: stage.steps for stage in scene.stages}, sum(len(each.stations) for each in scene.stages)
+    spent = station.certificate.iterations
+    logger.info(
+        "%s: %s, stage %s: station %d of %d, %s = %.6g, %d iteration%s",
+        scene.name,
+        logger.name.rpartition(".")[0],
+        station.stage,
+        reached,
+        whole,
+        steps[station.stage],
+        station.value,
+        spent,
+        "" if spent == 1 else "s",
+        extra={"done": reached, "whole": whole},
+    )
+
+
+def one_thread() -> AbstractContextManager[object]:
+    """Context with a single thread per loaded library of linear algebra; without effect if threadpoolctl is missing."""
+    try:
+        libraries = _loaded(len(sys.modules))
+    except ImportError:
+        return nullcontext()
+    return cast("AbstractContextManager[object]", libraries.limit(limits=1, user_api="blas"))
+
+
+@lru_cache(maxsize=1)
+def _loaded(modules: int) -> Any:  # noqa: ANN401 - threadpoolctl has no types
+    """Controller of the loaded libraries, cached: threadpoolctl reads the process's map of memory, which takes long.
+
+    Libraries are loaded with Python modules, so that an equal number of ``modules`` means equal libraries.
+    """
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
