@@ -173,22 +173,24 @@ def _too_deep(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]
 
 def _crossing(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]:
     """Beams as lines that cross."""
-    first, second = beams = [scene.beams[beam] for beam in contact.between]
-    shapes = shape_of(first.curve), shape_of(second.curve)
+    place, (first, second) = crossing(scene, *contact.between), contact.between
+    found = f"{first!r} and {second!r} that cross at the start, at {place} m"
+    return broken(place and Mistake(key, found, "neutral lines that touch or are apart"))
+
+
+def crossing(scene: Scene, *names: str) -> str:
+    """Place at which the neutral lines of two beams cross, m; empty for beams that touch or are apart."""
+    beams = [scene.beams[name] for name in names]
+    shapes = [shape_of(beam.curve) for beam in beams]
     shortest = min(shape.length for shape in shapes)
-    gap, *places = beam_gap(first, second, *_apart(scene, beams, CROSSING_ANGLE * shortest), thick=False)
+    gap, *places = beam_gap(*beams, *_apart(scene, beams, CROSSING_ANGLE * shortest), thick=False)
     t1, t2 = (shape.tangent(np.array([u]))[0] for shape, u in zip(shapes, places, strict=True))
-    return broken(
+    crosses = (
         gap <= MEETING * shortest
         and all(1e-6 < u < 1.0 - 1e-6 for u in places)
         and abs(t1[0] * t2[1] - t1[1] * t2[0]) > CROSSING_ANGLE
-        and Mistake(
-            key,
-            f"{contact.between[0]!r} and {contact.between[1]!r} that cross at the start, at "
-            f"{written_place(shapes[0].point(np.array(places[:1]))[0])} m",
-            "neutral lines that touch or are apart",
-        )
     )
+    return written_place(shapes[0].point(np.array(places[:1]))[0]) if crosses else ""
 
 
 def _apart(scene: Scene, beams: Sequence[Beam], left_out: float, near: float = 0.0) -> list[Range]:

@@ -1,4 +1,6 @@
-"""Notes on loads that are implausibly large for their beams, with the mix-up of units that would explain them.
+"""Notes on implausible scenes: crossing beams without a contact, and loads that are large for their beams.
+
+A note on a load names the mix-up of units that would explain the load.
 
 =======  ==============================================================
 symbol   meaning
@@ -15,7 +17,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import combinations
 
+import numpy as np
+
+from cprbm_scene.clearance import crossing
 from cprbm_scene.curve_records import shape_of
 from cprbm_scene.fields import Units
 from cprbm_scene.statement import BodyLoad, Load, Scene
@@ -25,15 +31,26 @@ LARGE = 1000.0
 """r above which a load is implausible: a cantilever under r = 1000 is straight but for 3 % of its length."""
 SOFTEST, STIFFEST = 1e6, 1.5e12
 """Young's moduli of rubber and diamond, rounded outwards, Pa."""
+_SAMPLES = 201
 _POWERS = {"stress": -1, "length": -2, "force": 1}
 
 
 def notes(scene: Scene) -> Iterator[str]:
-    """Sentences on implausible numbers of a scene; none for most scenes.
+    """Sentences on implausible parts of a scene; none for most scenes.
 
     Args:
         scene: a scene without mistakes.
     """
+    known = {*map(frozenset, scene.may_cross), *(frozenset(contact.beams) for contact in scene.contacts.values())}
+    lines = {name: shape_of(beam.curve).point(np.linspace(0.0, 1.0, _SAMPLES)) for name, beam in scene.beams.items()}
+    for first, second in combinations(scene.beams, 2):
+        p, q = lines[first], lines[second]
+        beside = np.any(p.min(axis=0) > q.max(axis=0)) or np.any(q.min(axis=0) > p.max(axis=0))
+        if not beside and {first, second} not in known and (place := crossing(scene, first, second)):
+            yield (
+                f"beams.{second}: crosses the beam {first!r} at the start, at {place} m: without a contact of the two, "
+                "no force acts there; a pair in may_cross needs no note."
+            )
     for name, load in scene.loads.items():
         stages = (stage for stage in scene.stages if name in stage.stepped)
         largest = max((abs(value) for stage in stages for value in stage.stations), default=0.0)
