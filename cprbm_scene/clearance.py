@@ -32,7 +32,6 @@ from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import product
 from math import dist
-from typing import NamedTuple
 
 import numpy as np
 
@@ -78,28 +77,23 @@ _SLOPE = 1e-7
 """Half of the stretch of u over which the slope of a thickness is taken."""
 
 
-class Gap(NamedTuple):
-    """Least ``gap``, m, negative for an overlap, with the places ``u1`` and ``u2`` on both beams."""
-
-    gap: float
-    u1: float
-    u2: float
-
-
 def _half(beam: Beam, u: Array, *, thick: bool) -> Array:
     return 0.5 * beam.thickness_at(u) if thick else np.zeros(len(u))
 
 
 @lru_cache(maxsize=512)
-def beam_gap(first: Beam, second: Beam, range1: Range = WHOLE, range2: Range = WHOLE, *, thick: bool = True) -> Gap:
-    """Least gap of two beams within ranges of u, infinite for an empty range.
+def beam_gap(
+    first: Beam, second: Beam, range1: Range = WHOLE, range2: Range = WHOLE, *, thick: bool = True
+) -> tuple[float, float, float]:
+    """Least gap of two beams within ranges of u, m, and the places u on both beams.
 
-    A gap far above the samples' distance is not refined.
+    The gap is negative for an overlap, and infinite for an empty range; a gap far above the samples' distance is not
+    refined.
     """
     from scipy.spatial import cKDTree  # scenes without contact of beams need no SciPy
 
     if range1[0] >= range1[1] or range2[0] >= range2[1]:
-        return Gap(np.inf, 0.0, 0.0)
+        return np.inf, 0.0, 0.0
     one, two = shape_of(first.curve), shape_of(second.curve)
     samples, known = (
         np.union1d(np.linspace(*span, _SAMPLES), np.clip(beam.knots, *span))
@@ -125,7 +119,7 @@ def beam_gap(first: Beam, second: Beam, range1: Range = WHOLE, range2: Range = W
 
     bound = 2.0 * (one.length + two.length) / _SAMPLES
     value, place = least(lambda u: nearest(u)[0], samples, refined_below=bound)
-    return Gap(value, place, float(nearest(np.array([place]))[1][0]))
+    return value, place, float(nearest(np.array([place]))[1][0])
 
 
 def wrong_clearance(scene: Scene) -> Iterator[Mistake]:
@@ -148,10 +142,10 @@ def overlap_at_rest(scene: Scene, contact: BeamContact) -> float:
     """
     first, second = beams = [scene.beams[beam] for beam in contact.between]
     mean, largest = 0.5 * (first.thinnest + second.thinnest), 0.5 * (first.thickest + second.thickest)
-    depth = -beam_gap(first, second, *_apart(scene, beams, JOINED * largest)).gap if contact.thick else 0.0
+    depth = -beam_gap(first, second, *_apart(scene, beams, JOINED * largest))[0] if contact.thick else 0.0
     if OVERLAP * mean < depth <= TOUCHING * mean:
         beside = _apart(scene, beams, JOINED * largest, SIDE_BY_SIDE * largest)
-        depth = -beam_gap(first, second, *beside).gap
+        depth = -beam_gap(first, second, *beside)[0]
     return depth if depth > OVERLAP * mean else 0.0
 
 

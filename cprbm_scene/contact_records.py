@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import combinations, islice, pairwise
+from itertools import islice, pairwise
 from math import dist, isnan, nan
 from typing import Annotated, ClassVar, Literal
 
+import numpy as np
 from pydantic import Field
 
 from cprbm_scene.curve_records import MOST_POINTS, Ellipse, Graph, SmoothLine, shape_of
@@ -203,25 +204,21 @@ class LineContact(RigidContact):
                 for i, (a, b) in corners
             )
         )
-        for (i, first), (j, second) in combinations(enumerate(pieces), 2):
-            neighbours = j - i in ((1, len(pieces) - 1) if self.closed else (1,))
-            yield from broken(
-                not neighbours
-                and _crosses(first, second)
-                and _crosses(second, first)
-                and Mistake(
-                    "points",
-                    f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}",
-                    "a line that does not meet itself",
-                )
+        x, y = np.array(self.points).T
+        dx, dy = (np.diff(places)[:, None] for places in (x, y))
+        side = dx * (y - y[:-1, None]) - dy * (x - x[:-1, None])
+        # ends of a piece on different sides of the other piece, or on its line
+        apart = side[:, :-1] * side[:, 1:] > 0.0
+        meet = np.triu(~(apart | apart.T), k=2)
+        meet[0, -1] &= not self.closed
+        yield from (
+            Mistake(
+                "points",
+                f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}",
+                "a line that does not meet itself",
             )
-
-
-def _crosses(piece: tuple[Point, Point], other: tuple[Point, Point]) -> bool:
-    """True if the ends of ``other`` lie on different sides of the line of ``piece``, or on the line."""
-    (ax, ay), (bx, by) = piece
-    one, two = ((bx - ax) * (y - ay) - (by - ay) * (x - ax) for x, y in other)
-    return one * two <= 0.0
+            for i, j in np.argwhere(meet).tolist()
+        )
 
 
 class HalfPlaneContact(RigidContact):

@@ -20,7 +20,7 @@ from typing import Annotated, Literal, cast
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
 
-from cprbm_scene.curves import Curve, circular_arc, graph, slowest, spline, steepest, straight_line
+from cprbm_scene.curves import Curve, circular_arc, graph, spline, steepest, straight_line
 from cprbm_scene.fields import (
     OR_EXPRESSION,
     Angle,
@@ -303,12 +303,15 @@ def _spline_rules(curve: SmoothLine) -> Iterator[Mistake]:
             for i, chord in enumerate(chords, start=1)
         ),
     )
-    speed, place = slowest(shape_of(curve))
+    shape = shape_of(curve)
+    # a pure number, zero at a cusp
+    speed = shape.speed(shape.samples)
     yield from broken(
-        not speed >= SLOWEST
+        not np.min(speed) >= SLOWEST
         and Mistake(
             "points",
-            f"points through which a smooth line has to turn back on the spot, near {written_place(place)} m",
+            "points through which a smooth line has to turn back on the spot, near "
+            f"{written_place(shape.place(shape.samples[[np.argmin(speed)]])[0])} m",
             "points (and directions) that a smooth line follows; more of them where it turns sharply",
         )
     )

@@ -228,12 +228,6 @@ def spline(points: Sequence[Point], directions: tuple[Point | None, Point | None
     return Curve(points[0], size, q, _divided(w, _PANELS_OF_PIECE), _divided(w, of_piece - 1))
 
 
-def slowest(curve: Curve) -> tuple[float, Array]:
-    """The least |q'| of a spline, a pure number, zero at a cusp, and the place (2,), m."""
-    speed = curve.speed(curve.samples)
-    return float(np.min(speed)), curve.place(curve.samples[[np.argmin(speed)]])[0]
-
-
 def _divided(w: Array, parts: int) -> Array:
     """The intervals between ``w`` (k+1,) cut into equal ``parts``: places (k·parts + 1,)."""
     return np.append(np.concatenate([np.linspace(*ends, parts, endpoint=False) for ends in pairwise(w)]), w[-1])

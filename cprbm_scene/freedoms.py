@@ -223,9 +223,9 @@ def unsupported(scene: Scene, freedoms: Freedoms) -> Iterator[tuple[Mistake, set
     met |= {name: {freedoms.owners[point] for point in pin.points} for name, pin in scene.pins.items()}
     for name, body in scene.bodies.items():
         together, reached = connected({name}, met.values()), any(name in bodies for bodies in met.values())
-        rows = [row for each in together for row in freedoms.guide(each)]
-        rows += [freedoms.row(drive) for drive in drives if freedoms.owner(drive) in together]
-        if sum(independent(rows)) < FREEDOMS:
+        guides = [row for each in together for row in freedoms.guide(each)]
+        driven = [freedoms.row(drive) for drive in drives if freedoms.owner(drive) in together]
+        if sum(independent(guides + driven)) < FREEDOMS:
             yield (
                 Mistake(
                     f"bodies.{name}",
@@ -259,9 +259,9 @@ def _loose(scene: Scene, freedoms: Freedoms) -> Iterator[Mistake]:
     drives = [name for name, drive in scene.drives.items() if scene.holds(drive, scene.stages[0].name)]
     held = {name for contact in scene.contacts.values() for name in _touching(contact)}
     held |= {name for stop in scene.stops.values() for name in (stop.beam, freedoms.owners[stop.towards])}
-    rows = [freedoms.wide({name: row}) for name in (() if scene.pins else held) for row in np.eye(3)]
-    rows += [row for _, row in freedoms.constraints(drives)]
-    _, values, motions = np.linalg.svd(np.array([*rows, *freedoms.joints()]))
+    rows = (freedoms.wide({name: row}) for name in (() if scene.pins else held) for row in np.eye(3))
+    constraints = (row for _, row in freedoms.constraints(drives))
+    _, values, motions = np.linalg.svd(np.array([*rows, *constraints, *freedoms.joints()]))
     null_space = motions[np.count_nonzero(values > NEGLIGIBLE) :]
     for i, name in enumerate(scene.bodies):
         own = [motion for motion in null_space[:, 3 * i : 3 * i + 3] if np.abs(motion).max() > NEGLIGIBLE]

@@ -276,12 +276,14 @@ def _beside(ascending: Mapping[str, list[float]], value: float) -> Iterator[tupl
 def _bearers(scene: Scene) -> dict[str, list[str]]:
     """Names of the parts of the scene with a quantity, by the values of ``_OF``."""
     fixed = {point for body in scene.bodies.values() if body.motion == "fixed" for point in body.points}
-    joined = [str(end.point) for beam in scene.beams.values() for _, end, _ in beam.ends]
-    joined += [point for pin in scene.pins.values() for point in pin.points]
-    supports = [point for point in joined if point in fixed]
-    moved = [body.about for body in scene.bodies.values() if isinstance(body, TurningBody)]
-    moved += [drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)]
-    moved += [name for name, body in scene.bodies.items() if isinstance(body, SlidingBody)]
+    joined = (str(end.point) for beam in scene.beams.values() for _, end, _ in beam.ends)
+    pinned = (point for pin in scene.pins.values() for point in pin.points)
+    supports = [point for point in (*joined, *pinned) if point in fixed]
+    moved = (
+        *(body.about for body in scene.bodies.values() if isinstance(body, TurningBody)),
+        *(drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)),
+        *(name for name, body in scene.bodies.items() if isinstance(body, SlidingBody)),
+    )
     turned = [drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive)]
     edges = [name for name, each in scene.contacts.items() if isinstance(each, EdgeContact) and _pinned(scene, each)]
     return {

@@ -17,7 +17,15 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag
 
-from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, NeutralLine, shape_of, with_half_waves
+from cprbm_scene.curve_records import (
+    MOST_HALF_WAVES,
+    MOST_POINTS,
+    SHORTEST,
+    CurveField,
+    NeutralLine,
+    shape_of,
+    with_half_waves,
+)
 from cprbm_scene.curves import SAMPLES, Array
 from cprbm_scene.fields import Direction, Length, Measured, Name, Named, Number, Of, Point, PositiveLength, Record
 from cprbm_scene.frozendict import frozendict
@@ -26,8 +34,6 @@ from cprbm_scene.units import NUMBER, STRESS
 
 THINNEST, THICKEST = 1e-5, 0.2
 MOST_CURVED = 0.5
-CLOSEST = 1e-6
-MOST_PLACES = 1001
 LARGEST_RATIO = 1e5
 BACKWARDS = 1e-9
 """Component of a unit tangent that counts as zero."""
@@ -186,7 +192,7 @@ class Profile(Record):
         return first_broken(
             len(at) != len(values)
             and Mistake("values", f"{len(values)} values at {len(at)} places", "as many values as places in at"),
-            len(at) > MOST_PLACES and Mistake("at", f"{len(at)} places", f"at most {MOST_PLACES} of them"),
+            len(at) > MOST_POINTS and Mistake("at", f"{len(at)} places", f"at most {MOST_POINTS} of them"),
             (at[0], at[-1]) != (0.0, 1.0)
             and Mistake(
                 "at",
@@ -200,11 +206,11 @@ class Profile(Record):
                 f"values of which the largest is at most {LARGEST_RATIO:g} times the least",
             ),
             *(
-                not place - before >= CLOSEST
+                not place - before >= SHORTEST
                 and Mistake(
                     f"at[{i}]",
                     f"{place:.9g} after {before:.9g}",
-                    f"places that ascend, each at least {CLOSEST:g} after the one before",
+                    f"places that ascend, each at least {SHORTEST:g} after the one before",
                 )
                 for i, (before, place) in enumerate(pairwise(at), start=1)
             ),

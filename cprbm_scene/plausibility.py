@@ -25,7 +25,7 @@ from cprbm_scene.clearance import crossing
 from cprbm_scene.curve_records import shape_of
 from cprbm_scene.fields import Units
 from cprbm_scene.statement import BodyLoad, Load, Scene
-from cprbm_scene.units import SIZES
+from cprbm_scene.units import BY_QUANTITY, SIZES
 
 LARGE = 1000.0
 """r above which a load is implausible: a cantilever under r = 1000 is straight but for 3 % of its length."""
@@ -75,15 +75,16 @@ def _per_unit(scene: Scene, load: Load, name: str) -> float:
 
 def _explanation(ratio: float, modulus: float, units: Units) -> str:
     """The question about the mix-up of units that brings r and E closest to ordinary values; empty without any."""
-    found = list[tuple[float, str]]()
-    for quantity, power in _POWERS.items():
-        own = getattr(units, quantity)
-        others = Units.model_fields[quantity].annotation.__args__  # type: ignore[union-attr]
-        factors = {other: float(SIZES[other] / SIZES[own]) for other in others if other != own}
-        found += [
-            (abs(math.log10(true)), f" Is a {quantity} in {other} written as {own}?")
-            for other, factor in factors.items()
-            if (true := ratio * factor**power) <= LARGE
-            and SOFTEST <= modulus * (factor if quantity == "stress" else 1.0) <= STIFFEST
-        ]
+    mixed = (
+        (quantity, own, other, float(SIZES[other] / SIZES[own]))
+        for quantity, own in units
+        for other in (BY_QUANTITY[quantity] if quantity in _POWERS else ())
+        if other != own
+    )
+    found = (
+        (abs(math.log10(true)), f" Is a {quantity} in {other} written as {own}?")
+        for quantity, own, other, factor in mixed
+        if (true := ratio * factor ** _POWERS[quantity]) <= LARGE
+        and SOFTEST <= modulus * (factor if quantity == "stress" else 1.0) <= STIFFEST
+    )
     return min(found, default=(0.0, ""))[1]
