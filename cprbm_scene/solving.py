@@ -1,4 +1,17 @@
-"""Common parts of all solvers: requirements of a scene, active contacts, progress, and a single thread of BLAS.
+"""Between a scene and its solvers: notes, requirements, active contacts, progress, and a single thread of BLAS.
+
+A note names implausible parts: crossing beams without a contact, and loads that are large for their beams, with the
+mix-up of units that would explain the load.
+
+=======  ==============================================================
+symbol   meaning
+=======  ==============================================================
+P, M, q  largest force, moment and distributed load of the stages
+L, E I   length and largest bending stiffness of a beam
+r        P L²/(E I), M L/(E I) or q L³/(E I): of order one where a beam bends as far as it is long
+=======  ==============================================================
+
+With E I = E w t³/12, r has the power -1 of E, 1 of the force and -2 of the unit of length, for every kind of load.
 
 A solver states the met requirements and refuses the others by name.
 
@@ -12,20 +25,24 @@ start (:mod:`comparisons.threads`).
 from __future__ import annotations
 
 import logging
+import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import lru_cache
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import Any, Literal, cast
 
 import numpy as np
 
 from cprbm_scene.answer import Array, ContactState, Event, PointForces, StationAnswer, frozen_array
-from cprbm_scene.clearance import overlap_at_rest
+from cprbm_scene.clearance import crossing, overlap_at_rest
+from cprbm_scene.curve_records import shape_of
+from cprbm_scene.fields import Units
 from cprbm_scene.freedoms import Freedoms, unsupported
 from cprbm_scene.mistakes import Mistake, SceneError, broken
-from cprbm_scene.statement import BeamContact, CircleContact, EllipseContact, Scene, SplineContact
+from cprbm_scene.statement import BeamContact, BodyLoad, CircleContact, EllipseContact, Load, Scene, SplineContact
+from cprbm_scene.units import BY_QUANTITY, SIZES
 
 Requirement = Literal["theory", "overlap at rest", "from", "together", "support", "edge"]
 
@@ -177,3 +194,66 @@ def _loaded(modules: int) -> Any:  # noqa: ANN401 - threadpoolctl has no types
     from threadpoolctl import ThreadpoolController
 
     return ThreadpoolController()
+
+
+LARGE = 1000.0
+"""r above which a load is implausible: a cantilever under r = 1000 is straight but for 3 % of its length."""
+SOFTEST, STIFFEST = 1e6, 1.5e12
+"""Young's moduli of rubber and diamond, rounded outwards, Pa."""
+_SAMPLES = 201
+_POWERS = {"stress": -1, "length": -2, "force": 1}
+
+
+def notes(scene: Scene) -> Iterator[str]:
+    """Sentences on implausible parts of a scene; none for most scenes.
+
+    Args:
+        scene: a scene without mistakes.
+    """
+    known = {*map(frozenset, scene.may_cross), *(frozenset(contact.beams) for contact in scene.contacts.values())}
+    lines = {name: shape_of(beam.curve).point(np.linspace(0.0, 1.0, _SAMPLES)) for name, beam in scene.beams.items()}
+    for first, second in combinations(scene.beams, 2):
+        p, q = lines[first], lines[second]
+        beside = np.any(p.min(axis=0) > q.max(axis=0)) or np.any(q.min(axis=0) > p.max(axis=0))
+        if not beside and {first, second} not in known and (place := crossing(scene, first, second)):
+            yield (
+                f"beams.{second}: crosses the beam {first!r} at the start, at {place} m: without a contact of the two, "
+                "no force acts there; a pair in may_cross needs no note."
+            )
+    for name, load in scene.loads.items():
+        stages = (stage for stage in scene.stages if name in stage.stepped)
+        largest = max((abs(value) for stage in stages for value in stage.stations), default=0.0)
+        beams = scene.beams if isinstance(load, BodyLoad) else [load.beam]
+        ratio, beam = min((largest * _per_unit(scene, load, beam), beam) for beam in beams)
+        if ratio > LARGE:
+            symbol = {"force": "P L^2", "beam_force": "P L^2", "distributed": "q L^3"}.get(load.kind, "M L")
+            modulus = scene.materials[scene.beams[beam].material].youngs_modulus
+            yield (
+                f"loads.{name}: {symbol}/(E I) is {ratio:.3g} for the beam {beam!r}, implausible above "
+                f"{LARGE:g}.{_explanation(ratio, modulus, scene.display_units)}"
+            )
+
+
+def _per_unit(scene: Scene, load: Load, name: str) -> float:
+    """The ratio r of a load of 1 in SI units on a beam."""
+    beam = scene.beams[name]
+    width = float(beam.width_at(beam.knots).max())
+    stiffness = scene.materials[beam.material].youngs_modulus * width * beam.thickest**3 / 12.0
+    return float(shape_of(beam.curve).length ** (2 - load.unit.length) / stiffness)
+
+
+def _explanation(ratio: float, modulus: float, units: Units) -> str:
+    """The question about the mix-up of units that brings r and E closest to ordinary values; empty without any."""
+    mixed = (
+        (quantity, own, other, float(SIZES[other] / SIZES[own]))
+        for quantity, own in units
+        for other in (BY_QUANTITY[quantity] if quantity in _POWERS else ())
+        if other != own
+    )
+    found = (
+        (abs(math.log10(true)), f" Is a {quantity} in {other} written as {own}?")
+        for quantity, own, other, factor in mixed
+        if (true := ratio * factor ** _POWERS[quantity]) <= LARGE
+        and SOFTEST <= modulus * (factor if quantity == "stress" else 1.0) <= STIFFEST
+    )
+    return min(found, default=(0.0, ""))[1]

@@ -15,7 +15,7 @@ from comparisons import cases, pairing
 from comparisons.choices import Choices, check
 from comparisons.cli.errors import printable
 from cprbm_scene import Question, Scene
-from cprbm_scene.plausibility import notes
+from cprbm_scene.solving import notes
 
 
 @dataclass(frozen=True, slots=True)

@@ -91,6 +91,13 @@ def test_what_a_weld_a_drive_or_a_contact_may_hold_is_a_scene(edits):
     assert not mistakes(*edits, base=HUNG)
 
 
+def test_a_contact_elsewhere_holds_no_loose_body():
+    beam = {**THIN, "start": {"joint": "weld", "point": "S"}, "end": {"joint": "free"}}
+    beam["curve"] = {"kind": "line", "start": [0.031, 0.047], "end": [0.031, 0.097]}
+    edits = ("beams/other", beam), ("contacts", {"below": {**BELOW, "beam": "other"}})
+    assert "turn about" in mistakes(*edits, base=HUNG)["bodies.plate"]
+
+
 def test_a_stage_steps_a_load_or_a_drive():
     scene = scene_from(DRIVEN)
     assert isinstance(scene.stepped(scene.stages[0]), DisplacementDrive)
