@@ -75,8 +75,10 @@ class Freedoms:
     def __init__(self, scene: Scene) -> None:
         self.scene, self.owners = scene, scene.owners
         self.places = {point: np.array(scene.bodies[name].points[point]) for point, name in self.owners.items()}
-        self.origin = np.array(next(iter(next(iter(scene.bodies.values())).points.values())))
-        self.extent = max(float(np.hypot(*(place - self.origin))) for place in self.places.values()) or 1.0
+        self.origin = next(iter(self.places.values()), np.zeros(2))
+        self.extent = (
+            max((float(np.hypot(*(place - self.origin))) for place in self.places.values()), default=0.0) or 1.0
+        )
         self.parts = [*scene.bodies, *scene.beams]
 
     def along(self, point: str, direction: Point) -> Row:
@@ -286,8 +288,6 @@ def _in_words(freedoms: Freedoms, motion: Row) -> str:
 
 def wrong_actions(scene: Scene) -> Iterator[Mistake]:
     """Loads and drives of fixed bodies or across guides, and motions with two drives or with a drive and a load."""
-    if not scene.bodies:
-        return
     freedoms, driven = Freedoms(scene), defaultdict[str, list[str]](list)
     drives = {f"drives.{name}": drive for name, drive in scene.drives.items()}
     loads = {f"loads.{name}": load for name, load in scene.loads.items() if isinstance(load, BodyLoad)}

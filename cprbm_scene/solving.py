@@ -1,14 +1,13 @@
 """Between a scene and its solvers: notes, requirements, active contacts, progress, and a single thread of BLAS.
 
-A note names implausible parts: crossing beams without a contact, and loads that are large for their beams, with the
-mix-up of units that would explain the load.
+A note names crossing beams without a contact, or a load too large for the beams with a mix-up of units as explanation.
 
 =======  ==============================================================
 symbol   meaning
 =======  ==============================================================
 P, M, q  largest force, moment and distributed load of the stages
 L, E I   length and largest bending stiffness of a beam
-r        P L²/(E I), M L/(E I) or q L³/(E I): of order one where a beam bends as far as it is long
+r        P L²/(E I), M L/(E I) or q L³/(E I): of order 1 where the deflection is the length
 =======  ==============================================================
 
 With E I = E w t³/12, r has the power -1 of E, 1 of the force and -2 of the unit of length, for every kind of load.
@@ -139,7 +138,7 @@ def contact_states(
 
 
 def openings(scene: Scene, stations: Sequence[StationAnswer]) -> tuple[Event, ...]:
-    """Events of contacts that are active at one station and inactive at the next station of the same branch.
+    """Events of contacts with forces at a station and without forces at the next station of the same branch.
 
     Between two stages the interval begins where the stepped load or drive stands before the later stage.
     """
