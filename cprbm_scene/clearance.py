@@ -26,8 +26,6 @@ A place is behind a rigid line if the nearest place of the line is no end of the
 line's normal towards the free side.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import product

@@ -1,7 +1,5 @@
 """Records of stops and contacts: two beams, a beam with itself, a beam with a rigid circle or edge."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import islice, pairwise
 from math import dist, isnan, nan

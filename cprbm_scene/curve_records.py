@@ -8,8 +8,6 @@ Bounds are on dimensionless numbers:
   respect to the distance: at a lower speed the spline has a cusp.
 """
 
-from __future__ import annotations
-
 import operator
 from collections.abc import Iterator
 from functools import lru_cache, reduce

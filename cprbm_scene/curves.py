@@ -20,8 +20,6 @@ Arc length: S(w), with S' = |q'|, is a sum of Gauss-Legendre integrals over pane
 the panels' ends is stationary.  Newton's method, started by linear interpolation in a panel, inverts u = S(w)/S(1).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import cached_property, lru_cache
 from itertools import pairwise

@@ -16,8 +16,6 @@ A field states the unit as metadata, ``Annotated[float, Measured(Unit(length=1))
 number and then converts the number by the :class:`Reading` in pydantic's context.  Without a context numbers are in SI.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping

@@ -24,8 +24,6 @@ space of B contains the motions without bending: no force resists them.  A load 
 motion that no guide and no other drive holds.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Container, Iterator, Mapping, Sequence
 from math import dist

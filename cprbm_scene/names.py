@@ -1,7 +1,5 @@
 """Names of a scene, unique and known to every reference; probes, claims and stages that fit the named parts."""
 
-from __future__ import annotations
-
 from bisect import bisect
 from collections.abc import Collection, Container, Iterator, Mapping
 

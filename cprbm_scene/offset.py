@@ -3,8 +3,6 @@
 The question is a record beside :class:`~cprbm_scene.statement.Scene`; a file says ``question = "offset"``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Annotated, Literal
 

@@ -7,8 +7,6 @@ Bounds are on dimensionless numbers, with thickness t, arc length L and curvatur
 * values of a size within a factor of 1e5, at places at least 1e-6 of the length apart.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise

@@ -3,8 +3,6 @@
 Stations have the unit of the stepped load or drive, values of claims the unit of the probe's quantity.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from math import isclose

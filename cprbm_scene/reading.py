@@ -4,8 +4,6 @@ The JSON schema of a scene file follows from the records: editors complete keys 
 between records need the reader.
 """
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Iterator, Mapping

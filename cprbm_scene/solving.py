@@ -21,8 +21,6 @@ threads.  Without threadpoolctl BLAS keeps the threads of the process; the progr
 start (:mod:`comparisons.threads`).
 """
 
-from __future__ import annotations
-
 import logging
 import math
 import sys
