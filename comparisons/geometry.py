@@ -87,7 +87,7 @@ def edge_places(contact: RigidEdge, reach: float, count: int) -> Array:
             n = np.array(contact.normal) / np.hypot(*contact.normal)
             return np.array(contact.point) + np.outer([-reach, reach], [-n[1], n[0]])
         case FunctionContact() | SplineContact() | EllipseContact():
-            return shape_of(contact.curve).point(np.linspace(0.0, 1.0, count))
+            return shape_of(contact).point(np.linspace(0.0, 1.0, count))
         case _:
             assert_never(contact)
 

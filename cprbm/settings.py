@@ -10,7 +10,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.freedoms import FREEDOMS, Freedoms, unsupported
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.requirements import Requirement, refuse
+from cprbm_scene.solving import Requirement, refuse
 
 FEWEST_LINKS = 2
 

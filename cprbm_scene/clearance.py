@@ -26,17 +26,14 @@ A place is behind a rigid line if the nearest place of the line is no end of the
 line's normal towards the free side.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import product
 from math import dist
-from typing import NamedTuple
 
 import numpy as np
 
-from cprbm_scene.contact_records import measures
+from cprbm_scene.contact_records import Rigid, measures
 from cprbm_scene.curve_records import MEETING, SHORTEST, shape_of
 from cprbm_scene.curves import Array, Curve, least, unit_vector
 from cprbm_scene.mistakes import Mistake, broken, written_place
@@ -52,7 +49,6 @@ from cprbm_scene.statement import (
     RigidContact,
     Scene,
     Spline,
-    SplineContact,
     WeldedEnd,
 )
 
@@ -68,11 +64,9 @@ Of other beams so much may overlap beside ends that are welded side by side to o
 CROSSING_ANGLE = 1e-3
 """Angle, rad, below which two lines that meet are tangent."""
 JOINED = 5.0
-"""Mean thicknesses beside a shared end in which beams overlap by their nature."""
+"""Thicknesses along a beam beside a shared end, or between neighbours, in which beams overlap by their nature."""
 SIDE_BY_SIDE = 2.0
 """Mean thicknesses between ends that lie side by side on one body."""
-NEIGHBOURS = 5.0
-"""Thicknesses along a beam between places that are no neighbours."""
 WHOLE: Range = (0.0, 1.0)
 _SAMPLES = 1001
 _FEET = 8
@@ -81,29 +75,32 @@ _SLOPE = 1e-7
 """Half of the stretch of u over which the slope of a thickness is taken."""
 
 
-class Gap(NamedTuple):
-    """Least ``gap``, m, negative for an overlap, with the places ``u1`` and ``u2`` on both beams."""
-
-    gap: float
-    u1: float
-    u2: float
-
-
 def _half(beam: Beam, u: Array, *, thick: bool) -> Array:
     return 0.5 * beam.thickness_at(u) if thick else np.zeros(len(u))
 
 
 @lru_cache(maxsize=512)
-def beam_gap(first: Beam, second: Beam, range1: Range = WHOLE, range2: Range = WHOLE, *, thick: bool = True) -> Gap:
-    """Least gap of two beams within ranges of u; a gap far above the samples' distance is not refined."""
+def beam_gap(
+    first: Beam, second: Beam, range1: Range = WHOLE, range2: Range = WHOLE, *, thick: bool = True
+) -> tuple[float, float, float]:
+    """Least gap of two beams within ranges of u, m, and the places u on both beams.
+
+    The gap is negative for an overlap, and infinite for an empty range; a gap far above the samples' distance is not
+    refined.
+    """
     from scipy.spatial import cKDTree  # scenes without contact of beams need no SciPy
 
+    if range1[0] >= range1[1] or range2[0] >= range2[1]:
+        return np.inf, 0.0, 0.0
     one, two = shape_of(first.curve), shape_of(second.curve)
-    samples, kinks = np.union1d(np.linspace(*range1, _SAMPLES), _kinks(first, range1)), _kinks(second, range2)
-    known = np.union1d(np.linspace(*range2, _SAMPLES), kinks)
-    tree = cKDTree(two.point(known))
+    samples, known = (
+        np.union1d(np.linspace(*span, _SAMPLES), np.clip(beam.knots, *span))
+        for beam, span in ((first, range1), (second, range2))
+    )
+    tree, kinks = cKDTree(two.point(known)), second.knots[(second.knots > range2[0]) & (second.knots < range2[1])]
 
-    def foot(u: Array) -> Array:
+    def nearest(u: Array) -> tuple[Array, Array]:
+        """Gaps at places of the first beam, and the places of the second beam."""
         p = one.point(u)
         v = known[tree.query(p)[1]]
         for _ in range(_FEET):
@@ -114,21 +111,13 @@ def beam_gap(first: Beam, second: Beam, range1: Range = WHOLE, range2: Range = W
                 step += np.hypot(*away.T) * steeper / (4.0 * _SLOPE * two.length)
             v = np.clip(v + step / two.length, *range2)
         places = np.vstack((v, np.tile(kinks[:, None], len(u))))
-        gaps = [np.hypot(*(p - two.point(v)).T) - _half(second, v, thick=thick) for v in places]
-        return np.asarray(places[np.argmin(gaps, axis=0), np.arange(len(u))])
+        gaps = np.array([np.hypot(*(p - two.point(v)).T) - _half(second, v, thick=thick) for v in places])
+        chosen = np.argmin(gaps, axis=0), np.arange(len(u))
+        return gaps[chosen] - _half(first, u, thick=thick), places[chosen]
 
-    def gap(u: Array) -> Array:
-        v = foot(u)
-        return np.asarray(
-            np.hypot(*(one.point(u) - two.point(v)).T) - _half(first, u, thick=thick) - _half(second, v, thick=thick)
-        )
-
-    value, place = least(gap, samples, refined_below=2.0 * (one.length + two.length) / _SAMPLES)
-    return Gap(value, place, float(foot(np.array([place]))[0]))
-
-
-def _kinks(beam: Beam, span: Range) -> Array:
-    return beam.knots[(beam.knots > span[0]) & (beam.knots < span[1])]
+    bound = 2.0 * (one.length + two.length) / _SAMPLES
+    value, place = least(lambda u: nearest(u)[0], samples, refined_below=bound)
+    return value, place, float(nearest(np.array([place]))[1][0])
 
 
 def wrong_clearance(scene: Scene) -> Iterator[Mistake]:
@@ -149,18 +138,13 @@ def overlap_at_rest(scene: Scene, contact: BeamContact) -> float:
     Beside ends welded side by side to the same body an overlap up to :data:`TOUCHING` is left out.  Solvers subtract
     the overlap from the distance at which the beams touch.
     """
-    first, second = (scene.beams[beam] for beam in contact.between)
+    first, second = beams = [scene.beams[beam] for beam in contact.between]
     mean, largest = 0.5 * (first.thinnest + second.thinnest), 0.5 * (first.thickest + second.thickest)
-    ranges = _apart_from_shared(first, second, JOINED * largest)
-    depth = -beam_gap(first, second, *ranges).gap if contact.thick and _left(ranges) else 0.0
+    depth = -beam_gap(first, second, *_apart(scene, beams, JOINED * largest))[0] if contact.thick else 0.0
     if OVERLAP * mean < depth <= TOUCHING * mean:
-        beside = _apart_from_held(scene, (first, second), largest, ranges)
-        depth = -beam_gap(first, second, *beside).gap if _left(beside) else 0.0
+        beside = _apart(scene, beams, JOINED * largest, SIDE_BY_SIDE * largest)
+        depth = -beam_gap(first, second, *beside)[0]
     return depth if depth > OVERLAP * mean else 0.0
-
-
-def _left(ranges: list[Range]) -> bool:
-    return all(low < high for low, high in ranges)
 
 
 def _too_deep(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]:
@@ -181,50 +165,39 @@ def _too_deep(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]
 
 def _crossing(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]:
     """Beams as lines that cross."""
-    first, second = (scene.beams[beam] for beam in contact.between)
-    shapes = shape_of(first.curve), shape_of(second.curve)
+    place, (first, second) = crossing(scene, *contact.between), contact.between
+    found = f"{first!r} and {second!r} that cross at the start, at {place} m"
+    return broken(place and Mistake(key, found, "neutral lines that touch or are apart"))
+
+
+def crossing(scene: Scene, *names: str) -> str:
+    """Place at which the neutral lines of two beams cross, m; empty for beams that touch or are apart."""
+    beams = [scene.beams[name] for name in names]
+    shapes = [shape_of(beam.curve) for beam in beams]
     shortest = min(shape.length for shape in shapes)
-    ranges = _apart_from_shared(first, second, CROSSING_ANGLE * shortest)
-    if not _left(ranges):
-        return iter(())
-    gap, *places = beam_gap(first, second, *ranges, thick=False)
+    gap, *places = beam_gap(*beams, *_apart(scene, beams, CROSSING_ANGLE * shortest), thick=False)
     t1, t2 = (shape.tangent(np.array([u]))[0] for shape, u in zip(shapes, places, strict=True))
-    return broken(
+    crosses = (
         gap <= MEETING * shortest
         and all(1e-6 < u < 1.0 - 1e-6 for u in places)
         and abs(t1[0] * t2[1] - t1[1] * t2[0]) > CROSSING_ANGLE
-        and Mistake(
-            key,
-            f"{contact.between[0]!r} and {contact.between[1]!r} that cross at the start, at "
-            f"{written_place(shapes[0].point(np.array(places[:1]))[0])} m",
-            "neutral lines that touch or are apart",
-        )
     )
+    return written_place(shapes[0].point(np.array(places[:1]))[0]) if crosses else ""
 
 
-def _apart_from_shared(first: Beam, second: Beam, left_out: float) -> list[Range]:
-    """Ranges of u without ``left_out`` (m) beside shared ends; an empty range if nothing is left."""
-    ends = [(beam.curve.start, beam.curve.end) for beam in (first, second)]
-    lengths = [shape_of(beam.curve).length for beam in (first, second)]
-    shared = [
-        [any(dist(place, other) <= MEETING * max(lengths) for other in ends[1 - i]) for place in ends[i]]
-        for i in range(2)
-    ]
-    return [
-        (left_out / length if start else 0.0, 1.0 - left_out / length if end else 1.0)
-        for length, (start, end) in zip(lengths, shared, strict=True)
-    ]
+def _apart(scene: Scene, beams: Sequence[Beam], left_out: float, near: float = 0.0) -> list[Range]:
+    """Ranges of u of two beams without ``left_out`` (m) beside ends at the same place.
 
-
-def _apart_from_held(scene: Scene, beams: tuple[Beam, Beam], mean: float, ranges: list[Range]) -> list[Range]:
-    """The ranges of u without stretches beside ends welded side by side to the same body."""
-    cut, owners = list(ranges), scene.owners
+    Ends that are welded to the same body, up to ``near`` (m) from each other, count as such ends.
+    """
+    lengths = [shape_of(beam.curve).length for beam in beams]
+    cut, owners, meeting = [WHOLE, WHOLE], scene.owners, MEETING * max(lengths)
     for ends in product(*(beam.ends for beam in beams)):
-        bodies = [owners[joint.point] for _, joint, _ in ends if isinstance(joint, WeldedEnd)]
-        if len(bodies) == len(ends) and len(set(bodies)) == 1 and dist(ends[0][2], ends[1][2]) <= SIDE_BY_SIDE * mean:
-            for i, (beam, (side, _, _)) in enumerate(zip(beams, ends, strict=True)):
-                share = JOINED * mean / shape_of(beam.curve).length
-                low, high = (share, 1.0) if side == "start" else (0.0, 1.0 - share)
+        bodies = {owners[joint.point] if isinstance(joint, WeldedEnd) else joint for _, joint, _ in ends}
+        welded = len(bodies) == 1 and isinstance(ends[0][1], WeldedEnd)
+        if dist(ends[0][2], ends[1][2]) <= (max(meeting, near) if welded else meeting):
+            for i, (length, (side, _, _)) in enumerate(zip(lengths, ends, strict=True)):
+                low, high = (left_out / length, 1.0) if side == "start" else (0.0, 1.0 - left_out / length)
                 cut[i] = max(cut[i][0], low), min(cut[i][1], high)
     return cut
 
@@ -236,7 +209,7 @@ def _itself(key: str, beam: Beam) -> Iterator[Mistake]:
     shape, u = shape_of(beam.curve), np.linspace(*WHOLE, 3 * _SAMPLES // 2)
     p, half, step = shape.point(u), _half(beam, u, thick=True), 2.0 / (len(u) - 1)
     pairs = cKDTree(p).query_pairs(beam.thickest + step * shape.length, output_type="ndarray")
-    i, j = pairs[(u[pairs[:, 1]] - u[pairs[:, 0]]) * shape.length > NEIGHBOURS * beam.thickest].T
+    i, j = pairs[(u[pairs[:, 1]] - u[pairs[:, 0]]) * shape.length > JOINED * beam.thickest].T
     if not len(i):
         return iter(())
     k = int(np.argmin(np.hypot(*(p[i] - p[j]).T) - half[i] - half[j]))
@@ -254,14 +227,14 @@ def _itself(key: str, beam: Beam) -> Iterator[Mistake]:
     )
 
 
-def _rigid(scene: Scene, key: str, contact: RigidContact) -> Iterator[Mistake]:
+def _rigid(scene: Scene, key: str, contact: Rigid) -> Iterator[Mistake]:
     """A shape out of proportion to the beam, or a beam that overlaps the shape or lies behind the edge."""
     beam, circle = scene.beams[contact.beam], isinstance(contact, CircleContact)
     shape = shape_of(beam.curve)
     if mistakes := list(_proportions(key, contact, shape.length)):
         return iter(mistakes[:1])
-    away, samples = distance_from(contact), np.union1d(np.linspace(*WHOLE, 2 * _SAMPLES - 1), beam.knots)
-    depth = -least(lambda u: np.asarray(away(shape.point(u)) - _half(beam, u, thick=contact.thick)), samples)[0]
+    samples = np.union1d(np.linspace(*WHOLE, 2 * _SAMPLES - 1), beam.knots)
+    depth = -least(lambda u: distance(contact, shape.point(u)) - _half(beam, u, thick=contact.thick), samples)[0]
     measure, of = (beam.thinnest, "its thickness") if contact.thick else (shape.length, "its length")
     own = scene.bodies[contact.body].points
     held = not circle and any(joint.point in own for _, joint, _ in beam.ends)
@@ -277,7 +250,7 @@ def _rigid(scene: Scene, key: str, contact: RigidContact) -> Iterator[Mistake]:
     )
 
 
-def _proportions(key: str, contact: RigidContact, length: float) -> Iterator[Mistake]:
+def _proportions(key: str, contact: Rigid, length: float) -> Iterator[Mistake]:
     """Mistakes of sizes and coordinates beside the beam's ``length``, m."""
     places, sizes = measures(contact)
     largest = max(abs(coordinate) for place in places for coordinate in place)
@@ -305,43 +278,37 @@ _ON_EDGE = 257
 _STEPS = 20
 
 
-def distance_from(contact: RigidContact) -> Callable[[Array], Array]:
-    """The distance D (k,), m, as a function of places (k, 2), m."""
-    sign = 1.0 if getattr(contact, "side", "") in ("outside", "left") else -1.0
+def distance(contact: Rigid, p: Array) -> Array:
+    """The distances D (k,), m, of places ``p`` (k, 2), m, from a rigid shape."""
+    sign = 1.0 if getattr(contact, "side", "") in ("outside", "left", "above") else -1.0
     match contact:
         case CircleContact():
-            return lambda p: np.asarray(sign * (np.hypot(*(p - np.array(contact.center)).T) - contact.radius))
+            return np.asarray(sign * (np.hypot(*(p - np.array(contact.center)).T) - contact.radius))
         case LineContact():
-            return lambda p: _from_line(np.array(contact.points), sign, p, closed=contact.closed)
+            return _from_line(np.array(contact.points), sign, p, closed=contact.closed)
         case HalfPlaneContact():
-            return lambda p: np.asarray((p - np.array(contact.point)) @ unit_vector(contact.normal))
-        case EllipseContact():
-            # the curve runs counter-clockwise, with the inside on the left
-            return lambda p: _from_curve(shape_of(contact.curve), -sign, p, closed=True)
+            return np.asarray((p - np.array(contact.point)) @ unit_vector(contact.normal))
         case FunctionContact():
-            upwards = (contact.side == "above") == (contact.range[0] < contact.range[1])
-            sign = 1.0 if upwards == (contact.axis == "x") else -1.0
-    assert isinstance(contact, FunctionContact | SplineContact)
-    return lambda p: _from_curve(shape_of(contact.curve), sign, p, closed=False)
+            sign *= 1.0 if (contact.range[0] < contact.range[1]) == (contact.axis == "x") else -1.0
+        case EllipseContact():
+            sign = -sign  # the curve runs counter-clockwise, with the inside on the left
+    return _from_curve(shape_of(contact), sign, p, closed=isinstance(contact, EllipseContact))
 
 
 def _from_line(points: Array, sign: float, p: Array, *, closed: bool) -> Array:
     along = np.diff(points, axis=0)
     length = np.hypot(*along.T)
     tau = along / length[:, None]
-    n = sign * np.column_stack((-tau[:, 1], tau[:, 0]))
     r = p[:, None, :] - points[None, :-1]
     t = np.clip((r * tau).sum(axis=2), 0.0, length)
     away = r - t[:, :, None] * tau
-    nearest = np.hypot(away[:, :, 0], away[:, :, 1]).argmin(axis=1)
-    every = np.arange(len(p))
+    nearest, every = np.hypot(away[:, :, 0], away[:, :, 1]).argmin(axis=1), np.arange(len(p))
     away, t = away[every, nearest], t[every, nearest]
-    # at a corner the normals of both pieces decide the side
-    other = np.where(t <= 0.0, nearest - 1, np.where(t >= length[nearest], nearest + 1, nearest))
-    other = other % len(tau) if closed else other
-    inside = (other >= 0) & (other < len(tau))
-    towards = n[nearest] + n[np.clip(other, 0, len(tau) - 1)]
-    return np.asarray(np.where(inside & ((away * towards).sum(axis=1) < 0.0), -1.0, 1.0) * np.hypot(*away.T))
+    # at a corner the directions of both pieces decide the side; no place is behind an end of an open line
+    around = np.vstack((tau[-1:], tau, tau[:1])) if closed else np.pad(tau, ((1, 1), (0, 0)), constant_values=np.nan)
+    towards = tau[nearest] + around[nearest + 1 + (t >= length[nearest]) - (t <= 0.0)]
+    behind = sign * (towards[:, 0] * away[:, 1] - towards[:, 1] * away[:, 0]) < 0.0
+    return np.asarray(np.where(behind, -1.0, 1.0) * np.hypot(*away.T))
 
 
 def _from_curve(curve: Curve, sign: float, p: Array, *, closed: bool) -> Array:

@@ -1,34 +1,54 @@
-"""Records of contacts: two beams, a beam with itself, a beam with a rigid circle or edge."""
-
-from __future__ import annotations
+"""Records of stops and contacts: two beams, a beam with itself, a beam with a rigid circle or edge."""
 
 from collections.abc import Iterator
-from itertools import combinations, islice, pairwise
-from math import cos, dist, sin
+from itertools import islice, pairwise
+from math import dist, isnan, nan
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
 
-from cprbm_scene.curve_records import MOST_POINTS, Polynomial, Spline, SplinePoints, graph_rules, shape_of
+from cprbm_scene.curve_records import MOST_POINTS, Ellipse, Graph, Polynomial, SmoothLine, shape_of
 from cprbm_scene.curves import unit_vector
+from cprbm_scene.fields import Angle, Direction, Length, Name, Named, Of, Point, PositiveLength, Record
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
-from cprbm_scene.units import (
-    Angle,
-    Coefficients,
-    Direction,
-    Length,
-    Name,
-    Named,
-    Of,
-    Point,
-    PositiveLength,
-    Record,
-)
+from cprbm_scene.part_records import BeamName, BodyName, PointName
 
 BACKWARDS = 1e-3
 """1 + cos of the angle between two pieces of a line, below which the line turns back on itself: 2.6 degrees."""
+
+
+class Stop(Record):
+    """Limits of the angle between a pinned beam and the body at the pin.
+
+    The angle runs counter-clockwise from the line between the pin and ``towards``, another point of the same body, to
+    the direction of the beam away from the pin.  As drawn the angle lies in (−π, π].  The angle is continuous and
+    grows as the beam's ``end`` turns counter-clockwise against the body.  A reached limit holds by a moment, without
+    friction.
+    """
+
+    beam: BeamName
+    """Beam with a pinned end."""
+    end: Literal["start", "end"]
+    """Pinned end of the beam."""
+    towards: PointName
+    """Another point of the body at the pin."""
+    least: Angle | None = None
+    """Least angle."""
+    most: Angle | None = None
+    """Largest angle; a stop has at least one limit."""
+
+    def rules(self) -> Iterator[Mistake]:
+        """No limit, or limits in the wrong order."""
+        least, most = (nan if limit is None else limit for limit in (self.least, self.most))
+        return broken(
+            isnan(least) and isnan(most) and Mistake("", "neither 'least' nor 'most'", "at least one of the two, rad"),
+            least >= most
+            and Mistake(
+                "", f"least = {least:g} rad and most = {most:g} rad", "a least angle that is less than the most"
+            ),
+        )
 
 
 class Related(Record):
@@ -102,7 +122,7 @@ class BeamContact(Record):
 class _OneBeam(Record):
     """Contact of a single beam."""
 
-    beam: Annotated[Name, Of("beam")]
+    beam: BeamName
     """The beam of the contact."""
     thick: bool = True
     """Contact of edges, half of the thickness from the neutral line; otherwise of neutral lines."""
@@ -123,7 +143,7 @@ class SelfContact(_OneBeam):
 class RigidContact(_OneBeam):
     """Fields of all contacts of a beam with a rigid shape on a body, stated at the initial place."""
 
-    body: Annotated[Name, Of("body")]
+    body: BodyName
     """Body of the rigid shape."""
     paper: PaperRigid | None = None
     """Data for the formulation ``paper``."""
@@ -182,25 +202,21 @@ class LineContact(RigidContact):
                 for i, (a, b) in corners
             )
         )
-        for (i, first), (j, second) in combinations(enumerate(pieces), 2):
-            neighbours = j - i in ((1, len(pieces) - 1) if self.closed else (1,))
-            yield from broken(
-                not neighbours
-                and _crosses(first, second)
-                and _crosses(second, first)
-                and Mistake(
-                    "points",
-                    f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}",
-                    "a line that does not meet itself",
-                )
+        x, y = np.array(self.points).T
+        dx, dy = (np.diff(places)[:, None] for places in (x, y))
+        side = dx * (y - y[:-1, None]) - dy * (x - x[:-1, None])
+        # ends of a piece on different sides of the other piece, or on its line
+        apart = side[:, :-1] * side[:, 1:] > 0.0
+        meet = np.triu(~(apart | apart.T), k=2)
+        meet[0, -1] &= not self.closed
+        yield from (
+            Mistake(
+                "points",
+                f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}",
+                "a line that does not meet itself",
             )
-
-
-def _crosses(piece: tuple[Point, Point], other: tuple[Point, Point]) -> bool:
-    """True if the ends of ``other`` lie on different sides of the line of ``piece``, or on the line."""
-    (ax, ay), (bx, by) = piece
-    one, two = ((bx - ax) * (y - ay) - (by - ay) * (x - ax) for x, y in other)
-    return one * two <= 0.0
+            for i, j in np.argwhere(meet).tolist()
+        )
 
 
 class HalfPlaneContact(RigidContact):
@@ -213,111 +229,65 @@ class HalfPlaneContact(RigidContact):
     """Normal of the edge, towards the free side."""
 
 
-class FunctionContact(RigidContact):
+class FunctionContact(RigidContact, Graph):
     """Contact of a beam with the graph of a polynomial f.
 
     As with a :class:`LineContact`, the solid lies behind the edge and ends at the edge's ends.
     """
 
     kind: Literal["beam-function"]
-    axis: Literal["x", "y"]
-    """Variable of f: ``x`` for y = f(x), ``y`` for x = f(y)."""
-    coefficients: Coefficients
-    """Coefficients of f, lowest power first."""
-    range: tuple[Length, Length]
-    """Ends of the edge."""
     side: Literal["above", "below"]
     """Free side: at a coordinate above or below f."""
 
     @property
     def curve(self) -> Polynomial:
-        """The edge as a curve."""
-        return Polynomial.model_construct(
-            kind="polynomial", axis=self.axis, coefficients=self.coefficients, range=self.range
-        )
-
-    def rules(self) -> Iterator[Mistake]:
-        """Coefficients and ranges without a graph of finite slope."""
-        return islice(graph_rules(self.curve), 1)
+        """The edge as a neutral line."""
+        return Polynomial(kind="polynomial", axis=self.axis, coefficients=self.coefficients, range=self.range)
 
 
-class SplineContact(RigidContact):
+class SplineContact(RigidContact, SmoothLine):
     """Contact of a beam with a rigid edge along a spline.
 
     As with a :class:`LineContact`, the solid lies behind the edge and ends at the edge's ends.
     """
 
     kind: Literal["beam-spline"]
-    points: SplinePoints
-    """At least three points of the edge, or the path of a table with points."""
-    start_direction: Direction | None = None
-    """Tangent at the first point."""
-    end_direction: Direction | None = None
-    """Tangent at the last point."""
     side: Literal["left", "right"]
     """Free side, seen along the points."""
 
-    @property
-    def curve(self) -> Spline:
-        """The edge as a curve."""
-        return Spline.model_construct(
-            kind="spline",
-            points=self.points,
-            start_direction=self.start_direction,
-            end_direction=self.end_direction,
-        )
 
-    def rules(self) -> Iterator[Mistake]:
-        """Mistakes of the spline."""
-        return self.curve.rules()
-
-
-class EllipseContact(RigidContact):
+class EllipseContact(RigidContact, Ellipse):
     """Contact of a beam with a rigid ellipse, from outside or inside."""
 
     kind: Literal["beam-ellipse"]
-    center: Point
-    """Center at the initial place."""
-    semi_axes: tuple[PositiveLength, PositiveLength]
-    """Semi-axes of the ellipse."""
-    angle: Angle = 0.0
-    """Angle of the first axis, counter-clockwise from x."""
     side: Literal["outside", "inside"] = "outside"
     """Side of the beam."""
-
-    @property
-    def curve(self) -> Spline:
-        """The edge as a closed curve, counter-clockwise, within a·(2π/512)⁴/384 = 6e-11 a of the ellipse."""
-        turn, c, s = np.linspace(0.0, 2.0 * np.pi, 513), cos(self.angle), sin(self.angle)
-        x, y = self.semi_axes[0] * np.cos(turn), self.semi_axes[1] * np.sin(turn)
-        places = np.array(self.center) + np.column_stack((x * c - y * s, x * s + y * c))
-        points, end = tuple((x, y) for x, y in places.tolist()), (-s, c)
-        return Spline.model_construct(kind="spline", points=points, start_direction=end, end_direction=end)
-
-
-def measures(contact: RigidContact) -> tuple[tuple[Point, ...], list[tuple[str, float]]]:
-    """Places of a rigid shape, the first on the shape or at its center, and sizes by their keys, m."""
-    match contact:
-        case CircleContact(center=center, radius=radius):
-            return (center,), [("radius", radius)]
-        case EllipseContact(center=center, curve=curve):
-            return (center, curve.start), [("semi_axes", shape_of(curve).length)]
-        case LineContact(points=points):
-            return points, [(f"points[{i}]", dist(*ends)) for i, ends in enumerate(pairwise(points), start=1)]
-        case FunctionContact(curve=curve) | SplineContact(curve=curve):
-            return (curve.start, curve.end), [
-                ("range" if isinstance(contact, FunctionContact) else "points", shape_of(curve).length)
-            ]
-        case HalfPlaneContact(point=point):
-            return (point,), []
-    raise TypeError(type(contact))
 
 
 EdgeContact = LineContact | HalfPlaneContact | FunctionContact
 """Contacts with edges on which a beam may lie up to its own pin; the edge then holds the pin like a stop."""
 
+Rigid = CircleContact | EdgeContact | SplineContact | EllipseContact
+
+
+def measures(contact: Rigid) -> tuple[tuple[Point, ...], list[tuple[str, float]]]:
+    """Places of a rigid shape, the first on the shape or at its center, and sizes by their keys, m."""
+    match contact:
+        case CircleContact(center=center, radius=radius):
+            return (center,), [("radius", radius)]
+        case EllipseContact(center=center):
+            shape = shape_of(contact)
+            return (center, (shape.origin[0], shape.origin[1])), [("semi_axes", shape.length)]
+        case LineContact(points=points):
+            return points, [(f"points[{i}]", dist(*ends)) for i, ends in enumerate(pairwise(points), start=1)]
+        case FunctionContact() | SplineContact():
+            key = "range" if isinstance(contact, FunctionContact) else "points"
+            return (contact.start, contact.end), [(key, shape_of(contact).length)]
+        case HalfPlaneContact(point=point):
+            return (point,), []
+
 
 Contact = Annotated[
-    BeamContact | SelfContact | CircleContact | EdgeContact | SplineContact | EllipseContact,
+    BeamContact | SelfContact | Rigid,
     Field(discriminator="kind"),
 ]

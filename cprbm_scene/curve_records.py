@@ -8,22 +8,30 @@ Bounds are on dimensionless numbers:
   respect to the distance: at a lower speed the spline has a cusp.
 """
 
-from __future__ import annotations
-
 import operator
 from collections.abc import Iterator
 from functools import lru_cache, reduce
 from itertools import accumulate, islice, pairwise, repeat
-from math import dist, inf, isfinite
+from math import cos, dist, inf, isfinite, sin
 from typing import Annotated, Literal, cast
 
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
 
-from cprbm_scene.curves import Curve, circular_arc, graph, slowest, spline, steepest, straight_line
-from cprbm_scene.files import read_points
+from cprbm_scene.curves import Curve, circular_arc, graph, spline, steepest, straight_line
+from cprbm_scene.fields import (
+    OR_EXPRESSION,
+    Angle,
+    Coefficients,
+    Direction,
+    Length,
+    Point,
+    PositiveLength,
+    Reading,
+    Record,
+)
 from cprbm_scene.mistakes import Mistake, broken, written_place
-from cprbm_scene.units import OR_EXPRESSION, Coefficients, Direction, Length, Point, Reading, Record
+from cprbm_scene.units import read_points
 
 SHORTEST = 1e-6
 STEEPEST = 1e3
@@ -85,10 +93,9 @@ class Arc(_Curve):
     """Sense of rotation from start to end."""
 
 
-class Polynomial(_Curve):
+class Graph(Record):
     """Graph of a polynomial f, in either sense along its axis."""
 
-    kind: Literal["polynomial"]
     axis: Literal["x", "y"]
     """Variable of f: ``x`` for y = f(x), ``y`` for x = f(y)."""
     coefficients: Coefficients
@@ -110,16 +117,20 @@ class Polynomial(_Curve):
         value = reduce(lambda sum_, coefficient: sum_ * variable + coefficient, reversed(self.coefficients), 0.0)
         return (variable, value) if self.axis == "x" else (value, variable)
 
+    def rules(self) -> Iterator[Mistake]:
+        """The first mistake of coefficients and ranges without a graph of finite slope."""
+        return islice(_graph_rules(self), 1)
 
-class Spline(_Curve):
-    """Smooth line through points, from the first to the last.
 
-    x and y are cubic splines of t; t is zero at the first point and grows between points by their distance.  Tangent
-    and curvature are continuous.  At an end with a direction the derivative is the unit vector of the direction, in the
-    sense of the beam.  The spline of three points without directions is the parabola through the points.
-    """
+class Polynomial(_Curve, Graph):
+    """Graph of a polynomial f, in either sense along its axis."""
 
-    kind: Literal["spline"]
+    kind: Literal["polynomial"]
+
+
+class SmoothLine(_Curve):
+    """Smooth line through points."""
+
     points: SplinePoints
     """At least three points of the line, or the path of a table with points."""
     start_direction: Direction | None = None
@@ -138,22 +149,52 @@ class Spline(_Curve):
         return self.points[-1]
 
 
+class Spline(SmoothLine):
+    """Smooth line through points, from the first to the last.
+
+    x and y are cubic splines of t; t is zero at the first point and grows between points by their distance.  Tangent
+    and curvature are continuous.  At an end with a direction the derivative is the unit vector of the direction, in the
+    sense of the beam.  The spline of three points without directions is the parabola through the points.
+    """
+
+    kind: Literal["spline"]
+
+
+class Ellipse(Record):
+    """Closed curve, counter-clockwise."""
+
+    center: Point
+    """Center at the initial place."""
+    semi_axes: tuple[PositiveLength, PositiveLength]
+    """Semi-axes of the ellipse."""
+    angle: Angle = 0.0
+    """Angle of the first axis, counter-clockwise from x."""
+
+
 NeutralLine = Line | Arc | Polynomial | Spline
 CurveField = Annotated[NeutralLine, Field(discriminator="kind")]
 
 
 @lru_cache(maxsize=256)
-def shape_of(curve: NeutralLine) -> Curve:
-    """Geometry of a curve by fractions of the arc length; curves without mistakes have a geometry."""
+def shape_of(curve: NeutralLine | Graph | SmoothLine | Ellipse) -> Curve:
+    """Geometry of a curve by fractions of the arc length; curves without mistakes have a geometry.
+
+    An ellipse is a spline through 513 points, within a·(2π/512)⁴/384 = 6e-11 a of the ellipse.
+    """
     match curve:
         case Line():
             return straight_line(curve.start, curve.end)
         case Arc():
             return circular_arc(curve.center, curve.start, curve.end, clockwise=curve.direction == "clockwise")
-        case Polynomial():
+        case Graph():
             return graph(curve.coefficients, *curve.range, along=int(curve.axis == "y"))
-        case Spline():
+        case SmoothLine():
             return spline(curve.points, (curve.start_direction, curve.end_direction))
+        case Ellipse():
+            turn, c, s = np.linspace(0.0, 2.0 * np.pi, 513), cos(curve.angle), sin(curve.angle)
+            x, y = curve.semi_axes[0] * np.cos(turn), curve.semi_axes[1] * np.sin(turn)
+            places = np.array(curve.center) + np.column_stack((x * c - y * s, x * s + y * c))
+            return spline([(x, y) for x, y in places.tolist()], ((-s, c), (-s, c)))
 
 
 def with_half_waves(curve: NeutralLine, amplitude: float, half_waves: int) -> Spline:
@@ -181,10 +222,10 @@ def with_half_waves(curve: NeutralLine, amplitude: float, half_waves: int) -> Sp
     )
 
 
-def _curve_rules(curve: NeutralLine) -> Iterator[Mistake]:
+def _curve_rules(curve: NeutralLine | SmoothLine) -> Iterator[Mistake]:
     if isinstance(curve, Polynomial):
-        yield from graph_rules(curve)
-    if isinstance(curve, Spline):
+        yield from _graph_rules(curve)
+    if isinstance(curve, SmoothLine):
         yield from _spline_rules(curve)
     radii = [dist(end, curve.center) for end in (curve.start, curve.end)] if isinstance(curve, Arc) else [1.0, 1.0]
     yield from broken(
@@ -218,7 +259,7 @@ def _curve_rules(curve: NeutralLine) -> Iterator[Mistake]:
     )
 
 
-def graph_rules(curve: Polynomial) -> Iterator[Mistake]:
+def _graph_rules(curve: Graph) -> Iterator[Mistake]:
     """Mistakes of a polynomial that leave no graph with a finite slope; a rule needs the rules before."""
     (first, last), count, axis = curve.range, len(curve.coefficients), "xy".index(curve.axis)
     yield from broken(
@@ -238,14 +279,14 @@ def graph_rules(curve: Polynomial) -> Iterator[Mistake]:
     )
 
 
-def _largest_term(curve: Polynomial) -> float:
+def _largest_term(curve: Graph) -> float:
     """Largest term |c_k v^k| of f in the range, m; not finite beyond the range of floating-point numbers."""
     variable = max(abs(v) for v in curve.range)
     powers = accumulate(repeat(variable, len(curve.coefficients) - 1), operator.mul, initial=1.0)
     return max(abs(c) * power if c else 0.0 for c, power in zip(curve.coefficients, powers, strict=True))
 
 
-def _spline_rules(curve: Spline) -> Iterator[Mistake]:
+def _spline_rules(curve: SmoothLine) -> Iterator[Mistake]:
     count, chords = len(curve.points), [dist(*pair) for pair in pairwise(curve.points)]
     whole = sum(chords)
     yield from broken(
@@ -260,12 +301,15 @@ def _spline_rules(curve: Spline) -> Iterator[Mistake]:
             for i, chord in enumerate(chords, start=1)
         ),
     )
-    speed, place = slowest(shape_of(curve))
+    shape = shape_of(curve)
+    # a pure number, zero at a cusp
+    speed = shape.speed(shape.samples)
     yield from broken(
-        not speed >= SLOWEST
+        not np.min(speed) >= SLOWEST
         and Mistake(
             "points",
-            f"points through which a smooth line has to turn back on the spot, near {written_place(place)} m",
+            "points through which a smooth line has to turn back on the spot, near "
+            f"{written_place(shape.place(shape.samples[[np.argmin(speed)]])[0])} m",
             "points (and directions) that a smooth line follows; more of them where it turns sharply",
         )
     )

@@ -20,8 +20,6 @@ Arc length: S(w), with S' = |q'|, is a sum of Gauss-Legendre integrals over pane
 the panels' ends is stationary.  Newton's method, started by linear interpolation in a panel, inverts u = S(w)/S(1).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import cached_property, lru_cache
 from itertools import pairwise
@@ -74,7 +72,7 @@ class Curve:
         panels: Array | None = None,
         samples: Array | Sequence[float] = (0.0, 1.0),
     ) -> None:
-        self._origin, self._size, self._q = np.array(origin), size, q
+        self.origin, self._size, self._q = np.array(origin), size, q
         self._panels, self.samples = panels, np.asarray(samples)
         self._inverted = lru_cache(maxsize=_REMEMBERED)(self._inverse)
 
@@ -89,7 +87,7 @@ class Curve:
 
     def place(self, w: Array) -> Array:
         """Points (n, 2), m, at parameters ``w`` (n,)."""
-        return np.asarray(self._origin + self._size * self._q(w, 0))
+        return np.asarray(self.origin + self._size * self._q(w, 0))
 
     @cached_property
     def length(self) -> float:
@@ -226,12 +224,6 @@ def spline(points: Sequence[Point], directions: tuple[Point | None, Point | None
     q = CubicSpline(w, (np.array(points) - np.array(points[0])) / size, bc_type=ends)
     of_piece = max(_FEWEST_OF_PIECE, min(_MOST_OF_PIECE, _MOST_OF_SPLINE // (len(w) - 1)))
     return Curve(points[0], size, q, _divided(w, _PANELS_OF_PIECE), _divided(w, of_piece - 1))
-
-
-def slowest(curve: Curve) -> tuple[float, Array]:
-    """The least |q'| of a spline, a pure number, zero at a cusp, and the place (2,), m."""
-    speed = curve.speed(curve.samples)
-    return float(np.min(speed)), curve.place(curve.samples[[np.argmin(speed)]])[0]
 
 
 def _divided(w: Array, parts: int) -> Array:

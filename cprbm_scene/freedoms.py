@@ -24,8 +24,6 @@ space of B contains the motions without bending: no force resists them.  A load 
 motion that no guide and no other drive holds.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Container, Iterator, Mapping, Sequence
 from math import dist
@@ -41,6 +39,7 @@ from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,
     BodyLoad,
+    Contact,
     Drive,
     FixedBody,
     Force,
@@ -74,9 +73,11 @@ class Freedoms:
     def __init__(self, scene: Scene) -> None:
         self.scene, self.owners = scene, scene.owners
         self.places = {point: np.array(scene.bodies[name].points[point]) for point, name in self.owners.items()}
-        self.origin = np.array(next(iter(next(iter(scene.bodies.values())).points.values())))
-        self.extent = max(float(np.hypot(*(place - self.origin))) for place in self.places.values()) or 1.0
-        self.parts = [*(f"bodies.{name}" for name in scene.bodies), *(f"beams.{name}" for name in scene.beams)]
+        self.origin = next(iter(self.places.values()), np.zeros(2))
+        self.extent = (
+            max((float(np.hypot(*(place - self.origin))) for place in self.places.values()), default=0.0) or 1.0
+        )
+        self.parts = [*scene.bodies, *scene.beams]
 
     def along(self, point: str, direction: Point) -> Row:
         """Row of the displacement of a ``point`` along a direction."""
@@ -111,14 +112,14 @@ class Freedoms:
     def constraints(self, drives: Container[str]) -> Iterator[tuple[str, Row]]:
         """Keys and wide rows of guides, pins and some ``drives``."""
         for name in self.scene.bodies:
-            yield from ((f"bodies.{name}", self.wide({f"bodies.{name}": row})) for row in self.guide(name))
+            yield from ((f"bodies.{name}", self.wide({name: row})) for row in self.guide(name))
         for name, pin in self.scene.pins.items():
             for axis in AXES:
-                one, other = ((f"bodies.{self.owners[point]}", self.along(point, axis)) for point in pin.points)
-                yield f"pins.{name}", self.wide({one[0]: one[1], other[0]: -other[1]})
+                one, other = (self.along(point, axis) for point in pin.points)
+                yield f"pins.{name}", self.wide({self.owners[pin.points[0]]: one, self.owners[pin.points[1]]: -other})
         for name, drive in self.scene.drives.items():
             if name in drives:
-                yield f"drives.{name}", self.wide({f"bodies.{self.owner(drive)}": self.row(drive)})
+                yield f"drives.{name}", self.wide({self.owner(drive): self.row(drive)})
 
     def joints(self) -> Iterator[Row]:
         """Wide rows of the beams' ends, with every beam as a rigid part."""
@@ -126,7 +127,7 @@ class Freedoms:
             if not isinstance(end, FreeEnd):
                 pinned = [self.along(end.point, axis) for axis in AXES]
                 for row in np.eye(3) if isinstance(end, WeldedEnd) else pinned:
-                    yield self.wide({f"beams.{name}": row, f"bodies.{self.owners[end.point]}": -row})
+                    yield self.wide({name: row, self.owners[end.point]: -row})
 
 
 def independent(rows: Sequence[Row]) -> list[bool]:
@@ -170,7 +171,7 @@ def wrong_mobility(scene: Scene) -> Iterator[Mistake]:
                 f"{_HELD[key.partition('.')[0]]} that guides, pins and drives hold already where it begins",
                 "as many pins and drives as there are motions to hold, each for one of its own",
             )
-    if not loose and (scene.pins or not (scene.contacts or scene.stops or scene.assembly is not None)):
+    if not loose and scene.assembly is None:
         yield from _loose(scene, freedoms)
 
 
@@ -222,9 +223,9 @@ def unsupported(scene: Scene, freedoms: Freedoms) -> Iterator[tuple[Mistake, set
     met |= {name: {freedoms.owners[point] for point in pin.points} for name, pin in scene.pins.items()}
     for name, body in scene.bodies.items():
         together, reached = connected({name}, met.values()), any(name in bodies for bodies in met.values())
-        rows = [row for each in together for row in freedoms.guide(each)]
-        rows += [freedoms.row(drive) for drive in drives if freedoms.owner(drive) in together]
-        if sum(independent(rows)) < FREEDOMS:
+        guides = [row for each in together for row in freedoms.guide(each)]
+        driven = [freedoms.row(drive) for drive in drives if freedoms.owner(drive) in together]
+        if sum(independent(guides + driven)) < FREEDOMS:
             yield (
                 Mistake(
                     f"bodies.{name}",
@@ -243,15 +244,24 @@ def _acted_on(scene: Scene, names: set[str]) -> bool:
     acting, owners = (*scene.loads.values(), *scene.drives.values()), scene.owners
     moved = {getattr(each, "body", getattr(each, "beam", None)) for each in acting}
     moved |= {owners.get(getattr(each, "point", "")) for each in acting}
-    touching = ({*contact.beams, getattr(contact, "body", contact.beams[0])} for contact in scene.contacts.values())
-    return bool(names & moved) or any(parts & names and parts - names for parts in touching)
+    return bool(names & moved) or any(
+        parts & names and parts - names for parts in map(_touching, scene.contacts.values())
+    )
+
+
+def _touching(contact: Contact) -> set[str]:
+    """Names of the beams and of the body of a contact."""
+    return {*contact.beams, getattr(contact, "body", contact.beams[0])}
 
 
 def _loose(scene: Scene, freedoms: Freedoms) -> Iterator[Mistake]:
-    """Bodies with a motion in the null space of B."""
+    """Bodies with a motion in the null space of B; of a scene without pins, contacts and stops may hold their parts."""
     drives = [name for name, drive in scene.drives.items() if scene.holds(drive, scene.stages[0].name)]
-    rows = [row for _, row in freedoms.constraints(drives)]
-    _, values, motions = np.linalg.svd(np.array([*rows, *freedoms.joints()]))
+    held = {name for contact in scene.contacts.values() for name in _touching(contact)}
+    held |= {name for stop in scene.stops.values() for name in (stop.beam, freedoms.owners[stop.towards])}
+    rows = (freedoms.wide({name: row}) for name in (() if scene.pins else held) for row in np.eye(3))
+    constraints = (row for _, row in freedoms.constraints(drives))
+    _, values, motions = np.linalg.svd(np.array([*rows, *constraints, *freedoms.joints()]))
     null_space = motions[np.count_nonzero(values > NEGLIGIBLE) :]
     for i, name in enumerate(scene.bodies):
         own = [motion for motion in null_space[:, 3 * i : 3 * i + 3] if np.abs(motion).max() > NEGLIGIBLE]
@@ -276,8 +286,6 @@ def _in_words(freedoms: Freedoms, motion: Row) -> str:
 
 def wrong_actions(scene: Scene) -> Iterator[Mistake]:
     """Loads and drives of fixed bodies or across guides, and motions with two drives or with a drive and a load."""
-    if not scene.bodies:
-        return
     freedoms, driven = Freedoms(scene), defaultdict[str, list[str]](list)
     drives = {f"drives.{name}": drive for name, drive in scene.drives.items()}
     loads = {f"loads.{name}": load for name, load in scene.loads.items() if isinstance(load, BodyLoad)}

@@ -1,7 +1,5 @@
 """Ends of beams and their points, assembly, stops: checks of the drawn places of joints."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import atan2, degrees, dist, inf, pi, tau
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from itertools import islice
-from typing import Any, get_args
+from typing import Any, NoReturn, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +52,16 @@ class Mistake:
     def __str__(self) -> str:
         where = ": ".join(part for part in (self.file, self.key) if part) or "scene"
         return f"{where}: found {self.found}; allowed: {self.allowed}"
+
+
+def mistake(found: str, allowed: str, key: str = "") -> SceneError:
+    """An error of a validator with both halves of a mistake's sentence, at a ``key`` below the validated field."""
+    return SceneError([Mistake(key, found, allowed)])
+
+
+def silent(*_: object) -> NoReturn:
+    """Raise a mistake without words, the consequence of another mistake: the record is left out of the scene."""
+    raise mistake("", "")
 
 
 def broken(*rules: object) -> Iterator[Mistake]:

@@ -1,10 +1,9 @@
 """Names of a scene, unique and known to every reference; probes, claims and stages that fit the named parts."""
 
-from __future__ import annotations
-
 from bisect import bisect
 from collections.abc import Collection, Container, Iterator, Mapping
 
+from cprbm_scene.fields import Of, Record
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import LISTED, Mistake, broken, unknown_name
 from cprbm_scene.statement import (
@@ -23,7 +22,6 @@ from cprbm_scene.statement import (
     SlidingBody,
     TurningBody,
 )
-from cprbm_scene.units import Of, Record
 
 RESERVED = "scene"
 """Name of the scene itself in a probe."""
@@ -276,12 +274,14 @@ def _beside(ascending: Mapping[str, list[float]], value: float) -> Iterator[tupl
 def _bearers(scene: Scene) -> dict[str, list[str]]:
     """Names of the parts of the scene with a quantity, by the values of ``_OF``."""
     fixed = {point for body in scene.bodies.values() if body.motion == "fixed" for point in body.points}
-    joined = [str(end.point) for beam in scene.beams.values() for _, end, _ in beam.ends]
-    joined += [point for pin in scene.pins.values() for point in pin.points]
-    supports = [point for point in joined if point in fixed]
-    moved = [body.about for body in scene.bodies.values() if isinstance(body, TurningBody)]
-    moved += [drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)]
-    moved += [name for name, body in scene.bodies.items() if isinstance(body, SlidingBody)]
+    joined = (str(end.point) for beam in scene.beams.values() for _, end, _ in beam.ends)
+    pinned = (point for pin in scene.pins.values() for point in pin.points)
+    supports = [point for point in (*joined, *pinned) if point in fixed]
+    moved = (
+        *(body.about for body in scene.bodies.values() if isinstance(body, TurningBody)),
+        *(drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)),
+        *(name for name, body in scene.bodies.items() if isinstance(body, SlidingBody)),
+    )
     turned = [drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive)]
     edges = [name for name, each in scene.contacts.items() if isinstance(each, EdgeContact) and _pinned(scene, each)]
     return {

@@ -3,8 +3,6 @@
 The question is a record beside :class:`~cprbm_scene.statement.Scene`; a file says ``question = "offset"``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Annotated, Literal
 
@@ -13,8 +11,8 @@ from pydantic import Field
 
 from cprbm_scene.curve_records import CurveField, shape_of
 from cprbm_scene.curves import SAMPLES
+from cprbm_scene.fields import Name, Named, Positive, PositiveLength, PositiveShare, Record, Text, Title
 from cprbm_scene.mistakes import Mistake, broken
-from cprbm_scene.units import Name, Named, Positive, PositiveLength, PositiveShare, Record, Text, Title
 
 FEWEST, MOST = 4, 200
 """Allowed numbers of springs."""

@@ -1,34 +1,170 @@
-"""Records of stages, probes and claims, with units by stepped loads and drives, and by quantities."""
+"""Records of the question: assembly, loads, drives, stages, probes and claims.
 
-from __future__ import annotations
+Stations have the unit of the stepped load or drive, values of claims the unit of the probe's quantity.
+"""
 
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from math import isclose
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal, cast
 
-from pydantic import Field, WithJsonSchema, model_validator
+from pydantic import Field, WithJsonSchema, create_model, model_validator
 
-from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, broken
-from cprbm_scene.units import (
-    ANGLE,
-    FORCE,
-    LENGTH,
-    MOMENT,
-    STRESS,
+from cprbm_scene.fields import (
+    Direction,
     Measured,
     Name,
+    Named,
     Of,
     Positive,
     PositiveShare,
     Reading,
     Record,
+    Share,
     Text,
-    Unit,
     Units,
-    mistake,
 )
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake, broken, mistake
+from cprbm_scene.part_records import BeamName, BodyName, PointName
+from cprbm_scene.units import ANGLE, FORCE, LENGTH, LINE_LOAD, MOMENT, STRESS, Unit
+
+SHORTEST_STRETCH = 1e-6
+"""Least length of a distributed load, of the beam's length."""
+
+
+class Assembly(Record):
+    """Motion of pinned ends, drawn apart from their points, to the points before the first stage.
+
+    Three parts, without other loads or drives: the moments grow while the ends are free; the ends move straight to
+    their points; the moments decrease to zero.  The moments select an assembled state among several.  Contacts act
+    throughout, stops as soon as the ends are at their points.
+    """
+
+    moments: Annotated[Named[Annotated[float, Measured(MOMENT)]], Of("beam")] = Field(default_factory=frozendict)
+    """Moments on pinned ends by the names of beams, counter-clockwise."""
+
+
+class Moment(Record):
+    """Moment on a body, counter-clockwise."""
+
+    unit: ClassVar[Unit] = MOMENT
+    kind: Literal["moment"]
+    body: BodyName
+    """Body under the moment, counter-clockwise."""
+
+
+class Force(Record):
+    """Dead force at a point of a body."""
+
+    unit: ClassVar[Unit] = FORCE
+    kind: Literal["force"]
+    point: PointName
+    """Point of a body under the force."""
+    direction: Direction
+    """Direction, constant while the part turns."""
+
+
+class BeamForce(Record):
+    """Dead force at a place of a beam."""
+
+    unit: ClassVar[Unit] = FORCE
+    kind: Literal["beam_force"]
+    beam: BeamName
+    """Beam under the load."""
+    at: Share
+    """Place, a fraction of the beam's arc length."""
+    direction: Direction
+    """Direction, constant while the part turns."""
+
+
+class BeamMoment(Record):
+    """Moment at a place of a beam, counter-clockwise."""
+
+    unit: ClassVar[Unit] = MOMENT
+    kind: Literal["beam_moment"]
+    beam: BeamName
+    """Beam under the load."""
+    at: Share
+    """Place, a fraction of the beam's arc length."""
+
+
+class DistributedLoad(Record):
+    """Dead load per length of a beam, constant along a part: a weight, not a pressure."""
+
+    unit: ClassVar[Unit] = LINE_LOAD
+    kind: Literal["distributed"]
+    beam: BeamName
+    """Beam under the load."""
+    direction: Direction
+    """Direction, constant while the part turns."""
+    along: tuple[Share, Share] = (0.0, 1.0)
+    """Loaded part of the beam, fractions of the arc length."""
+
+    def rules(self) -> Iterator[Mistake]:
+        """A stretch without length."""
+        begin, end = self.along
+        return broken(
+            end - begin < SHORTEST_STRETCH
+            and Mistake(
+                "along",
+                f"a stretch from {begin:.9g} to {end:.9g}",
+                "two fractions of the beam's length, the smaller one first",
+            )
+        )
+
+
+Load = Annotated[Moment | Force | BeamForce | BeamMoment | DistributedLoad, Field(discriminator="kind")]
+BodyLoad = Moment | Force
+
+
+_From = create_model(  # type: ignore[call-overload]
+    "_From",
+    __base__=Record,
+    **{
+        "from": (
+            Annotated[Name | None, Of("stage")],
+            Field(None, description="First stage of the drive: before this stage the motion is free."),
+        )
+    },
+)
+"""Field with a name that Python reserves."""
+
+
+class _Drive(_From):
+    """Prescribed motion, from the begin of the first stage, or of the stage ``from``: before that the motion is free.
+
+    From its stage on the drive holds the value that the motion has there, or goes on from it.
+    """
+
+    @property
+    def begins(self) -> str | None:
+        """Name of the stage before which the motion is free; None for a drive that holds from the start."""
+        return cast("str | None", getattr(self, "from"))
+
+
+class DisplacementDrive(_Drive):
+    """Prescribed displacement of a point of a body along a direction."""
+
+    unit: ClassVar[Unit] = LENGTH
+    kind: Literal["displacement"]
+    point: PointName
+    """Driven point of a body."""
+    direction: Direction
+    """Direction of the prescribed displacement; the point is free across it."""
+
+
+class RotationDrive(_Drive):
+    """Prescribed rotation of a body, counter-clockwise."""
+
+    unit: ClassVar[Unit] = ANGLE
+    kind: Literal["rotation"]
+    body: BodyName
+    """Body with a prescribed rotation, counter-clockwise."""
+
+
+Drive = Annotated[DisplacementDrive | RotationDrive, Field(discriminator="kind")]
+
 
 Quantity = Literal[
     "displacement",

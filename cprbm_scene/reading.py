@@ -4,9 +4,8 @@ The JSON schema of a scene file follows from the records: editors complete keys 
 between records need the reader.
 """
 
-from __future__ import annotations
-
 import re
+import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from difflib import get_close_matches
@@ -18,11 +17,11 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from cprbm_scene.clearance import wrong_clearance
-from cprbm_scene.files import toml_data
+from cprbm_scene.fields import Name, Named, Reading
 from cprbm_scene.freedoms import wrong_actions, wrong_mobility
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
-from cprbm_scene.mistakes import MOST, Mistake, SceneError, first_of, mistakes_of, unknown_name
+from cprbm_scene.mistakes import MOST, Mistake, SceneError, first_of, mistake, mistakes_of, unknown_name
 from cprbm_scene.names import (
     MECHANICAL,
     repeated_contacts,
@@ -34,9 +33,8 @@ from cprbm_scene.names import (
     wrong_stages,
 )
 from cprbm_scene.offset import OffsetQuestion
-from cprbm_scene.parameters import register
 from cprbm_scene.statement import Beam, Body, Material, Origin, Probe, Scene, Stage
-from cprbm_scene.units import Name, Named, Reading
+from cprbm_scene.units import text_of
 
 _BY_NAME = (repeated_names, unknown_names, repeated_contacts, wrong_paper, wrong_stages, wrong_probes, wrong_claims)
 _BY_PLACE = (
@@ -59,11 +57,36 @@ def mistakes_in(scene: Scene) -> Iterator[Mistake]:
     Checks of places need the units of all numbers.
     """
     checks = _BY_NAME if scene.lacks("length", "units") else (*_BY_NAME, *_BY_PLACE)
-    return (mistake for check in checks for mistake in check(scene) if mistake.found)
+    return (each for check in checks for each in check(scene) if each.found)
 
 
 Question = Scene | OffsetQuestion
 Asked = TypeVar("Asked", Scene, OffsetQuestion)
+
+DEEPEST = 32
+_KEY_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+"""
+_DEEP_KEY = re.compile(rf"(?<![\w-])(?:{_KEY_PART}){{{DEEPEST}}}", re.ASCII)
+"""A dotted key deeper than any scene's: the parser's time and memory grow with the square of the parts."""
+
+
+def toml_data(path: str | Path) -> dict[str, Any]:
+    """Plain data of a TOML file in UTF-8, with or without a byte-order mark.
+
+    Raises:
+        SceneError: the file cannot be read, is too large or too deep, or is no TOML.
+    """
+    readable = "a readable TOML file in UTF-8"
+    try:
+        text = text_of(path, "TOML", readable)
+        if not _DEEP_KEY.search(text):
+            return tomllib.loads(text)
+        wrong = mistake(f"a key of more than {DEEPEST} parts", "the keys of a scene")
+    except SceneError as error:
+        wrong = error
+    except (RecursionError, ValueError) as error:
+        # nested too deeply, or an integer with too many digits
+        wrong = mistake(f"text that is no TOML ({error})", readable)
+    raise SceneError([replace(each, file=str(path)) for each in wrong.mistakes])
 
 
 def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) -> Scene:
@@ -224,19 +247,19 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
         kind = Scene if all(key.startswith(_FIRST) for key in left_out) else PartialScene
         scene, mistakes = _validated(kind, draft.data, file, reading)
         if scene is not None:
-            scene._origin = Origin(left_out=left_out)
+            scene._origin = Origin(reading)
             mistakes = list(islice(unknown_names(scene, MECHANICAL), _AT_ONCE))
             found += () if mistakes else first_of(map(draft.of_file, mistakes_in(scene)))
         first = [each for each in mistakes if each.key.startswith(_FIRST)]
         mistakes = [draft.of_file(each) for each in first or mistakes]
         found += (each for each in mistakes if each.found)
-        for mistake in mistakes:
-            draft.leave_out(mistake.key)
+        for each in mistakes:
+            draft.leave_out(each.key)
         if left_out == draft.left_out:
             break
     if scene is None or found:
         raise SceneError([replace(each, file=file) for each in first_of(found)])
-    scene._origin = Origin(reading.units, settings, partial(scene_from, data, file=file))
+    scene._origin = Origin(reading, partial(scene_from, data, file=file))
     return scene
 
 
@@ -246,8 +269,7 @@ def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
     Raises:
         SceneError: the data are no valid question. The error names every mistake with its key.
     """
-    reading = Reading()
-    register(reading, {})
+    reading = Reading(parameters={})
     question, found = _validated(OffsetQuestion, data, file, reading)
     if question is None:
         raise SceneError([replace(each, file=file) for each in first_of(found)])

@@ -17,37 +17,6 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
-from cprbm_scene.beam_records import (
-    Beam,
-    BeamEnd,
-    FreeEnd,
-    Material,
-    PaperBeam,
-    PinnedEnd,
-    Profile,
-    Size,
-    WeldedEnd,
-)
-from cprbm_scene.body_records import (
-    Assembly,
-    BeamForce,
-    BeamMoment,
-    Body,
-    BodyLoad,
-    BodyPin,
-    DisplacementDrive,
-    DistributedLoad,
-    Drive,
-    FixedBody,
-    Force,
-    FreeBody,
-    Load,
-    Moment,
-    RotationDrive,
-    SlidingBody,
-    Stop,
-    TurningBody,
-)
 from cprbm_scene.contact_records import (
     BeamContact,
     CircleContact,
@@ -63,26 +32,63 @@ from cprbm_scene.contact_records import (
     RigidContact,
     SelfContact,
     SplineContact,
+    Stop,
     measures,
 )
 from cprbm_scene.curve_records import Arc, Line, NeutralLine, Polynomial, Spline
-from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, broken
-from cprbm_scene.parameters import Parameter, Tolerance, register
-from cprbm_scene.question_records import CRITICAL, STRESSES, Claim, Probe, Quantity, Stage
-from cprbm_scene.units import (
+from cprbm_scene.fields import (
     NAME,
     Name,
     Named,
     NamedByWords,
     Of,
+    Parameter,
     Point,
     PositiveShare,
     Reading,
     Record,
     Text,
     Title,
+    Tolerance,
     Units,
+)
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake, broken
+from cprbm_scene.part_records import (
+    Beam,
+    BeamEnd,
+    Body,
+    BodyPin,
+    FixedBody,
+    FreeBody,
+    FreeEnd,
+    Material,
+    PaperBeam,
+    PinnedEnd,
+    Profile,
+    Size,
+    SlidingBody,
+    TurningBody,
+    WeldedEnd,
+)
+from cprbm_scene.question_records import (
+    CRITICAL,
+    STRESSES,
+    Assembly,
+    BeamForce,
+    BeamMoment,
+    BodyLoad,
+    Claim,
+    DisplacementDrive,
+    DistributedLoad,
+    Drive,
+    Force,
+    Load,
+    Moment,
+    Probe,
+    Quantity,
+    RotationDrive,
+    Stage,
 )
 
 __all__ = [
@@ -155,15 +161,13 @@ MECHANISM = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Units of a scene's file, set parameters, and a reading with other parameters: no part of the question.
+    """Reading of a scene's file, and a reading with other parameters: no part of the question.
 
-    ``left_out`` are keys of parts with mistakes that a scene lacks while the reader checks the other parts.
+    ``left_out`` of the reading are keys of parts with mistakes that a scene lacks while the reader checks the others.
     """
 
-    units: Units = field(default=Units(), compare=False)
-    settings: Mapping[str, float | str] = field(default_factory=dict, compare=False)
+    reading: Reading = field(default_factory=Reading, compare=False)
     again: Callable[..., Scene] | None = field(default=None, compare=False)
-    left_out: frozenset[str] = field(default=frozenset(), compare=False)
 
 
 class Scene(Record):
@@ -239,7 +243,7 @@ class Scene(Record):
                 reading.units = units
                 return Units()
             case "parameters", Mapping() as parameters:
-                return register(reading, parameters)
+                return reading.register(parameters)
         parts = value if isinstance(value, Mapping) else {each.name: each for each in value}
         reading.parts[str(info.field_name)] = parts
         return value
@@ -278,7 +282,7 @@ class Scene(Record):
             >>> hinge.beams["beam1"].thickness
             0.0019
         """
-        again, settings = self._origin.again, self._origin.settings
+        again, settings = self._origin.again, self._origin.reading.settings
         if again is None or not self.parameters or again(parameters=settings) != self:
             raise ValueError("found a scene without parameters or altered after reading; allowed: a scene from a file")
         return again(parameters={**settings, **values})
@@ -290,11 +294,11 @@ class Scene(Record):
     @property
     def display_units(self) -> Units:
         """Units of the scene's file, for tables and figures; ``model_fields_set`` lists the stated ones."""
-        return self._origin.units
+        return self._origin.reading.units
 
     def left_out(self, *tables: str) -> list[str]:
         """Names, but for forbidden names, of the parts of ``tables`` with mistakes that the reader left out."""
-        keys = (key.partition(".") for key in sorted(self._origin.left_out))
+        keys = (key.partition(".") for key in sorted(self._origin.reading.left_out))
         return [
             name
             for table, _, name in keys
@@ -307,7 +311,7 @@ class Scene(Record):
 
     def whole(self, tables: Collection[str] = MECHANISM) -> bool:
         """False if the reader left out parts of the ``tables``."""
-        return not any(key.partition(".")[0] in tables for key in self._origin.left_out)
+        return not any(key.partition(".")[0] in tables for key in self._origin.reading.left_out)
 
     def limit(self, probe: Probe) -> float:
         """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""

@@ -1,183 +1,53 @@
-"""Fields of records: names, references, rules, and numbers with units that are converted where a file is read.
+"""Numbers of files: units, expressions with units, and points of tables of separated values.
 
-A reference to another part of the scene states the kind of the part, ``Annotated[Name, Of("beam")]``; a walk over the
-records finds all references (:mod:`cprbm_scene.names`).  The rules of a record yield the mistakes between
-its fields, with keys below the record's key; a walk over the records finds all mistakes (:mod:`cprbm_scene.reading`).
+An expression such as ``"= 50*sqrt(3) - t/2"`` is read by a white list of Python's syntax.  A value is a number in SI
+with its :class:`Unit`.  Literals, pi and results of sin, cos and tan have no unit (None): a sum gives them the file's
+unit of the other term, a key its own unit.  A ratio of two lengths is a pure number, no length.
 
-=============  ==================================================================
-a, b, c, d     powers of length, force, angle and stress in a number's unit
-u              size of the file's unit over the SI unit: 1/1000 of mm, π/180 of deg
-=============  ==================================================================
-
-A number x of a file is x·u_lengthᵃ·u_forceᵇ·u_angleᶜ·u_stressᵈ in SI, computed from the decimal digits of x and rounded
-once: 9.7 mm is 0.0097 m.  Only a file has units; a :class:`~cprbm_scene.statement.Scene` and every answer are in SI.
-
-A field states the unit as metadata, ``Annotated[float, Measured(Unit(length=1))]``.  The metadata validates the file's
-number and then converts the number by the :class:`Reading` in pydantic's context.  Without a context numbers are in SI.
+A table has a header of names and units, ``x [mm], y [mm]``, and may have further columns, blank lines and lines of
+comment that begin with ``#``.  Columns are separated by commas, semicolons or tabs; numbers have a decimal point.
 """
 
 from __future__ import annotations
 
+import ast
+import csv
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping
+import operator
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple, NoReturn, Self, TypeVar
-
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    GetCoreSchemaHandler,
-    GetJsonSchemaHandler,
-    ModelWrapValidatorHandler,
-    StringConstraints,
-    ValidationError,
-    ValidationInfo,
-    ValidatorFunctionWrapHandler,
-    model_validator,
-)
-from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+from typing import NamedTuple
 
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, SceneError, in_words
-
-T = TypeVar("T")
-
-_LETTERS = "A-Za-z_À-ÖØ-öø-ɏΑ-Ωα-ω"
-Word = Annotated[str, StringConstraints(pattern=f"^[{_LETTERS}][{_LETTERS}0-9-]*$", max_length=64)]
-"""Latin and Greek letters, digits, '_' and '-': the name of a parameter in an expression."""
-NAME = f"^[{_LETTERS}][{_LETTERS}0-9-]*( [{_LETTERS}0-9-]+)*$"
-"""Pattern of words with a single space between words: names are parts of keys, of file names and of options."""
-Name = Annotated[str, StringConstraints(pattern=NAME, max_length=64)]
-Text = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x08\x0b-\x1f\x7f-\x9f]*$")]
-"""Text without control characters, but for tabs and line ends."""
-Title = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
-"""Text of one line without control characters."""
-
-
-Named = Annotated[Mapping[Name, T], AfterValidator(frozendict)]
-NamedByWords = Annotated[Mapping[Word, T], AfterValidator(frozendict)]
-
-
-@dataclass(frozen=True, slots=True)
-class Of:
-    """Kind of the named part of the scene, such as ``beam``; a tuple or table names several, at another ``key``."""
-
-    kind: str
-    key: str = ""
-
-
-class Record(BaseModel):
-    """Immutable record with strict types, without unknown keys, with finite numbers only."""
-
-    model_config = ConfigDict(
-        frozen=True, strict=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True
-    )
-
-    @model_validator(mode="wrap")
-    @classmethod
-    def _checked(cls, data: object, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
-        try:
-            record = handler(data)
-        except ValidationError as error:
-            raise SceneError(list(in_words(error, data, cls.model_fields))) from None
-        if record is not data:
-            record.__dict__.update(record.completed())
-            # rules limit files; programs build records beyond the rules
-            if isinstance(info.context, Reading) and (mistakes := list(record.rules())):
-                raise SceneError(mistakes)
-        return record
-
-    def completed(self) -> Mapping[str, object]:
-        """Fields that follow from other fields, in place of their values in the file; none by default."""
-        return {}
-
-    def rules(self) -> Iterator[Mistake]:
-        """Mistakes between the record's own fields, with keys below the record's own; none by default."""
-        return iter(())
-
-
-OR_EXPRESSION = {"anyOf": [{"type": "number"}, {"type": "string", "pattern": "^="}]}
-"""JSON schema of a number, or of an expression in place of the number."""
+from cprbm_scene.mistakes import SceneError, mistake
 
 SMALLEST, LARGEST = 1e-50, 1e50
 """Magnitudes of numbers with a unit, in SI: a product of six such numbers stays within floating-point numbers."""
 
-_LENGTHS = {"m": "1", "cm": "0.01", "mm": "0.001", "um": "1e-6", "in": "0.0254"}
-_OTHERS = {
-    "N": "1",
-    "kN": "1e3",
-    "mN": "1e-3",
-    "uN": "1e-6",
-    "rad": "1",
-    "Pa": "1",
-    "kPa": "1e3",
-    "MPa": "1e6",
-    "GPa": "1e9",
-}
-SIZES: Mapping[str, Fraction] = frozendict(
-    {name: Fraction(size) for name, size in (_LENGTHS | _OTHERS).items()} | {"deg": Fraction(math.pi / 180.0)}
+BY_QUANTITY: Mapping[str, Mapping[str, Fraction]] = frozendict(
+    {
+        "length": {
+            "m": Fraction(1),
+            "cm": Fraction("0.01"),
+            "mm": Fraction("0.001"),
+            "um": Fraction("1e-6"),
+            "in": Fraction("0.0254"),
+        },
+        "force": {"N": Fraction(1), "kN": Fraction(10**3), "mN": Fraction(1, 10**3), "uN": Fraction(1, 10**6)},
+        "angle": {"rad": Fraction(1), "deg": Fraction(math.pi / 180.0)},
+        "stress": {"Pa": Fraction(1), "kPa": Fraction(10**3), "MPa": Fraction(10**6), "GPa": Fraction(10**9)},
+    }
 )
-"""Sizes of units in SI."""
+"""Sizes of units in SI, by the quantities of :class:`Unit`."""
+SIZES: Mapping[str, Fraction] = frozendict(
+    {name: size for sizes in BY_QUANTITY.values() for name, size in sizes.items()}
+)
 
-
-class Units(Record):
-    """Units of the numbers in a file; moments, distributed loads and energies are of force and length."""
-
-    length: Literal["m", "cm", "mm", "um", "in"] = "m"
-    """Unit of lengths."""
-    force: Literal["N", "kN", "mN", "uN"] = "N"
-    """Unit of forces."""
-    angle: Literal["rad", "deg"] = "rad"
-    """Unit of angles."""
-    stress: Literal["Pa", "kPa", "MPa", "GPa"] = "Pa"
-    """Unit of moduli and of stresses in claims."""
-
-
-def silent(*_: object) -> NoReturn:
-    """Raise a mistake without words, the consequence of another mistake: the record is left out of the scene."""
-    raise mistake("", "")
-
-
-@dataclass(slots=True)
-class Reading:
-    """State while a file is read: ``settings`` of parameters, the file's ``folder``, its units, and parts read so far.
-
-    ``parts`` are loads, drives, stages and probes by the names of their fields and by their own names.  Expressions are
-    silent mistakes until the parameters are read.
-    """
-
-    settings: Mapping[str, float | str] = field(default_factory=dict)
-    folder: Path = Path()
-    units: Units = field(default_factory=Units)
-    parts: dict[str, Mapping[str, Any]] = field(default_factory=dict)
-    left_out: Collection[str] = ()
-    evaluate: Callable[[str, Unit | None], float] = silent
-
-    def in_si(self, value: Any, unit: Unit | None) -> Any:  # noqa: ANN401 - whatever TOML holds
-        """A number or an expression in SI, infinite if it is too large; another value, or one without unit, unchanged.
-
-        Raises:
-            SceneError: the expression has no value, or another unit.
-        """
-        if isinstance(value, str) and value.startswith("="):
-            return self.evaluate(value, unit)
-        if unit is None or isinstance(value, bool) or not isinstance(value, int | float):
-            return value
-        with suppress(OverflowError):
-            return unit.in_si(float(value), self.units)
-        return math.inf
-
-
-def mistake(found: str, allowed: str, key: str = "") -> SceneError:
-    """An error of a validator with both halves of a mistake's sentence, at a ``key`` below the validated field."""
-    return SceneError([Mistake(key, found, allowed)])
+FileUnits = Iterable[tuple[str, str]]
+"""Quantities of :class:`Unit` in order, each with the file's unit."""
 
 
 class Unit(NamedTuple):
@@ -193,7 +63,7 @@ class Unit(NamedTuple):
         """Powers of length and force: stress is force over the square of length, and an angle is a pure number."""
         return self.length - 2 * self.stress, self.force + self.stress
 
-    def in_si(self, value: float, units: Units) -> float:
+    def in_si(self, value: float, units: Iterable[tuple[str, str]]) -> float:
         """A number of a file in SI.
 
         Raises:
@@ -211,65 +81,236 @@ class Unit(NamedTuple):
         return "*".join(f"{name}**{power}" if power != 1 else name for name, power in named if power)
 
 
-@dataclass(frozen=True, slots=True)
-class Measured:
-    """Metadata of a field whose numbers have a ``unit``, or the unit by a rule from fields that are read already.
-
-    A rule returns None for an unknown unit.
-    """
-
-    unit: Unit | Callable[[Reading, Mapping[str, Any]], Unit | None]
-
-    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.with_info_wrap_validator_function(self.number, handler(source))
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        return {"anyOf": [handler(schema), {"type": "string", "pattern": "^="}]}
-
-    def number(self, value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
-        """The number in SI; the field's bounds are on the file's number, or on the value of an expression."""
-        if not isinstance(info.context, Reading):
-            return handler(value)
-        unit = self.unit if isinstance(self.unit, Unit) else self.unit(info.context, info.data)
-        number = info.context.in_si(value, unit)
-        checked = handler(number if isinstance(value, str) else value)
-        if unit is None or unit == NUMBER:
-            return checked
-        if number == 0.0 == checked or SMALLEST <= abs(number) <= LARGEST:
-            return number
-        raise PydanticCustomError("range", f"zero or a magnitude between {SMALLEST:g} and {LARGEST:g} in SI units")
-
-
 NUMBER = Unit()
 LENGTH, FORCE, ANGLE, STRESS = Unit(length=1), Unit(force=1), Unit(angle=1), Unit(stress=1)
 MOMENT, LINE_LOAD = Unit(length=1, force=1), Unit(length=-1, force=1)
 
-Number = Annotated[float, Measured(NUMBER)]
-Length = Annotated[float, Measured(LENGTH)]
-Angle = Annotated[float, Measured(ANGLE)]
-PositiveLength = Annotated[float, Field(gt=0.0), Measured(LENGTH)]
-Positive = Annotated[float, Field(gt=0.0), Measured(NUMBER)]
-Share = Annotated[float, Field(ge=0.0, le=1.0), Measured(NUMBER)]
-PositiveShare = Annotated[float, Field(gt=0.0, le=1.0), Measured(NUMBER)]
-Point = tuple[Length, Length]
+LONGEST_EXPRESSION = 300
+"""Largest number of characters of an expression: the evaluation of a longer expression could exhaust the stack."""
 
 
-def _nonzero(direction: tuple[float, float]) -> tuple[float, float]:
-    if direction == (0.0, 0.0):
-        raise mistake("[0, 0]", "a direction, at least one number not zero")
-    return direction
+class Value(NamedTuple):
+    """A number in SI, with its unit; a number without unit (None) is in the unit of its place."""
+
+    number: float
+    unit: Unit | None = None
 
 
-Direction = Annotated[tuple[Number, Number], AfterValidator(_nonzero)]
-"""Vector of any length but zero."""
+class ExpressionError(Exception):
+    """An expression without a value; the message completes ``found EXPRESSION``."""
 
 
-def _by_powers(coefficients: object, info: ValidationInfo) -> object:
-    """Coefficients of f in SI."""
-    if not isinstance(info.context, Reading) or not isinstance(coefficients, tuple):
-        return coefficients
-    return tuple(info.context.in_si(value, Unit(length=1 - k)) for k, value in enumerate(coefficients))
+def _refuse(wrong: object, reason: str) -> None:
+    if wrong:
+        raise ExpressionError(reason)
 
 
-Coefficients = Annotated[tuple[Number, ...], Field(min_length=2), BeforeValidator(_by_powers)]
-"""Coefficients of a function f, a length, of a variable that is a length; lowest power first."""
+Rule = Callable[[Callable[..., float], Sequence[Value], FileUnits], Value]
+"""Value of a function of values, with the file's units for numbers without unit."""
+
+
+def _alike(function: Callable[..., float], values: Sequence[Value], units: FileUnits) -> Value:
+    """Sum, extremum or length of values of one dimension."""
+    unit = next((value.unit for value in values if value.unit is not None), None)
+    _refuse(
+        any(value.unit is not None and value.unit.dimension != unit.dimension for value in values if unit is not None),
+        "different units in one sum or function",
+    )
+    numbers = (
+        value.number if unit is None or value.unit is not None else unit.in_si(value.number, units) for value in values
+    )
+    return Value(float(function(*numbers)), unit)
+
+
+def _angle(function: Callable[..., float], values: Sequence[Value], units: FileUnits) -> Value:
+    """Angle from values of one dimension."""
+    return Value(_alike(function, values, units).number, ANGLE)
+
+
+def _of_angle(function: Callable[..., float], values: Sequence[Value], units: FileUnits) -> Value:
+    """Sine, cosine or tangent of an angle."""
+    return Value(_alike(lambda _, angle: function(angle), [Value(0.0, ANGLE), *values], units).number)
+
+
+def _product(function: Callable[..., float], values: Sequence[Value], units: FileUnits) -> Value:
+    """Product or quotient of two values."""
+    (one, unit), (other, second) = values
+    if second is not None:
+        unit = (unit or NUMBER).times(second, -1 if function is operator.truediv else 1)
+    return Value(function(one, other), unit)
+
+
+def _power(function: Callable[..., float], values: Sequence[Value], units: FileUnits) -> Value:
+    """Power of a value, with stress as force over the square of length; without an exponent the square root."""
+    (number, unit), (exponent, wrong) = values if len(values) > 1 else (values[0], Value(0.5))
+    _refuse(wrong is not None, "no arithmetic, or an exponent with a unit")
+    if unit is not None:
+        powers = [power * exponent for power in (*unit.dimension, unit.angle)]
+        _refuse(not all(power.is_integer() for power in powers), "a root of a unit")
+        unit = Unit(*map(int, powers))
+    _refuse(number < 0.0 and not exponent.is_integer(), "a power of a negative number")
+    return Value(number**exponent, unit)
+
+
+_RULES: Mapping[str, tuple[Callable[..., float], Rule, int]] = frozendict(
+    {
+        "+": (operator.add, _alike, 2),
+        "-": (operator.sub, _alike, 2),
+        "**": (operator.pow, _power, 2),
+        "*": (operator.mul, _product, 2),
+        "/": (operator.truediv, _product, 2),
+        **{name: (getattr(math, name), _of_angle, 1) for name in ("sin", "cos", "tan")},
+        "hypot": (math.hypot, _alike, 0),
+        "min": (lambda *numbers: min(numbers), _alike, 0),
+        "max": (lambda *numbers: max(numbers), _alike, 0),
+        "abs": (abs, _alike, 1),
+        "atan2": (math.atan2, _angle, 2),
+        "sqrt": (math.sqrt, _power, 1),
+    }
+)
+"""Operators and functions, each with the rule of its unit and the number of its arguments (0: at least one)."""
+_SIGNS = frozendict({ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"})
+FUNCTIONS = tuple(name for name in _RULES if name.isidentifier())
+
+
+def evaluated(text: str, named: Callable[[str], Value], units: FileUnits) -> Value:
+    """Value of an expression.
+
+    Args:
+        text: the expression, without the equals sign.
+        named: function from a name to its value.
+        units: units of the file.
+
+    Raises:
+        ExpressionError: the expression is no arithmetic, has no finite value, or combines different units.
+    """
+    _refuse(len(text) > LONGEST_EXPRESSION, f"an expression of {len(text)} characters")
+
+    def of(node: ast.expr) -> Value:
+        match node:
+            case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
+                return Value(float(number))
+            case ast.Name(id=name):
+                return Value(math.pi) if name == "pi" else named(name)
+            case ast.UnaryOp(op=ast.UAdd() | ast.USub() as sign, operand=operand):
+                number, unit = of(operand)
+                return Value(-number if isinstance(sign, ast.USub) else number, unit)
+            case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _SIGNS:
+                name, nodes = _SIGNS[type(sign)], [left, right]
+            case ast.Call(func=ast.Name(id=name), args=nodes, keywords=[]) if name in FUNCTIONS:
+                pass
+            case _:
+                raise ExpressionError(f"{ast.unparse(node)!r}, which is no arithmetic")
+        function, rule, count = _RULES[name]
+        _refuse(len(nodes) != (count or max(len(nodes), 1)), f"{name} of {len(nodes)} numbers")
+        return rule(function, [of(each) for each in nodes], units)
+
+    try:
+        value = of(ast.parse(text.strip(), mode="eval").body)
+    except SyntaxError:
+        raise ExpressionError("no arithmetic") from None
+    except SceneError:
+        raise
+    except (ArithmeticError, ValueError) as error:
+        raise ExpressionError(f"without a value ({error.args[-1]})") from None
+    _refuse(not math.isfinite(value.number), "without a finite value")
+    return value
+
+
+NAMED: Mapping[str, Value] = frozendict(
+    {
+        name: Value(float(size), Unit(**{quantity: 1}))
+        for quantity, sizes in BY_QUANTITY.items()
+        for name, size in sizes.items()
+    }
+)
+"""Units as values."""
+
+
+def unit_of(text: str, key: str) -> tuple[float, Unit]:
+    """Size in SI and powers of a unit such as ``mm`` or ``N*mm``; a plain number for an empty text."""
+
+    def named(name: str) -> Value:
+        _refuse(name not in NAMED, f"{name!r}, which is no unit")
+        return NAMED[name]
+
+    try:
+        value = evaluated(text.replace("^", "**"), named, ()) if text else Value(1.0)
+    except ExpressionError as error:
+        raise mistake(f"{text!r}: {error}", f"a product of {', '.join(NAMED)}", key) from None
+    return value.number, value.unit or NUMBER
+
+
+LONGEST = 1_000_000
+"""Largest size of a file in bytes: a hundred times the longest built-in case."""
+_COLUMN = re.compile(r"\s*([xy])\s*(?:[\[(/_]?\s*(?:in\s)?\s*(mm|cm|um|µm|m|in)\s*[\])]?)?\s*", re.IGNORECASE)
+_HEADER = "a header with the columns x and y, such as 'x [mm], y [mm]'; units are m, cm, mm, um and in"
+
+
+def text_of(path: str | Path, content: str, readable: str, name: str = "") -> str:
+    """Text of a file in UTF-8, with or without a byte-order mark.
+
+    Args:
+        path: the file.
+        content: contents of the file, for the message on a file that is larger than :data:`LONGEST`.
+        readable: description of a readable file, for the other messages.
+        name: begin of the found values in the messages.
+
+    Raises:
+        SceneError: the file cannot be read, or is too large.
+    """
+    try:
+        with Path(path).open("rb") as stream:
+            found = stream.read(LONGEST + 1)
+        if len(found) <= LONGEST:
+            return found.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise mistake(f"{name}bytes that are no UTF-8 text (at byte {error.start})", readable) from None
+    except (OSError, ValueError) as error:
+        raise mistake(
+            f"{name}a file that cannot be read ({getattr(error, 'strerror', None) or error})", readable
+        ) from None
+    raise mistake(f"{name}a file that is larger", f"at most {LONGEST // 1_000_000} MB of {content} in UTF-8")
+
+
+def read_points(path: Path, unit: str) -> tuple[tuple[float, float], ...]:
+    """Points of the columns x and y, in a unit of length.
+
+    Args:
+        path: file in UTF-8, with or without a byte-order mark.
+        unit: unit of the points, and of columns without a unit: m, cm, mm, um or in.
+
+    Raises:
+        SceneError: the file cannot be read, or has a wrong header or number; the error names file, row and
+            column.
+    """
+    text = text_of(
+        path, "points", "a table of points in UTF-8, with a path from the scene's folder", f"{str(path)!r}, "
+    )
+    lines = [
+        (row, line)
+        for row, line in enumerate(text.splitlines(), start=1)
+        if line.strip(" \t,;#") and not line.lstrip().startswith("#")
+    ] or [(1, "")]
+    first, header = lines[0]
+    mark = next((mark for mark in ";\t" if mark in header), ",")
+    names = [_COLUMN.fullmatch(name.strip("\"' ")) for name in header.split(mark)]
+    columns = {
+        name[1].lower(): (i, (name[2] or unit).lower().replace("µ", "u")) for i, name in enumerate(names) if name
+    }
+    if set(columns) != {"x", "y"}:
+        raise mistake(f"{header[:80]!r} in {path.name}, row {first}", _HEADER)
+    cells = ((row, next(csv.reader([line], delimiter=mark))) for row, line in lines[1:])
+    return tuple(
+        (_number(path, row, line, "x", *columns["x"], unit), _number(path, row, line, "y", *columns["y"], unit))
+        for row, line in cells
+    )
+
+
+def _number(path: Path, row: int, cells: list[str], name: str, column: int, own: str, unit: str) -> float:
+    """Number of a cell in a unit of length."""
+    cell = cells[column].strip() if column < len(cells) else ""
+    with suppress(ValueError):
+        if abs(number := float(cell)) <= LARGEST:
+            return number if own == unit else float(Fraction(repr(number)) * SIZES[own] / SIZES[unit])
+    raise mistake(f"{cell!r} in {path.name}, row {row}, column {name}", "a finite number with a decimal point")

@@ -18,8 +18,9 @@ from pydantic.fields import FieldInfo
 
 from comparisons.writing import write
 from cprbm_scene import statement as records
-from cprbm_scene.beam_records import Imperfection, PaperBeam
-from cprbm_scene.units import Coefficients, Measured, Of, Record, Unit
+from cprbm_scene.fields import Coefficients, Measured, Of, Record
+from cprbm_scene.part_records import Imperfection, PaperBeam
+from cprbm_scene.units import Unit
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx

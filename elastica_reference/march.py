@@ -17,9 +17,8 @@ import math
 import time
 
 from cprbm_scene import Answer, Ending, Mistake, Scene, SceneError, StationAnswer
-from cprbm_scene.requirements import requirements
+from cprbm_scene.solving import requirements, station_reached
 from cprbm_scene.statement import BeamContact, BeamMoment, EdgeContact, SelfContact, TurningBody
-from cprbm_scene.stations import station_reached
 from elastica_reference.changes import open_first, reform, slide_onto_end
 from elastica_reference.closings import close_first
 from elastica_reference.gaps import overlaps

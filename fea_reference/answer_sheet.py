@@ -11,8 +11,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from cprbm_scene.answer import Array, BeamState, ContactState, PointForce, PointForces, frozen_array
+from cprbm_scene.solving import contact_states
 from cprbm_scene.statement import Scene, TurningBody
-from cprbm_scene.stations import contact_states
 from fea_reference.march import March
 from fea_reference.model import BeamPart
 from fea_reference.recovery import bending_moment, section_force

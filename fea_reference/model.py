@@ -19,7 +19,7 @@ from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLi
 
 from cprbm_scene.answer import Array
 from cprbm_scene.joints import is_apart
-from cprbm_scene.requirements import refuse
+from cprbm_scene.solving import refuse
 from cprbm_scene.statement import (
     Beam,
     BeamEnd,

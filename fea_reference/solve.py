@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm_scene.answer import Answer, Ending, Event, StationAnswer, frozen_array
+from cprbm_scene.solving import one_thread, openings, station_reached
 from cprbm_scene.statement import Scene, Stage
-from cprbm_scene.stations import openings, station_reached
-from cprbm_scene.threads import one_thread
 from fea_reference import answer_sheet
 from fea_reference.assembly import assemble_ends
 from fea_reference.certificates import certify

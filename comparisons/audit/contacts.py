@@ -34,8 +34,8 @@ from comparisons.audit.state import PIECES, Complex, Finding, StationState
 from comparisons.formats import at_station
 from comparisons.geometry import RigidEdge, edge_places, is_free_on_the_left
 from cprbm_scene.answer import Array
+from cprbm_scene.solving import ACTIVE
 from cprbm_scene.statement import CircleContact, Contact, RigidContact, Scene, SelfContact
-from cprbm_scene.stations import ACTIVE
 
 Rigid = CircleContact | RigidEdge
 

@@ -39,7 +39,7 @@ from comparisons.pairing import Solvers, prepared
 from cprbm_scene import Answer, Scene, SceneError
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.threads import one_thread
+from cprbm_scene.solving import one_thread
 
 OURS: tuple[str, ...] = ("auto", "paper", "fea")
 """Names of the project's own methods, in the order of the tables."""

@@ -15,8 +15,8 @@ from comparisons.cli.errors import printable
 from comparisons.importing.drawing import read_drawing
 from comparisons.importing.scene_text import Choices, Unit, scene_text
 from comparisons.writing import write
+from cprbm_scene.fields import NAME
 from cprbm_scene.reading import schema as schema_of_scenes
-from cprbm_scene.units import NAME
 
 SCHEMA = "scene.schema.json"
 """Name of the schema's file, beside the scene that refers to it."""

@@ -17,8 +17,8 @@ import shapely
 
 from comparisons.executor import WorkerDiedError, call_fresh
 from cprbm_scene.answer import Array
-from cprbm_scene.files import read_points
 from cprbm_scene.mistakes import Mistake, SceneError
+from cprbm_scene.units import read_points
 
 _BEGIN = 4096
 """Bytes of a file that decide on the format."""

@@ -26,9 +26,9 @@ from comparisons.formats import file_unit
 from comparisons.quantities import COMPONENTS, unit_of
 from comparisons.sweeps.outcome import Outcome
 from cprbm_scene import Mistake, Scene, SceneError
-from cprbm_scene.files import toml_data
+from cprbm_scene.fields import Reading, Record
 from cprbm_scene.mistakes import first_of, mistakes_of
-from cprbm_scene.units import Reading, Record
+from cprbm_scene.reading import toml_data
 
 
 class _Asked(Record):

@@ -116,7 +116,7 @@ def _rigid_curve(m: Mechanism, frames: Frames, contact_name: str, contact: Rigid
             length = 2.0 * np.pi * contact.radius
         case _:
             assert isinstance(contact, FunctionContact | SplineContact | EllipseContact)
-            shape = shape_of(contact.curve)
+            shape = shape_of(contact)
             points, tangents, length = place(shape.point(u)), shape.tangent(u), shape.length
     if isinstance(contact, FunctionContact):
         ascends = contact.range[1] > contact.range[0]

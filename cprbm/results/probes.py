@@ -33,8 +33,8 @@ from cprbm.results.view import View
 from cprbm_scene import Probe
 from cprbm_scene.answer import Array, ContactState, PointForces, frozen_array
 from cprbm_scene.question_records import Quantity
+from cprbm_scene.solving import contact_states
 from cprbm_scene.statement import DisplacementDrive, EdgeContact, PinnedEnd
-from cprbm_scene.stations import contact_states
 
 ZONE = 3
 """Closed joints from which a contact has a length: two neighbours share the force of a point."""

@@ -23,8 +23,7 @@ from cprbm.results.view import Samples, View
 from cprbm.settings import Settings
 from cprbm_scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Scene, Shape, Stage, StationAnswer
 from cprbm_scene.answer import PointForces, frozen_array
-from cprbm_scene.stations import station_reached
-from cprbm_scene.threads import one_thread
+from cprbm_scene.solving import one_thread, station_reached
 
 LOGGER = logging.getLogger("cprbm.stations")
 """Its first part is the solver's name in the message of progress."""

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from cprbm_scene.answer import Array, ContactState, PointForce, PointForces, frozen_array
+from cprbm_scene.solving import contact_states
 from cprbm_scene.statement import Scene, TurningBody
-from cprbm_scene.stations import contact_states
 from fea_reference.solid.bodies import is_own, stands_on
 from fea_reference.solid.contacts import Touch
 from fea_reference.solid.march import March

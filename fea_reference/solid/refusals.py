@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cprbm_scene.mistakes import Mistake, SceneError
-from cprbm_scene.requirements import refuse as refuse_requirements
+from cprbm_scene.solving import refuse as refuse_requirements
 from cprbm_scene.statement import Scene
 from fea_reference.solid.areas import too_curved
 

@@ -7,9 +7,8 @@ import time
 from dataclasses import dataclass
 
 from cprbm_scene.answer import Answer, Ending, Event, StationAnswer, frozen_array
+from cprbm_scene.solving import one_thread, openings, station_reached
 from cprbm_scene.statement import Scene, Stage
-from cprbm_scene.stations import openings, station_reached
-from cprbm_scene.threads import one_thread
 from fea_reference.solid import answer_sheet
 from fea_reference.solid.assembly import assemble_ends
 from fea_reference.solid.certificates import certify

@@ -84,7 +84,9 @@ def _of_class(item: str, kind: type) -> Iterator[tuple[str, str | list[str]]]:
         yield f"{item} field {field}", ""
     if not item.startswith("python comparisons."):
         yield f"{item} requires", sorted(required)  # records of the harness are results, and users make none
-    for name, value in vars(kind).items():
+    package = kind.__module__.partition(".")[0]
+    bases = [base for base in kind.__mro__ if base.__module__.partition(".")[0] == package]
+    for name, value in {name: value for base in bases[::-1] for name, value in vars(base).items()}.items():
         if name.startswith(("_", "model_")) or name in fields:
             continue
         if isinstance(value, property):

@@ -81,7 +81,7 @@ def beam_on(curve, thickness):
 
 def line_distance(first, second, near=0.0):
     """Least distance of two neutral lines, m, that is ``near`` a value; a distance far above is not refined."""
-    return near + beam_gap(beam_on(first, near), beam_on(second, near), thick=near > 0.0).gap
+    return near + beam_gap(beam_on(first, near), beam_on(second, near), thick=near > 0.0)[0]
 
 
 def distance_to(curve, point):

@@ -309,7 +309,7 @@ SECTIONS["polynomials"] = (
             "between 1e-50 and 1e+50 in SI units",
         ),
         ("beams/lower/curve/rnage", [0.0, 0.05], "is 'range' meant"),
-        ("beams/lower/curve/start", [0.0, 0.0], "'kind', 'axis', 'coefficients', 'range'"),
+        ("beams/lower/curve/start", [0.0, 0.0], "'axis', 'coefficients', 'range', 'kind'"),
         (
             "beams/lower/curve/range",
             [0.0, 0.06],
@@ -352,7 +352,7 @@ SECTIONS["splines"] = (
         ),
         ("curve/start_direction", [0.0, 0.0], "[0, 0]; a direction"),
         ("curve/end_direction", [1.0], "beams.lower.curve.end_direction[1]", "an item"),
-        ("curve/start", [0.0, 0.0], "'kind', 'points', 'start_direction', 'end_direction'"),
+        ("curve/start", [0.0, 0.0], "'points', 'start_direction', 'end_direction', 'kind'"),
         (
             "curve/points",
             [[0.0, 0.0], [0.03, 0.008], [0.07, 0.004], [0.11, 0.0]],

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from cprbm_scene import Arc, FunctionContact, HalfPlaneContact, Line, LineContact, Polynomial, SceneError, scene_from
-from cprbm_scene.clearance import distance_from
+from cprbm_scene.clearance import distance
 from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import CircleContact, EllipseContact, SplineContact
 from tests.cprbm_scene.editing import HINGE, REMOVED, distance_to, edited, line_distance, mistakes, two_lines
@@ -453,10 +453,10 @@ def test_distances_from_lines_and_functions():
     line = LineContact(
         kind="beam-line", beam="b", body="g", points=tuple(map(tuple, corners.tolist())), side="left", thick=False
     )
-    d = distance_from(line)(p)
+    d = distance(line, p)
     assert np.abs(d) == pytest.approx(sampled(corners, p), abs=1e-3)
     # in front of it and behind, and beside its end
-    near = distance_from(line)(np.array([(-0.3, 0.5), (0.0, 0.7), (0.0, 0.5), (0.3, 0.0), (0.3, -0.2), (0.9, -0.2)]))
+    near = distance(line, np.array([(-0.3, 0.5), (0.0, 0.7), (0.0, 0.5), (0.3, 0.0), (0.3, -0.2), (0.9, -0.2)]))
     assert np.sign(near).tolist() == [1.0, 1.0, -1.0, 1.0, -1.0, 1.0]
 
     edge = FunctionContact(
@@ -469,14 +469,14 @@ def test_distances_from_lines_and_functions():
         side="above",
     )
     y = np.linspace(-0.6, 0.5, 21)
-    d = distance_from(edge)(p)
+    d = distance(edge, p)
     assert np.abs(d) == pytest.approx(sampled(np.column_stack((0.1 + 0.3 * y - 0.8 * y**2, y)), p), abs=1e-3)
     inside = (np.abs(p[:, 1]) < 0.2) & (np.abs(d) < 0.3)
     f = 0.1 + 0.3 * p[:, 1] - 0.8 * p[:, 1] ** 2
     assert np.array_equal(np.sign(d[inside]), np.sign(p[inside, 0] - f[inside]))
 
     plane = HalfPlaneContact(kind="beam-half-plane", beam="b", body="g", point=(0.1, 0.2), normal=(3.0, 4.0))
-    assert distance_from(plane)(p) == pytest.approx((p - (0.1, 0.2)) @ (0.6, 0.8))
+    assert distance(plane, p) == pytest.approx((p - (0.1, 0.2)) @ (0.6, 0.8))
 
 
 def test_distances_from_ellipses_splines_and_from_inside_a_circle():
@@ -490,8 +490,8 @@ def test_distances_from_ellipses_splines_and_from_inside_a_circle():
     base = {"kind": "beam-ellipse", "beam": "b", "body": "g", "center": (0.1, 0.2), "semi_axes": (2.0, 1.0)}
     ellipse = EllipseContact(**base, angle=math.atan2(0.8, 0.6))
     p = (0.1, 0.2) + (on + out[:, None] * outward) @ rotated
-    assert distance_from(ellipse)(p) == pytest.approx(out, abs=1e-8)
-    assert distance_from(ellipse.model_copy(update={"side": "inside"}))(p) == pytest.approx(-out, abs=1e-8)
+    assert distance(ellipse, p) == pytest.approx(out, abs=1e-8)
+    assert distance(ellipse.model_copy(update={"side": "inside"}), p) == pytest.approx(-out, abs=1e-8)
     # reference: the spline of three points is the parabola through them
     spline = SplineContact(
         kind="beam-spline", beam="b", body="g", points=((-1.0, 1.0), (0.0, 0.0), (1.0, 1.0)), side="right"
@@ -500,9 +500,9 @@ def test_distances_from_ellipses_splines_and_from_inside_a_circle():
         kind="beam-function", beam="b", body="g", axis="x", coefficients=(0, 0, 1.0), range=(-1.0, 1.0), side="below"
     )
     p = np.random.default_rng(2).uniform(-0.5, 0.5, (40, 2)) + np.array((0.0, 0.3))
-    assert distance_from(spline)(p) == pytest.approx(distance_from(parabola)(p), abs=1e-9)
+    assert distance(spline, p) == pytest.approx(distance(parabola, p), abs=1e-9)
     hole = CircleContact(kind="beam-circle", beam="b", body="g", center=(0.0, 0.3), radius=0.5, side="inside")
-    assert distance_from(hole)(p) == pytest.approx(0.5 - np.hypot(*(p - (0.0, 0.3)).T))
+    assert distance(hole, p) == pytest.approx(0.5 - np.hypot(*(p - (0.0, 0.3)).T))
 
 
 @pytest.mark.parametrize("contact", KINDS)

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cprbm_scene import Scene, SceneError, scene_from
-from cprbm_scene.requirements import requirements
+from cprbm_scene.solving import requirements
 from cprbm_scene.statement import BeamForce, DisplacementDrive, DistributedLoad
 from tests.cprbm_scene.editing import edited, mistakes
 from tests.cprbm_scene.scenes import DRIVEN, LINKAGE, LOADED, PUSH, SLIDES, SLIDING, SLOTTED, TURN, TURNED, WITH_FORCE
@@ -89,6 +89,13 @@ def test_a_motion_that_bends_no_beam_is_told():
 )
 def test_what_a_weld_a_drive_or_a_contact_may_hold_is_a_scene(edits):
     assert not mistakes(*edits, base=HUNG)
+
+
+def test_a_contact_elsewhere_holds_no_loose_body():
+    beam = {**THIN, "start": {"joint": "weld", "point": "S"}, "end": {"joint": "free"}}
+    beam["curve"] = {"kind": "line", "start": [0.031, 0.047], "end": [0.031, 0.097]}
+    edits = ("beams/other", beam), ("contacts", {"below": {**BELOW, "beam": "other"}})
+    assert "turn about" in mistakes(*edits, base=HUNG)["bodies.plate"]
 
 
 def test_a_stage_steps_a_load_or_a_drive():

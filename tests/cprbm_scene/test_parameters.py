@@ -143,8 +143,8 @@ def test_a_setting_replaces_a_value(setting, thickness):
     [
         ({"x": 1.0}, "parameters.x: found 'x', which names no parameter; allowed: .*'t'"),
         ({"t": "3mm"}, "parameters.t.value: found 3 mm; allowed: a number from 1.6 to 2.4 mm"),
-        ({"t": "2deg"}, "parameters.t: found '2deg'; allowed: a number in mm"),
-        ({"t": "thin"}, "parameters.t: found 'thin'; allowed: a number with a unit"),
+        ({"t": "2deg"}, "parameters.t: found '2deg'; allowed: a finite number in mm"),
+        ({"t": "thin"}, "parameters.t: found 'thin'; allowed: a finite number in mm, such as 1.9mm"),
         ({"t": math.nan}, "parameters.t: found nan; allowed: a finite number"),
         ({"half": "1mm"}, "parameters.half: found '= t/2', an expression; .*; an expression takes no other value"),
     ],

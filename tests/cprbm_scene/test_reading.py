@@ -12,12 +12,13 @@ from pydantic import BaseModel, ValidationError
 
 from comparisons import cases
 from cprbm_scene import OffsetQuestion, Scene, SceneError, read, read_question, scene_from, statement
-from cprbm_scene.files import DEEPEST, LONGEST
+from cprbm_scene.fields import Measured
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import MOST
-from cprbm_scene.plausibility import notes
+from cprbm_scene.reading import DEEPEST
+from cprbm_scene.solving import notes
 from cprbm_scene.statement import Record, Units
-from cprbm_scene.units import Measured
+from cprbm_scene.units import LONGEST
 from tests.cprbm_scene.conftest import HINGE as FILE
 from tests.cprbm_scene.editing import HINGE, REMOVED, edited, mistakes, two_lines
 from tests.robustness.toml import toml_of
@@ -288,6 +289,14 @@ def test_an_implausible_load_has_a_note_with_the_mix_up_of_units(edits, words):
     assert note.startswith("loads.M: M L/(E I) is ")
     assert note.endswith(words)
     assert not list(notes(scene_from(HINGE)))
+
+
+def test_beams_that_cross_without_a_contact_have_a_note():
+    crossed = edited(("contacts", {}), base=two_lines(0.0, second=((0.0, -0.01), (0.1, 0.01))))
+    (note,) = notes(scene_from(crossed))
+    assert note.startswith("beams.upper: crosses the beam 'lower' at the start, at (0.05, ")
+    assert not list(notes(scene_from(crossed | {"may_cross": [["lower", "upper"]]})))
+    assert not list(notes(scene_from(edited(("contacts", {}), base=two_lines(0.01)))))
 
 
 def test_a_thickness_above_the_radius_is_refused_with_its_place():

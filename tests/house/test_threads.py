@@ -45,7 +45,7 @@ def test_from_python_there_is_one_as_long_as_a_solver_works():
 import json
 import scipy.linalg
 from threadpoolctl import threadpool_info
-from cprbm_scene.threads import one_thread
+from cprbm_scene.solving import one_thread
 {THREADS}
 with one_thread():
     {THREADS}
@@ -61,7 +61,7 @@ with one_thread():
 def test_a_library_that_is_loaded_later_has_one_too():
     program = f"""
 import json
-from cprbm_scene.threads import one_thread
+from cprbm_scene.solving import one_thread
 with one_thread():
     pass
 import scipy.linalg

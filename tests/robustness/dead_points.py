@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from cprbm_scene import Mistake, SceneError, scene_from
 from cprbm_scene.curves import unit_vector as unit
 from cprbm_scene.freedoms import AXES, Freedoms
-from cprbm_scene.requirements import refuse
+from cprbm_scene.solving import refuse
 from cprbm_scene.statement import Point, RotationDrive, Scene, SlidingBody, TurningBody
 
 Array = NDArray[np.float64]

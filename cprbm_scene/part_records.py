@@ -1,4 +1,4 @@
-"""Records of beams: material, ends, sizes along the beam.
+"""Records of the parts: materials, rigid bodies with pins and stops, beams with ends and sizes.
 
 Bounds are on dimensionless numbers, with thickness t, arc length L and curvature κ:
 
@@ -6,8 +6,6 @@ Bounds are on dimensionless numbers, with thickness t, arc length L and curvatur
 * t κ/2 < 0.5: the inner edge keeps at least half of the neutral line's length; for a varying t, at every place;
 * values of a size within a factor of 1e5, at places at least 1e-6 of the length apart.
 """
-
-from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -17,15 +15,23 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag
 
-from cprbm_scene.curve_records import MOST_HALF_WAVES, CurveField, NeutralLine, shape_of, with_half_waves
+from cprbm_scene.curve_records import (
+    MOST_HALF_WAVES,
+    MOST_POINTS,
+    SHORTEST,
+    CurveField,
+    NeutralLine,
+    shape_of,
+    with_half_waves,
+)
 from cprbm_scene.curves import SAMPLES, Array
-from cprbm_scene.mistakes import Mistake, SceneError, broken, first_broken, written_place
-from cprbm_scene.units import NUMBER, STRESS, Length, Measured, Name, Number, Of, Point, PositiveLength, Record
+from cprbm_scene.fields import Direction, Length, Measured, Name, Named, Number, Of, Point, PositiveLength, Record
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake, SceneError, broken, first_broken, unknown_name, written_place
+from cprbm_scene.units import NUMBER, STRESS
 
 THINNEST, THICKEST = 1e-5, 0.2
 MOST_CURVED = 0.5
-CLOSEST = 1e-6
-MOST_PLACES = 1001
 LARGEST_RATIO = 1e5
 BACKWARDS = 1e-9
 """Component of a unit tangent that counts as zero."""
@@ -43,6 +49,101 @@ class Material(Record):
 
 
 PointName = Annotated[Name, Of("point")]
+BodyName = Annotated[Name, Of("body")]
+BeamName = Annotated[Name, Of("beam")]
+
+
+Points = Annotated[Named[Point], Field(min_length=1)]
+
+
+class FixedBody(Record):
+    """The ground: a rigid body at rest.
+
+    A scene has a point at an edge of the body, or at the first beam, in place of no points.
+    """
+
+    motion: Literal["fixed"]
+    points: Named[Point] = Field(default_factory=frozendict)
+    """Points of the body by name, at their initial places."""
+
+
+class FreeBody(Record):
+    """Rigid body with two translations and a rotation."""
+
+    motion: Literal["free"]
+    points: Points
+    """Points of the body by name, at their initial places."""
+
+
+class SlidingBody(Record):
+    """Rigid body on a frictionless guide of the ground, without rotation unless ``turns`` is true."""
+
+    motion: Literal["slides"]
+    along: Direction
+    """Direction of the guide."""
+    turns: bool = False
+    """Rotation about the point ``about``: the body is a pin in a slot."""
+    about: Name | None = None
+    """Point of the body in the slot; a body with a single point needs no name."""
+    points: Points
+    """Points of the body by name, at their initial places."""
+
+    @property
+    def pin(self) -> Name | None:
+        """The point in the slot, about which the body turns; None without ``turns``."""
+        if not self.turns:
+            return None
+        return next(iter(self.points)) if self.about is None else self.about
+
+    def rules(self) -> Iterator[Mistake]:
+        """A pin without a point, of another body or without ``turns``."""
+        return broken(
+            _pivot(self.about, self.points),
+            self.about in self.points
+            and not self.turns
+            and Mistake(
+                "about",
+                f"{self.about!r}, a point to turn about, of a body that does not turn",
+                "turns = true, or no point",
+            ),
+            self.turns
+            and self.about is None
+            and len(self.points) > 1
+            and Mistake(
+                "about",
+                "nothing: of the points of a body that slides and turns, one stays in the slot",
+                f"one of {', '.join(map(repr, self.points))}",
+            ),
+        )
+
+
+class TurningBody(Record):
+    """Rigid body on a frictionless pivot of the ground."""
+
+    motion: Literal["turns"]
+    about: Name
+    """Point of the body on the pivot."""
+    points: Points
+    """Points of the body by name, at their initial places."""
+
+    def rules(self) -> Iterator[Mistake]:
+        """A pivot outside the body's points."""
+        return broken(_pivot(self.about, self.points))
+
+
+def _pivot(about: Name | None, points: Mapping[Name, Point]) -> Mistake | bool:
+    """The mistake of a pivot outside a body's points."""
+    return about not in (None, *points) and unknown_name("about", str(about), "point of this body", points)
+
+
+Body = Annotated[FixedBody | FreeBody | SlidingBody | TurningBody, Field(discriminator="motion")]
+
+
+class BodyPin(Record):
+    """Frictionless hinge between two bodies."""
+
+    points: Annotated[tuple[Name, Name], Of("point")]
+    """Two points at the same place, of two bodies."""
 
 
 class WeldedEnd(Record):
@@ -89,7 +190,7 @@ class Profile(Record):
         return first_broken(
             len(at) != len(values)
             and Mistake("values", f"{len(values)} values at {len(at)} places", "as many values as places in at"),
-            len(at) > MOST_PLACES and Mistake("at", f"{len(at)} places", f"at most {MOST_PLACES} of them"),
+            len(at) > MOST_POINTS and Mistake("at", f"{len(at)} places", f"at most {MOST_POINTS} of them"),
             (at[0], at[-1]) != (0.0, 1.0)
             and Mistake(
                 "at",
@@ -103,11 +204,11 @@ class Profile(Record):
                 f"values of which the largest is at most {LARGEST_RATIO:g} times the least",
             ),
             *(
-                not place - before >= CLOSEST
+                not place - before >= SHORTEST
                 and Mistake(
                     f"at[{i}]",
                     f"{place:.9g} after {before:.9g}",
-                    f"places that ascend, each at least {CLOSEST:g} after the one before",
+                    f"places that ascend, each at least {SHORTEST:g} after the one before",
                 )
                 for i, (before, place) in enumerate(pairwise(at), start=1)
             ),
