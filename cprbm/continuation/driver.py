@@ -9,9 +9,8 @@ t        fraction of the way to the next station
 
 A step starts Newton's method at the last state under the next targets.  A step is accepted if the equilibrium has a
 certificate and loses no direction, no stop changes, and the test for jumps finds the same branch.  Otherwise the
-step is halved; after an accepted step the next step is twice as long, but goes at most to the end of the last refused
-step.  Turns set a length too: a step aims at most at a part of the largest turn, and a step refused for its turn is
-cut in proportion.  A step ends where a stop closes or opens.
+step is halved; after an accepted step the next step is twice as long, but does not pass the end of a step that was
+refused for another reason than its length.  A step ends where a stop closes or opens.
 
 A step refused at the smallest size marks the end of the branch.  The zero of κ then tells a fold from a
 bifurcation.  The stage chooses the end of the solve or a descent to a minimum.  Without a
@@ -60,12 +59,6 @@ from cprbm_scene.answer import Array, Flags
 CAREFUL_TURN = 0.2
 """Largest turn in a step, rad, where no critical point may be passed."""
 
-AIM = 0.9
-"""Part of the largest turn at which the next step aims: turns are nearly proportional to steps."""
-
-SHORTEST = 0.125
-"""Least part of a step that is too long, for the next step: the turn of a far state says little."""
-
 BESIDE = 0.3
 """Largest turn, rad, to a state beside a critical point that no stage asks for."""
 
@@ -86,14 +79,11 @@ Change = StopChange | ContactChange | None
 
 
 class StepError(Exception):
-    """No step leads on; ``ending`` and the sentence say why.
+    """No step leads on; ``ending`` and the sentence say why; ``too_long`` is a step with too large a turn."""
 
-    ``turn`` is the largest turn in a step that is too long, over the allowed turn; 0 for other reasons.
-    """
-
-    def __init__(self, ending: Ending, sentence: str, turn: float = 0.0) -> None:
+    def __init__(self, ending: Ending, sentence: str, *, too_long: bool = False) -> None:
         super().__init__(sentence)
-        self.ending, self.turn = ending, turn
+        self.ending, self.too_long = ending, too_long
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,8 +151,7 @@ class Driver:
             if isinstance(trial, StepError):
                 if self.spent > self.settings.iteration_limit:
                     raise StepError(Ending.STEP_TOO_SMALL, f"{self.spent} iterations did not lead to the next station")
-                step = (t - self.reached) * (np.clip(AIM / trial.turn, SHORTEST, 0.5) if trial.turn else 0.5)
-                refused = refused if trial.turn else t
+                step, refused = 0.5 * (t - self.reached), refused if trial.too_long else t
                 if step < self.settings.smallest_step:
                     trail = self._ended(way, trail, t, beyond, trial)
                     step = max(step, AHEAD[0])
@@ -171,10 +160,8 @@ class Driver:
             events = 0 if at > self.reached else events + 1
             if events > ENDLESS * (1 + len(self.acting)):
                 raise StepError(Ending.STEP_TOO_SMALL, "stops or contacts close and open again without a step")
-            refused, turn = refused if refused > at else np.inf, turned(self.solved, solved) / largest
+            refused = refused if refused > at else np.inf
             step = min(2.0 * (t - self.reached), refused - at)
-            if change is None and turn:  # a stop or a contact changes the turns of the next step
-                step = min(step, AIM * (at - self.reached) / turn)
             self._accept(way, at, solved, trail)
             if change is not None:
                 trail = self._changed(way, at, change, beyond)
@@ -199,8 +186,8 @@ class Driver:
                 opened = change.pairs if isinstance(change, ContactChange) and change.closes else frozenset()
                 solved = solve(change.share, opened) if change.share else self.solved
             self._check_turn(solved, largest)
-        except StepError as too_long:
-            return too_long
+        except StepError as refused:
+            return refused
         except (NotConvergedError, ValueError) as failure:
             return StepError(Ending.STEP_TOO_SMALL, str(failure))
         certificate, ending = certify(solved, self.settings.tolerance, 0, self.acting, with_curvature=False)
@@ -219,7 +206,7 @@ class Driver:
         turn = turned(self.solved, solved)
         if turn > largest:
             sentence = f"a link turned by {turn:.2f} rad in one load step"
-            raise StepError(Ending.STEP_TOO_SMALL, sentence, turn / largest)
+            raise StepError(Ending.STEP_TOO_SMALL, sentence, too_long=True)
 
     def _first_event(self, solved: Solved, solve: Callable[..., Solved]) -> Change:
         """The first stop or contact that changes in a step; None without any."""

@@ -57,7 +57,7 @@ ROUNDS = 12
 RETRIES = 6
 """First solves, half of all, after which light joints open, and a moving place that became joints may move again."""
 
-STEEPEST = 0.02
+STEEPEST = 0.1
 """Largest turn of two overlapping curves against each other over a link, rad, where joints stand for a point.
 
 The joints on both sides of a small round edge hold like a valley, whatever the direction of the force.
@@ -245,7 +245,7 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
         run = np.flatnonzero(np.isin(np.arange(len(arcs)) + places.shares, run))
         trial, gap, curvature = as_point(z, curves, places, best, places.force[run].sum(), counters)
         if given_up:
-            if gap < -OVERLAP and curvature * curves.span[trial.piece[0]] > STEEPEST:
+            if contacts.closed[best] and gap < -OVERLAP and curvature * curves.span[trial.piece[0]] > STEEPEST:
                 raise NotConvergedError("a contact's curves overlap between two joints")
             continue
         overlaps = contacts.closed[best] or gap < -OVERLAP - depth[best]

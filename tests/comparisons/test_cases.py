@@ -16,7 +16,7 @@ def test_a_case_is_a_question_of_its_files_name():
 
 
 def test_every_claim_of_the_hinge_stands_at_a_row(hinge, right):
-    rows = rows_of(hinge, paired(hinge, Choices(), right))
+    rows = rows_of(paired(hinge, Choices(), right))
     claims = [claim for row in rows if (claim := claim_of(hinge, row)) is not None]
     assert sorted(claim.bound for claim in claims) == [0.0062, 0.0081]  # section 3.2 of the paper
 

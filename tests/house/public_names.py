@@ -85,7 +85,7 @@ DOCUMENTED = {
     "comparisons.cases": ("asked", "names", "opened"),
     "comparisons.mechanism": ("Mechanism", "MechanismComparison"),
     "comparisons.case": ("Comparison", "Verdict"),
-    "comparisons.verdict.runs": ("Bounds",),
+    "comparisons.verdict.runs": ("Bounds", "Runs"),
     "comparisons.verdict.rows": ("Row",),
     "comparisons.sweeps.running": ("Sweep",),
     "comparisons.reactions": ("Absence", "WorkEnergyReaction"),

@@ -13,7 +13,6 @@ ZONE = "the step to a wide zone is refused as a jump"
 OPEN = {
     "zone-off-the-clamp-long": "the end of a zone lies between two joints and is 5e-5 m off",
     "bypassed-fold": "the set of closed places returns, and no step leads to the fold",
-    "pressed-flat-lets-go": "the branch ends as no minimum in place of the opening",
     "zone-off-the-clamp-wide": ZONE,
     "zone-off-the-clamp-backwards": ZONE,
 }
