@@ -51,7 +51,8 @@ BESIDE = 3.0
 
 SMALL = 1e-6
 """Share of a contact's largest force below which places and directions of a force are not judged; also the
-counted share of thicknesses beside a beam in a contact of lines."""
+counted share of thicknesses beside a beam in a contact of lines, and the distance of both ends of a closed edge over
+the edge's size."""
 
 LAP = 2.0
 """Thicknesses along a beam between two pieces from which on an overlap of both is a crossing."""
@@ -136,13 +137,14 @@ def _solid(state: StationState, contact: Rigid) -> shapely.Geometry:
 def _solid_at_rest(contact: Rigid, longest: float) -> shapely.Geometry:
     depth, smaller = BEHIND * longest, 0.0 if contact.thick else SUNK * longest
     if isinstance(contact, CircleContact):
-        disc = shapely.Point(contact.center).buffer(contact.radius, quad_segs=PIECES)
-        return (disc.buffer(depth) - disc if contact.side == "inside" else disc).buffer(-smaller)
-    places, left = edge_places(contact, FAR * longest, PIECES), is_free_on_the_left(contact)
-    if np.abs(places[0] - places[-1]).max() < SMALL * np.ptp(places, axis=0).max():
+        disc, hole = shapely.Point(contact.center).buffer(contact.radius, quad_segs=PIECES), contact.side == "inside"
+    else:
+        places, left = edge_places(contact, FAR * longest, PIECES), is_free_on_the_left(contact)
+        if np.abs(places[0] - places[-1]).max() >= SMALL * np.ptp(places, axis=0).max():
+            return shapely.LineString(places).buffer(-depth if left else depth, single_sided=True).buffer(-smaller)
         disc = shapely.Polygon(places)
-        return (disc.buffer(depth) - disc if disc.exterior.is_ccw == left else disc).buffer(-smaller)
-    return shapely.LineString(places).buffer(-depth if left else depth, single_sided=True).buffer(-smaller)
+        hole = disc.exterior.is_ccw == left
+    return (disc.buffer(depth) - disc if hole else disc).buffer(-smaller)
 
 
 def crossings(scene: Scene, states: Sequence[StationState]) -> Iterator[str]:

@@ -209,7 +209,7 @@ def may_close(state: State) -> State:
 
 
 class Pressed(NamedTuple):
-    """Closed places that may lift off together: a pair, or the joint at the begin of a ``piece`` (−1: all)."""
+    """Closed places that may lift off together: a pair, or the places on a ``piece`` (−1: all)."""
 
     pair: int
     piece: int = -1
@@ -217,8 +217,8 @@ class Pressed(NamedTuple):
     def places(self, solved: Solved) -> Flags:
         """The closed places in a state."""
         contacts = solved.state.contacts
-        joint = (contacts.places.piece == self.piece) | (self.piece < 0)
-        return np.asarray(contacts.pressing(self.pair) & joint)
+        on_piece = (contacts.places.piece == self.piece) | (self.piece < 0)
+        return np.asarray(contacts.pressing(self.pair) & on_piece)
 
     def force(self, solved: Solved) -> float:
         """Sum of the contact forces."""

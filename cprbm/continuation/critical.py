@@ -99,10 +99,10 @@ class CriticalPoint:
         )
 
 
-def opened(before: Solved, after: Solved, t: float, loss: Loss, what: str, width: float = 0.0) -> CriticalPoint:
-    """Critical point at an opening stop or contact, with the states before and after."""
-    kept, left = softest(before).curvature, softest(after).curvature
-    return CriticalPoint(t, width, loss, what, before, after, kept, left)
+def opened(before: Solved, after: Solved | None, t: float, loss: Loss, what: str, width: float = 0.0) -> CriticalPoint:
+    """Critical point at an opening stop or contact, with the states before and after; None where a body is loose."""
+    kept, left = softest(before).curvature, softest(after).curvature if after else 0.0
+    return CriticalPoint(t, width, loss, what, before, after or before, kept, left)
 
 
 def contact_ends(trail: list[Reached], beyond: float) -> CriticalPoint | None:
@@ -123,14 +123,9 @@ def contact_ends(trail: list[Reached], beyond: float) -> CriticalPoint | None:
     for ended, value, loss in ends + [(each, partial(_to_end, pair=each.pair), Loss.SLIP) for each in slips]:
         zero = _vanishes(value, earlier, last)
         if zero - last.t <= NEAR * width:
-            name = geometry.pairs[ended.pair].name
-            try:
-                after = _without(last.solved, ended)
-            except NotConvergedError:  # nothing but the contact holds a body
-                kept = softest(last.solved).curvature
-                return CriticalPoint(zero, width, loss, name, last.solved, last.solved, kept, 0.0)
-            if after.lost or loss is Loss.SLIP:
-                return opened(last.solved, after, zero, loss, name, width)
+            after = _without(last.solved, ended)
+            if after is None or after.lost or loss is Loss.SLIP:
+                return opened(last.solved, after, zero, loss, geometry.pairs[ended.pair].name, width)
     return None
 
 
@@ -143,15 +138,14 @@ def _may_lift(solved: Solved) -> list[Pressed]:
     return [*map(Pressed, sorted(pressing(solved))), *(Pressed(*place) for place in places)]
 
 
-def _without(solved: Solved, lifted: Pressed) -> Solved:
-    """The state without closed places, of which the force is about zero.
-
-    Raises:
-        NotConvergedError: the Hessian is singular.
-    """
+def _without(solved: Solved, lifted: Pressed) -> Solved | None:
+    """The state without closed places, of which the force is about zero; None where nothing else holds a body."""
     state, contacts = solved.state, solved.state.contacts
     closed = contacts.closed & ~lifted.places(solved)
-    return at_state(solved.system, replace(state, contacts=replace(contacts, closed=closed)))
+    try:
+        return at_state(solved.system, replace(state, contacts=replace(contacts, closed=closed)))
+    except NotConvergedError:  # the Hessian is singular
+        return None
 
 
 def _vanishes(value: Callable[[Solved], float], earlier: Reached, last: Reached) -> float:
