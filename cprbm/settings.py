@@ -95,6 +95,6 @@ def contacts_may_hold(scene: Scene) -> bool:
 def _unsupported_parts(scene: Scene) -> Iterator[str]:
     """For every part without support the name of the body, if the part is a body with a single motion, else empty."""
     freedoms = Freedoms(scene)
-    for mistake, names in unsupported(scene, freedoms):
+    for mistake, names in unsupported(freedoms):
         name = mistake.key.removeprefix("bodies.")
         yield name if names == {name} and len(freedoms.guide(name)) == FREEDOMS - 1 else ""

@@ -24,22 +24,21 @@ space of B contains the motions without bending: no force resists them.  A load 
 motion that no guide and no other drive holds.
 """
 
-from collections import defaultdict
-from collections.abc import Container, Iterator, Mapping, Sequence
-from math import dist
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cprbm_scene.curve_records import MEETING
+from cprbm_scene.curves import Array
 from cprbm_scene.curves import unit_vector as unit
+from cprbm_scene.fields import Record
 from cprbm_scene.mistakes import Mistake, broken, first_broken, written_place
-from cprbm_scene.names import connected
+from cprbm_scene.names import MECHANICAL, connected, references
 from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,
     BodyLoad,
-    Contact,
+    DisplacementDrive,
     Drive,
     FixedBody,
     Force,
@@ -54,7 +53,6 @@ from cprbm_scene.statement import (
     WeldedEnd,
 )
 
-Row = NDArray[np.float64]
 NEGLIGIBLE = 1e-9
 """Share of a row, or of a unit vector, that counts as round-off."""
 DEPENDENT = 1.5 * NEGLIGIBLE
@@ -79,12 +77,16 @@ class Freedoms:
         )
         self.parts = [*scene.bodies, *scene.beams]
 
-    def along(self, point: str, direction: Point) -> Row:
+    def along(self, point: str, direction: Point) -> Array:
         """Row of the displacement of a ``point`` along a direction."""
         e, (x, y) = unit(direction), (self.places[point] - self.origin) / self.extent
         return np.array([e[0], e[1], x * e[1] - y * e[0]])
 
-    def guide(self, name: str) -> list[Row]:
+    def pivot(self, point: str) -> list[Array]:
+        """Rows of the displacements of a ``point``."""
+        return [self.along(point, axis) for axis in AXES]
+
+    def guide(self, name: str) -> list[Array]:
         """Rows of the motions of a body without freedom: all of a fixed body, across a guide, of a pivot."""
         match self.scene.bodies[name]:
             case FixedBody():
@@ -93,44 +95,50 @@ class Freedoms:
                 across = self.along(body.pin or next(iter(body.points)), (-body.along[1], body.along[0]))
                 return [across] if body.pin is not None else [across, TURN]
             case TurningBody(about=about):
-                return [self.along(about, axis) for axis in AXES]
+                return self.pivot(about)
         return []
+
+    def parts_of(self, record: Record) -> set[str]:
+        """Names of the bodies and beams that a record refers to, by their points or by name."""
+        named = ((of.kind, name) for of, _, name in references(record) if of.kind in MECHANICAL)
+        return {self.owners[name] if kind == "point" else name for kind, name in named}
 
     def owner(self, acting: BodyLoad | Drive) -> str:
         """Name of the body of a load or drive."""
         return acting.body if isinstance(acting, Moment | RotationDrive) else self.owners[acting.point]
 
-    def row(self, acting: BodyLoad | Drive) -> Row:
+    def row(self, acting: BodyLoad | Drive) -> Array:
         """Row of the motion prescribed by a drive, or conjugate to a load."""
         return TURN if isinstance(acting, Moment | RotationDrive) else self.along(acting.point, acting.direction)
 
-    def wide(self, rows: Mapping[str, Row]) -> Row:
+    def wide(self, rows: Mapping[str, Array]) -> Array:
         """Wide row of length one with the ``rows`` of parts."""
         row = np.concatenate([rows.get(part, np.zeros(3)) for part in self.parts])
         return np.asarray(row / np.linalg.norm(row))
 
-    def constraints(self, drives: Container[str]) -> Iterator[tuple[str, Row]]:
+    def tied(self, one: str, other: str, rows: Iterable[Array]) -> list[Array]:
+        """Wide rows of two parts with the same motions ``rows``."""
+        return [self.wide({one: row, other: -row}) for row in rows]
+
+    def constraints(self, drives: Mapping[str, Drive]) -> Iterator[tuple[str, Array]]:
         """Keys and wide rows of guides, pins and some ``drives``."""
         for name in self.scene.bodies:
             yield from ((f"bodies.{name}", self.wide({name: row})) for row in self.guide(name))
         for name, pin in self.scene.pins.items():
-            for axis in AXES:
-                one, other = (self.along(point, axis) for point in pin.points)
-                yield f"pins.{name}", self.wide({self.owners[pin.points[0]]: one, self.owners[pin.points[1]]: -other})
-        for name, drive in self.scene.drives.items():
-            if name in drives:
-                yield f"drives.{name}", self.wide({self.owner(drive): self.row(drive)})
+            one, other = (self.owners[point] for point in pin.points)
+            yield from ((f"pins.{name}", row) for row in self.tied(one, other, self.pivot(pin.points[0])))
+        for name, drive in drives.items():
+            yield f"drives.{name}", self.wide({self.owner(drive): self.row(drive)})
 
-    def joints(self) -> Iterator[Row]:
+    def joints(self) -> Iterator[Array]:
         """Wide rows of the beams' ends, with every beam as a rigid part."""
         for name, end in ((name, end) for name, beam in self.scene.beams.items() for _, end, _ in beam.ends):
             if not isinstance(end, FreeEnd):
-                pinned = [self.along(end.point, axis) for axis in AXES]
-                for row in np.eye(3) if isinstance(end, WeldedEnd) else pinned:
-                    yield self.wide({name: row, self.owners[end.point]: -row})
+                rows = np.eye(3) if isinstance(end, WeldedEnd) else self.pivot(end.point)
+                yield from self.tied(name, self.owners[end.point], rows)
 
 
-def independent(rows: Sequence[Row]) -> list[bool]:
+def independent(rows: Sequence[Array]) -> list[bool]:
     """For every row, True if the row does not depend on the rows before: the Gram-Schmidt process, done twice."""
     basis, found = np.zeros((0, len(rows[0]) if rows else 0)), []
     for row in rows:
@@ -155,36 +163,37 @@ def wrong_mobility(scene: Scene) -> Iterator[Mistake]:
 
     Only a whole mechanism has supports and motions.
     """
-    yield from _pins(scene)
+    freedoms = Freedoms(scene)
+    yield from _pins(freedoms)
     if not scene.whole():
         return
-    freedoms = Freedoms(scene)
-    loose = list(unsupported(scene, freedoms))
-    yield from (mistake for mistake, names in loose if not _acted_on(scene, names))
-    if any(len({*map(scene.body_of, pin.points)}) == 1 for pin in scene.pins.values()):
+    loose = list(unsupported(freedoms))
+    yield from (mistake for mistake, names in loose if not _acted_on(freedoms, names))
+    if any(len(freedoms.parts_of(pin)) == 1 for pin in scene.pins.values()):
         return
     if scene.pins:
         keys, rows = zip(*freedoms.constraints(scene.drives), strict=True)
-        for key in dict.fromkeys(key for key, free in zip(keys, independent(rows), strict=True) if not free):
-            yield Mistake(
+        yield from (
+            Mistake(
                 key,
                 f"{_HELD[key.partition('.')[0]]} that guides, pins and drives hold already where it begins",
                 "as many pins and drives as there are motions to hold, each for one of its own",
             )
+            for key in dict.fromkeys(key for key, free in zip(keys, independent(rows), strict=True) if not free)
+        )
     if not loose and scene.assembly is None:
-        yield from _loose(scene, freedoms)
+        yield from _loose(freedoms)
 
 
-def _pins(scene: Scene) -> Iterator[Mistake]:
+def _pins(freedoms: Freedoms) -> Iterator[Mistake]:
     """Pins within a body, between fixed bodies, or between distant points."""
-    owners = scene.owners
-    places = {point: scene.bodies[name].points[point] for point, name in owners.items()}
-    for key, (p, q) in ((f"pins.{name}.points", pin.points) for name, pin in scene.pins.items()):
-        one, other, apart = owners[p], owners[q], dist(places[p], places[q])
+    bodies, places = freedoms.scene.bodies, freedoms.places
+    for key, (p, q) in ((f"pins.{name}.points", pin.points) for name, pin in freedoms.scene.pins.items()):
+        one, other, apart = freedoms.owners[p], freedoms.owners[q], float(np.hypot(*(places[p] - places[q])))
         yield from first_broken(
             one == other
             and Mistake(key, f"{p!r} and {q!r}, both of the body {one!r}", "points of two different bodies"),
-            scene.bodies[one].motion == scene.bodies[other].motion == "fixed"
+            bodies[one].motion == bodies[other].motion == "fixed"
             and Mistake(key, f"points of two fixed bodies, {one!r} and {other!r}", "one that moves"),
             not apart <= MEETING * np.ptp(list(places.values()), axis=0).max()
             and Mistake(
@@ -195,23 +204,24 @@ def _pins(scene: Scene) -> Iterator[Mistake]:
         )
 
 
-def unsupported(scene: Scene, freedoms: Freedoms) -> Iterator[tuple[Mistake, set[str]]]:
+def unsupported(freedoms: Freedoms) -> Iterator[tuple[Mistake, set[str]]]:
     """Scenes without ground or drives, beams without supports, bodies without a way to a support.
 
     Beside each mistake stand the names of the bodies and beams that move together.
     """
+    scene = freedoms.scene
     drives = [drive for drive in scene.drives.values() if scene.holds(drive, scene.stages[0].name)]
     if all(body.motion == "free" for body in scene.bodies.values()) and not drives:
         yield Mistake("bodies", "no fixed body", 'at least one body with motion = "fixed"'), set()
         return
-    joints = {name: [end for _, end, _ in beam.ends if end.joint != "free"] for name, beam in scene.beams.items()}
-    for name, ends in joints.items():
+    for name, beam in scene.beams.items():
+        joints = [end.joint for _, end, _ in beam.ends if end.joint != "free"]
         mistakes = first_broken(
-            not ends
+            not joints
             and Mistake(
                 f"beams.{name}", "two free ends", "at least one end that meets a body, or a contact that holds the beam"
             ),
-            [end.joint for end in ends] == ["pin"]
+            joints == ["pin"]
             and Mistake(
                 f"beams.{name}",
                 "a pin at one end and nothing at the other: the beam turns freely",
@@ -219,8 +229,7 @@ def unsupported(scene: Scene, freedoms: Freedoms) -> Iterator[tuple[Mistake, set
             ),
         )
         yield from ((mistake, {name}) for mistake in mistakes)
-    met = {name: {freedoms.owners[str(end.point)] for end in ends} for name, ends in joints.items()}
-    met |= {name: {freedoms.owners[point] for point in pin.points} for name, pin in scene.pins.items()}
+    met = {name: freedoms.parts_of(each) for name, each in (*scene.beams.items(), *scene.pins.items())}
     for name, body in scene.bodies.items():
         together, reached = connected({name}, met.values()), any(name in bodies for bodies in met.values())
         guides = [row for each in together for row in freedoms.guide(each)]
@@ -239,26 +248,21 @@ def unsupported(scene: Scene, freedoms: Freedoms) -> Iterator[tuple[Mistake, set
             )
 
 
-def _acted_on(scene: Scene, names: set[str]) -> bool:
+def _acted_on(freedoms: Freedoms, names: set[str]) -> bool:
     """True if a contact with other parts, a load or a drive may hold the bodies and beams of the ``names``."""
-    acting, owners = (*scene.loads.values(), *scene.drives.values()), scene.owners
-    moved = {getattr(each, "body", getattr(each, "beam", None)) for each in acting}
-    moved |= {owners.get(getattr(each, "point", "")) for each in acting}
-    return bool(names & moved) or any(
-        parts & names and parts - names for parts in map(_touching, scene.contacts.values())
+    scene = freedoms.scene
+    acting = (*scene.loads.values(), *scene.drives.values())
+    touching = map(freedoms.parts_of, scene.contacts.values())
+    return any(names & freedoms.parts_of(each) for each in acting) or any(
+        parts & names and parts - names for parts in touching
     )
 
 
-def _touching(contact: Contact) -> set[str]:
-    """Names of the beams and of the body of a contact."""
-    return {*contact.beams, getattr(contact, "body", contact.beams[0])}
-
-
-def _loose(scene: Scene, freedoms: Freedoms) -> Iterator[Mistake]:
+def _loose(freedoms: Freedoms) -> Iterator[Mistake]:
     """Bodies with a motion in the null space of B; of a scene without pins, contacts and stops may hold their parts."""
-    drives = [name for name, drive in scene.drives.items() if scene.holds(drive, scene.stages[0].name)]
-    held = {name for contact in scene.contacts.values() for name in _touching(contact)}
-    held |= {name for stop in scene.stops.values() for name in (stop.beam, freedoms.owners[stop.towards])}
+    scene = freedoms.scene
+    drives = {name: drive for name, drive in scene.drives.items() if scene.holds(drive, scene.stages[0].name)}
+    held = set[str]().union(*map(freedoms.parts_of, (*scene.contacts.values(), *scene.stops.values())))
     rows = (freedoms.wide({name: row}) for name in (() if scene.pins else held) for row in np.eye(3))
     constraints = (row for _, row in freedoms.constraints(drives))
     _, values, motions = np.linalg.svd(np.array([*rows, *constraints, *freedoms.joints()]))
@@ -274,7 +278,7 @@ def _loose(scene: Scene, freedoms: Freedoms) -> Iterator[Mistake]:
             )
 
 
-def _in_words(freedoms: Freedoms, motion: Row) -> str:
+def _in_words(freedoms: Freedoms, motion: Array) -> str:
     """A small motion (3,) of a body: a turn about a place, or a displacement along a direction."""
     u, v, turn = np.where(np.abs(motion) <= NEGLIGIBLE * np.abs(motion).max(), 0.0, motion)
     if turn == 0.0:
@@ -286,15 +290,13 @@ def _in_words(freedoms: Freedoms, motion: Row) -> str:
 
 def wrong_actions(scene: Scene) -> Iterator[Mistake]:
     """Loads and drives of fixed bodies or across guides, and motions with two drives or with a drive and a load."""
-    freedoms, driven = Freedoms(scene), defaultdict[str, list[str]](list)
-    drives = {f"drives.{name}": drive for name, drive in scene.drives.items()}
+    freedoms, driven = Freedoms(scene), dict[str, Drive]()
     loads = {f"loads.{name}": load for name, load in scene.loads.items() if isinstance(load, BodyLoad)}
-    for key, acting in (drives | loads).items():
-        owner = freedoms.owner(acting)
-        mistakes = list(_without_motion(freedoms, key, acting, driven[owner]))
+    for key, acting in ({f"drives.{name}": drive for name, drive in scene.drives.items()} | loads).items():
+        mistakes = list(_without_motion(freedoms, key, acting, driven))
         yield from mistakes
-        if key in drives and not mistakes:
-            driven[owner].append(key.removeprefix("drives."))
+        if not (isinstance(acting, BodyLoad) or mistakes):
+            driven[key] = acting
     for name, load in scene.loads.items():
         if isinstance(load, BeamForce | BeamMoment) and load.at in (0.0, 1.0):
             _, end, _ = scene.beams[load.beam].ends[int(load.at)]
@@ -310,7 +312,9 @@ def wrong_actions(scene: Scene) -> Iterator[Mistake]:
             )
 
 
-def _without_motion(freedoms: Freedoms, key: str, acting: BodyLoad | Drive, driven: list[str]) -> Iterator[Mistake]:
+def _without_motion(
+    freedoms: Freedoms, key: str, acting: BodyLoad | Drive, driven: Mapping[str, Drive]
+) -> Iterator[Mistake]:
     """The mistake of a fixed body, or of a motion that a guide or the ``driven`` motions of the same body hold.
 
     Loads compete with drives that hold from the start only.
@@ -324,11 +328,13 @@ def _without_motion(freedoms: Freedoms, key: str, acting: BodyLoad | Drive, driv
         allowed = f"a {place} that can move: {', '.join(map(repr, names)) or 'there is none'}"
         return iter((Mistake(f"{key}.{place}", f"{_ACTING[acting.kind]}{of} the fixed body {owner!r}", allowed),))
     row, guide = freedoms.row(acting), freedoms.guide(owner)
-    drives = {name: scene.drives[name] for name in driven if not load or scene.drives[name].begins is None}
+    drives = {
+        name: drive for name, drive in driven.items() if freedoms.owner(drive) == owner and not (load and drive.begins)
+    }
     opposed = [name for name, drive in drives.items() if _opposed(freedoms, acting, drive)]
     across = not independent([*guide, row])[-1]
     twice = bool(opposed) or not independent([*guide, *map(freedoms.row, drives.values()), row])[-1]
-    first = " and ".join(f"drives.{name}" for name in opposed or drives)
+    first = " and ".join(opposed or drives)
     return first_broken(
         across
         and turns
@@ -355,8 +361,11 @@ def _without_motion(freedoms: Freedoms, key: str, acting: BodyLoad | Drive, driv
 
 def _opposed(freedoms: Freedoms, load: BodyLoad | Drive, drive: Drive) -> bool:
     """True for a force at the place of a driven displacement, with a component along the displacement."""
-    if not isinstance(load, Force) or isinstance(drive, RotationDrive):
-        return False
-    apart = np.abs(freedoms.places[load.point] - freedoms.places[drive.point]).max()
-    component = abs(float(unit(load.direction) @ unit(drive.direction)))
-    return bool(apart <= NEGLIGIBLE * freedoms.extent) and component > NEGLIGIBLE
+    return (
+        isinstance(load, Force)
+        and isinstance(drive, DisplacementDrive)
+        and bool(
+            np.abs(freedoms.places[load.point] - freedoms.places[drive.point]).max() <= NEGLIGIBLE * freedoms.extent
+        )
+        and abs(float(unit(load.direction) @ unit(drive.direction))) > NEGLIGIBLE
+    )

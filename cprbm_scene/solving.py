@@ -67,7 +67,7 @@ def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
         ),
         "support": (
             Mistake(mistake.key, mistake.found, "joints, guides and drives that hold it", file)
-            for mistake, _ in unsupported(scene, Freedoms(scene))
+            for mistake, _ in unsupported(Freedoms(scene))
         ),
         "edge": (
             Mistake(
