@@ -177,22 +177,28 @@ class Parameter(Record):
         )
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Reading:
-    """State while a file is read: ``settings`` of parameters, the file's ``folder``, its units, and parts read so far.
+    """State while a file is read: ``settings`` of parameters, the file's ``folder`` and units, and what is read so far.
 
-    ``parts`` are loads, drives, stages and probes by the names of their fields and by their own names.  Expressions are
-    silent mistakes until the ``parameters`` are read.  ``left_out`` has keys of parts with mistakes.
+    Units are those of ``stepped`` loads and drives, and of the stations of ``stages``.  Expressions are silent mistakes
+    until the ``parameters`` are read.  ``left_out`` has tables and names of parts with mistakes.  ``again`` reads the
+    file with other parameters.  A reading is no part of the question: all readings are equal.
     """
 
     settings: Mapping[str, float | str] = field(default_factory=dict)
     folder: Path = Path()
     units: Units = field(default_factory=Units)
-    parts: dict[str, Mapping[str, Any]] = field(default_factory=dict)
-    left_out: Collection[str] = ()
+    stepped: dict[str, Unit] = field(default_factory=dict)
+    stages: Mapping[str, Unit | None] = field(default_factory=dict)
+    left_out: Collection[tuple[str, str]] = ()
+    again: Callable[..., Any] | None = None
     parameters: Mapping[str, Parameter] | None = None
     values: dict[str, Value | None] = field(default_factory=dict)
     """Values of parameters, evaluated on demand; None during the evaluation, and without a value."""
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Reading)
 
     def in_si(self, value: Any, unit: Unit | None) -> Any:  # noqa: ANN401 - whatever TOML holds
         """A number or an expression in SI, infinite if it is too large; another value, or one without unit, unchanged.
@@ -230,7 +236,7 @@ class Reading:
         return frozendict(found)
 
     def _lacks(self, table: str, name: str) -> bool:
-        return not {table, f"{table}.{name}"}.isdisjoint(self.left_out)
+        return not {(table, ""), (table, name)}.isdisjoint(self.left_out)
 
     def _evaluated(self, text: str, unit: Unit | None) -> float:
         """Number of an expression in SI, for a key with a ``unit``; None without a check of the unit."""

@@ -1,7 +1,8 @@
 """Names of a scene, unique and known to every reference; probes, claims and stages that fit the named parts."""
 
-from bisect import bisect
 from collections.abc import Collection, Container, Iterator, Mapping
+
+import numpy as np
 
 from cprbm_scene.fields import Of, Record
 from cprbm_scene.frozendict import frozendict
@@ -200,11 +201,11 @@ def wrong_probes(scene: Scene) -> Iterator[Mistake]:
 def wrong_claims(scene: Scene) -> Iterator[Mistake]:
     """Claims on unknown probes, stages or stations, and a single value for a probe of several numbers."""
     probes = {probe.name: probe for probe in scene.probes}
-    ascending = {stage.name: sorted(stage.stations) for stage in scene.stages}
+    stages = [stage.name for stage in scene.stages]
     for i, claim in enumerate(scene.claims):
         key, probe, critical = f"claims[{i}]", probes.get(claim.probe), claim.probe == CRITICAL
-        unasked = claim.stage in ascending and probe is not None and not probe.asked_in(claim.stage)
-        stations = (value for stage in scene.stages if claim.in_stage(stage.name) for value in stage.stations[:LISTED])
+        unasked = claim.stage in stages and probe is not None and not probe.asked_in(claim.stage)
+        own = [value for stage in scene.stages if claim.in_stage(stage.name) for value in stage.stations]
         yield from broken(
             not (probe or critical or scene.lacks(claim.probe, "probes"))
             and unknown_name(f"{key}.probe", claim.probe, "probe", [*probes, CRITICAL]),
@@ -220,11 +221,11 @@ def wrong_claims(scene: Scene) -> Iterator[Mistake]:
             claim.station is not None
             and not (unasked or critical)
             and scene.whole(["stages"])
-            and not any(claim.speaks_of(*station) for station in _beside(ascending, claim.station))
+            and not np.isclose(own, claim.station, rtol=1e-9, atol=0.0).any()
             and Mistake(
                 f"{key}.station",
                 f"{claim.station:g}",
-                f"a station of a stage: {', '.join(f'{value:g}' for value in stations)}",
+                f"a station of a stage: {', '.join(f'{value:g}' for value in own[:LISTED])}",
             ),
         )
 
@@ -262,13 +263,6 @@ def wrong_paper(scene: Scene) -> Iterator[Mistake]:
                 for beam in related
             ),
         )
-
-
-def _beside(ascending: Mapping[str, list[float]], value: float) -> Iterator[tuple[str, float]]:
-    """The two stations of every stage beside a value."""
-    for name, stations in ascending.items():
-        place = bisect(stations, value)
-        yield from ((name, station) for station in stations[max(0, place - 1) : place + 1])
 
 
 def _bearers(scene: Scene) -> dict[str, list[str]]:

@@ -185,7 +185,7 @@ Quantity = Literal[
 STRESSES: frozenset[Quantity] = frozenset({"bending_stress", "combined_stress"})
 """Quantities at several places along a beam."""
 
-UNITS: Mapping[Quantity, Unit] = frozendict(
+UNITS: Mapping[str, Unit] = frozendict(
     {
         "displacement": LENGTH,
         "rotation": ANGLE,
@@ -209,29 +209,21 @@ CRITICAL = "critical"
 
 def _of_stage(reading: Reading, stage: Mapping[str, Any]) -> Unit | None:
     """Unit of a stage's stations: the unit of the stepped load or drive."""
-    return _unit_of_stepped(reading, stage.get("steps", ""))
-
-
-def _unit_of_stepped(reading: Reading, name: str) -> Unit | None:
-    loads, drives = (reading.parts.get(table, {}) for table in ("loads", "drives"))
-    return getattr(loads.get(name) or drives.get(name), "unit", None)
+    return reading.stepped.get(stage.get("steps", ""))
 
 
 def _of_stations(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
     """Unit of the stations of a claim's stages."""
-    stages = [each for each in reading.parts.get("stages", {}).values() if claim.get("stage") in (None, each.name)]
-    units = {_unit_of_stepped(reading, each.steps) for each in stages} - {None}
+    units = {unit for name, unit in reading.stages.items() if claim.get("stage") in (None, name)} - {None}
     if len(units) > 1 and reading.units != Units():
         raise mistake("a number in the unit of several stages, which step different kinds", "a stage beside it")
     return next(iter(units), None)
 
 
 def _of_value(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
-    """Unit of a claim's probe."""
-    probe = reading.parts.get("probes", {}).get(str(claim.get("probe")))
-    unit = None if probe is None else UNITS.get(probe.quantity)
-    of_stage = claim.get("probe") == CRITICAL or (probe is not None and unit is None)
-    return _of_stations(reading, claim) if of_stage else unit
+    """Unit of a claim's probe, by the quantity in the probe's name."""
+    quantity = str(claim.get("probe")).rpartition(".")[2]
+    return _of_stations(reading, claim) if quantity in (CRITICAL, "closing_load") else UNITS.get(quantity)
 
 
 Station = Annotated[float, Measured(_of_stage)]

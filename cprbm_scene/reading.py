@@ -33,7 +33,7 @@ from cprbm_scene.names import (
     wrong_stages,
 )
 from cprbm_scene.offset import OffsetQuestion
-from cprbm_scene.statement import Beam, Body, Material, Origin, Probe, Scene, Stage
+from cprbm_scene.statement import Beam, Body, Material, Probe, Scene, Stage
 from cprbm_scene.units import text_of
 
 _BY_NAME = (repeated_names, unknown_names, repeated_contacts, wrong_paper, wrong_stages, wrong_probes, wrong_claims)
@@ -158,17 +158,15 @@ class PartialScene(Scene):
 class Draft:
     """Data of a scene, from which parts are left out.
 
-    ``left_out`` has keys of the parts, of the points of such bodies and beams, and of whole tables with unknown names.
+    ``left_out`` has tables and names of the parts, of the points of such bodies and beams, and of whole tables with
+    unknown names (empty).
     """
 
     def __init__(self, data: Mapping[str, Any]) -> None:
         self._lists = {key for key, value in data.items() if isinstance(value, list | tuple)}
         # parts of a list are known by their numbers in the file, as texts
-        self._parts: dict[str, Any] = {
-            **data,
-            **{key: {str(i): part for i, part in enumerate(data[key])} for key in self._lists},
-        }
-        self.left_out: set[str] = set()
+        self._parts = {**data, **{key: {str(i): part for i, part in enumerate(data[key])} for key in self._lists}}
+        self.left_out: set[tuple[str, str]] = set()
 
     @property
     def data(self) -> dict[str, Any]:
@@ -187,32 +185,33 @@ class Draft:
         if isinstance(parts, dict) and part in parts:
             self._parts[table] = {name: value for name, value in parts.items() if name != part}
             self.left_out.update(_names(table, part, parts[part]))
-        elif f"{table}.{part}" not in self.left_out:
+        elif not part or (table, part) not in self.left_out:
             self._parts.pop(table, None)
             table = next(iter(get_close_matches(table, Scene.model_fields, n=1)), table)
             # bodies have points, and free ends of beams are points of bodies
-            self.left_out.update({table, *{"bodies": ["points"], "beams": ["points", "bodies"]}.get(table, [])})
+            further = {"bodies": ["points"], "beams": ["points", "bodies"]}.get(table, [])
+            self.left_out.update((each, "") for each in (table, *further))
 
 
-def _names(table: str, part: str, item: object) -> Iterator[str]:
-    """Keys of the names that a part defines; the key of the table without readable names."""
-    yield f"{table}.{part}"
+def _names(table: str, part: str, item: object) -> Iterator[tuple[str, str]]:
+    """Tables and names that a part defines; an empty name without readable names."""
+    yield table, part
     match table, item:
         case "bodies", {"points": dict() as points}:
-            yield from (f"points.{point}" for point in points)
+            yield from (("points", point) for point in points)
         case "beams", dict():
             # an end with another joint may be a free end with a mistake
             ends = [item.get(side) for side in ("start", "end")]
-            new = (
+            new = [
                 end.get("point") for end in ends if isinstance(end, dict) and end.get("joint") not in ("weld", "pin")
-            )
-            yield from (key for point in new for key in (f"points.{point}", f"bodies.{point}-body"))
+            ]
+            yield from (key for point in new for key in (("points", f"{point}"), ("bodies", f"{point}-body")))
         case "stages", {"name": name}:
-            yield f"stages.{name}"
+            yield table, f"{name}"
         case "probes", {"of": of, "quantity": quantity}:
-            yield f"probes.{of}.{quantity}"
+            yield table, f"{of}.{quantity}"
         case (("bodies" | "stages" | "probes"), _):
-            yield {"bodies": "points"}.get(table, table)
+            yield {"bodies": "points"}.get(table, table), ""
 
 
 def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str, float | str] | None = None) -> Scene:
@@ -239,15 +238,14 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
         >>> scene_from(data).beams["beam1"].thickness
         0.003
     """
-    settings, found = dict(parameters or {}), list[Mistake]()
+    again, found = partial(scene_from, data, file=file), list[Mistake]()
     draft = Draft({"parameters": {}, **data})  # the reading needs parameters, be there none
     while len(found) <= MOST:
-        left_out = frozenset(draft.left_out)
-        reading = Reading(settings, Path(file).parent, left_out=left_out)
-        kind = Scene if all(key.startswith(_FIRST) for key in left_out) else PartialScene
+        reading = Reading(dict(parameters or {}), Path(file).parent, left_out=frozenset(draft.left_out), again=again)
+        kind = Scene if all(table in _FIRST for table, _ in reading.left_out) else PartialScene
         scene, mistakes = _validated(kind, draft.data, file, reading)
         if scene is not None:
-            scene._origin = Origin(reading)
+            scene._reading = reading
             mistakes = list(islice(unknown_names(scene, MECHANICAL), _AT_ONCE))
             found += () if mistakes else first_of(map(draft.of_file, mistakes_in(scene)))
         first = [each for each in mistakes if each.key.startswith(_FIRST)]
@@ -255,11 +253,10 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
         found += (each for each in mistakes if each.found)
         for each in mistakes:
             draft.leave_out(each.key)
-        if left_out == draft.left_out:
+        if reading.left_out == draft.left_out:
             break
     if scene is None or found:
         raise SceneError([replace(each, file=file) for each in first_of(found)])
-    scene._origin = Origin(reading, partial(scene_from, data, file=file))
     return scene
 
 
@@ -269,8 +266,7 @@ def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
     Raises:
         SceneError: the data are no valid question. The error names every mistake with its key.
     """
-    reading = Reading(parameters={})
-    question, found = _validated(OffsetQuestion, data, file, reading)
+    question, found = _validated(OffsetQuestion, data, file, Reading(parameters={}))
     if question is None:
         raise SceneError([replace(each, file=file) for each in first_of(found)])
     return question

@@ -10,10 +10,9 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterator, Mapping
 from itertools import chain
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, cast
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
@@ -159,17 +158,6 @@ MECHANISM = frozenset(
 """Tables of a file that decide how the mechanism moves."""
 
 
-@dataclass(frozen=True, slots=True)
-class Origin:
-    """Reading of a scene's file, and a reading with other parameters: no part of the question.
-
-    ``left_out`` of the reading are keys of parts with mistakes that a scene lacks while the reader checks the others.
-    """
-
-    reading: Reading = field(default_factory=Reading, compare=False)
-    again: Callable[..., Scene] | None = field(default=None, compare=False)
-
-
 class Scene(Record):
     """The problem statement: mechanism, loading, requested quantities.
 
@@ -218,7 +206,7 @@ class Scene(Record):
     verdict_limit: PositiveShare = 0.015
     """Largest stated uncertainty for the verdict AGREE, a fraction of a probe's scale."""
     file: str = ""
-    _origin: Origin = PrivateAttr(default=Origin())
+    _reading: Reading = PrivateAttr(default_factory=Reading)
 
     def rules(self) -> Iterator[Mistake]:
         """Pairs of the same edge."""
@@ -231,7 +219,7 @@ class Scene(Record):
             )
         )
 
-    @field_validator("units", "parameters", "loads", "drives", "stages", "probes")
+    @field_validator("units", "parameters", "loads", "drives", "stages")
     @classmethod
     def _register(cls, value: Any, info: ValidationInfo) -> object:  # noqa: ANN401 - of several fields
         """The value itself, with units stored for later fields; SI units in place of the file's units."""
@@ -244,8 +232,10 @@ class Scene(Record):
                 return Units()
             case "parameters", Mapping() as parameters:
                 return reading.register(parameters)
-        parts = value if isinstance(value, Mapping) else {each.name: each for each in value}
-        reading.parts[str(info.field_name)] = parts
+            case "stages", tuple() as stages:
+                reading.stages = {stage.name: reading.stepped.get(stage.steps) for stage in stages}
+            case _, Mapping() as parts:
+                reading.stepped |= {name: part.unit for name, part in parts.items()}
         return value
 
     def completed(self) -> Mapping[str, object]:
@@ -282,10 +272,10 @@ class Scene(Record):
             >>> hinge.beams["beam1"].thickness
             0.0019
         """
-        again, settings = self._origin.again, self._origin.reading.settings
+        again, settings = self._reading.again, self._reading.settings
         if again is None or not self.parameters or again(parameters=settings) != self:
             raise ValueError("found a scene without parameters or altered after reading; allowed: a scene from a file")
-        return again(parameters={**settings, **values})
+        return cast("Scene", again(parameters={**settings, **values}))
 
     def __repr__(self) -> str:
         """Name, and numbers of beams, contacts and probes."""
@@ -294,14 +284,13 @@ class Scene(Record):
     @property
     def display_units(self) -> Units:
         """Units of the scene's file, for tables and figures; ``model_fields_set`` lists the stated ones."""
-        return self._origin.reading.units
+        return self._reading.units
 
     def left_out(self, *tables: str) -> list[str]:
         """Names, but for forbidden names, of the parts of ``tables`` with mistakes that the reader left out."""
-        keys = (key.partition(".") for key in sorted(self._origin.reading.left_out))
         return [
             name
-            for table, _, name in keys
+            for table, name in sorted(self._reading.left_out)
             if table in tables and all(re.search(f"{NAME}|^$", part) for part in name.split("."))
         ]
 
@@ -311,7 +300,7 @@ class Scene(Record):
 
     def whole(self, tables: Collection[str] = MECHANISM) -> bool:
         """False if the reader left out parts of the ``tables``."""
-        return not any(key.partition(".")[0] in tables for key in self._origin.reading.left_out)
+        return not any(table in tables for table, _ in self._reading.left_out)
 
     def limit(self, probe: Probe) -> float:
         """Largest total uncertainty, a fraction of the probe's scale, for the verdict AGREE."""
