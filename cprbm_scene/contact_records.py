@@ -1,7 +1,7 @@
 """Records of stops and contacts: two beams, a beam with itself, a beam with a rigid circle or edge."""
 
 from collections.abc import Iterator
-from itertools import islice, pairwise
+from itertools import pairwise
 from math import dist, isnan, nan
 from typing import Annotated, ClassVar, Literal
 
@@ -12,7 +12,7 @@ from cprbm_scene.curve_records import MOST_POINTS, Ellipse, Graph, Polynomial, S
 from cprbm_scene.curves import unit_vector
 from cprbm_scene.fields import Angle, Direction, Length, Name, Named, Of, Point, PositiveLength, Record
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, broken
+from cprbm_scene.mistakes import Mistake, broken, first_alone
 from cprbm_scene.part_records import BeamName, BodyName, PointName
 
 BACKWARDS = 1e-3
@@ -179,11 +179,9 @@ class LineContact(RigidContact):
         """True if the last point is the first."""
         return len(self.points) > 2 and self.points[0] == self.points[-1]
 
+    @first_alone
     def rules(self) -> Iterator[Mistake]:
-        """The first mistake: too many points, repeated points, lines with reversals or crossings."""
-        return islice(self._mistakes(), 1)
-
-    def _mistakes(self) -> Iterator[Mistake]:
+        """Too many points, repeated points, lines with reversals or crossings."""
         pieces = list(pairwise(self.points))
         yield from broken(
             len(self.points) > MOST_POINTS

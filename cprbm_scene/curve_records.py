@@ -11,14 +11,14 @@ Bounds are on dimensionless numbers:
 import operator
 from collections.abc import Iterator
 from functools import lru_cache, reduce
-from itertools import accumulate, islice, pairwise, repeat
+from itertools import accumulate, pairwise, repeat
 from math import cos, dist, inf, isfinite, sin
 from typing import Annotated, Literal, cast
 
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
 
-from cprbm_scene.curves import Curve, circular_arc, graph, spline, steepest, straight_line
+from cprbm_scene.curves import Curve, circular_arc, graph, spline, straight_line
 from cprbm_scene.fields import (
     OR_EXPRESSION,
     Angle,
@@ -30,7 +30,7 @@ from cprbm_scene.fields import (
     Reading,
     Record,
 )
-from cprbm_scene.mistakes import Mistake, broken, written_place
+from cprbm_scene.mistakes import Mistake, broken, first_alone, written_place
 from cprbm_scene.units import read_points
 
 SHORTEST = 1e-6
@@ -64,9 +64,42 @@ SplinePoints = Annotated[
 class _Curve(Record):
     """Neutral line between ``start`` and ``end``, m."""
 
+    @first_alone
     def rules(self) -> Iterator[Mistake]:
-        """The first mistake of the curve: later rules need the geometry that earlier rules ensure."""
-        return islice(_curve_rules(cast("NeutralLine", self)), 1)
+        """Mistakes of ends, arcs and lengths."""
+        curve = cast("NeutralLine", self)
+        radii = [dist(end, curve.center) for end in (curve.start, curve.end)] if isinstance(curve, Arc) else [1.0, 1.0]
+        yield from broken(
+            curve.start == curve.end
+            and Mistake(
+                "", f"a start and an end at the same place {written_place(curve.start)} m", "two different places"
+            ),
+            min(radii) == 0.0 and Mistake("", "an end at the arc's own center", "ends on a circle about the center"),
+            not abs(radii[1] - radii[0]) <= MEETING * radii[0]
+            and Mistake(
+                "",
+                f"ends that lie on no common circle: the start is {radii[0]:.9g} m from the center, the end "
+                f"{radii[1]:.9g} m",
+                f"distances that differ by at most {MEETING:g} of the radius",
+            ),
+        )
+        places = (curve.start, curve.end, *getattr(curve, "points", ()), getattr(curve, "center", curve.start))
+        length, largest = shape_of(curve).length, max(abs(number) for place in places for number in place)
+        term = curve.largest_term if isinstance(curve, Graph) else 0.0
+        yield from broken(
+            not SHORTEST * largest <= length < inf
+            and Mistake(
+                "",
+                f"a length of {length:.3g} m at coordinates up to {largest:.3g} m",
+                f"a length of at least {SHORTEST:g} of the largest coordinate",
+            ),
+            not SHORTEST * term <= length
+            and Mistake(
+                "coefficients",
+                f"a term of {term:.3g} m in a curve of {length:.3g} m",
+                f"a length of at least {SHORTEST:g} of the largest term",
+            ),
+        )
 
 
 class Line(_Curve):
@@ -117,15 +150,49 @@ class Graph(Record):
         value = reduce(lambda sum_, coefficient: sum_ * variable + coefficient, reversed(self.coefficients), 0.0)
         return (variable, value) if self.axis == "x" else (value, variable)
 
+    @property
+    def largest_term(self) -> float:
+        """Largest term |c_k v^k| of f in the range, m; not finite beyond the range of floating-point numbers."""
+        variable = max(abs(v) for v in self.range)
+        powers = accumulate(repeat(variable, len(self.coefficients) - 1), operator.mul, initial=1.0)
+        return max(abs(c) * power if c else 0.0 for c, power in zip(self.coefficients, powers, strict=True))
+
+    @first_alone
     def rules(self) -> Iterator[Mistake]:
-        """The first mistake of coefficients and ranges without a graph of finite slope."""
-        return islice(_graph_rules(self), 1)
+        """Mistakes of coefficients and ranges without a graph of finite slope."""
+        (first, last), count, axis = self.range, len(self.coefficients), "xy".index(self.axis)
+        yield from broken(
+            count > HIGHEST_DEGREE + 1
+            and Mistake("coefficients", f"{count} coefficients", f"at most {HIGHEST_DEGREE + 1} of them"),
+            first == last
+            and Mistake("range", f"a range from {first:g} m to the same {last:g} m", "two different values"),
+        )
+        slope = inf
+        if isfinite(self.largest_term) and isfinite(last - first):
+            with np.errstate(over="ignore", invalid="ignore"):
+                slope = np.max(np.abs(shape_of(self).derivative(shape_of(self).samples, 1)[:, 1 - axis])) / abs(
+                    last - first
+                )
+        yield from broken(
+            not slope <= STEEPEST
+            and Mistake(
+                "coefficients",
+                f"a slope of up to {slope:.3g} in the range",
+                f"a slope of at most {STEEPEST:g} (a steeper curve may be a function of {'yx'[axis]})",
+            )
+        )
 
 
 class Polynomial(_Curve, Graph):
     """Graph of a polynomial f, in either sense along its axis."""
 
     kind: Literal["polynomial"]
+
+    @first_alone
+    def rules(self) -> Iterator[Mistake]:
+        """Mistakes of the graph, then of the curve."""
+        yield from Graph.rules(self)
+        yield from _Curve.rules(self)
 
 
 class SmoothLine(_Curve):
@@ -147,6 +214,37 @@ class SmoothLine(_Curve):
     def end(self) -> Point:
         """End of the line, m."""
         return self.points[-1]
+
+    @first_alone
+    def rules(self) -> Iterator[Mistake]:
+        """Mistakes of points, then of the curve."""
+        count, chords = len(self.points), [dist(*pair) for pair in pairwise(self.points)]
+        whole = sum(chords)
+        yield from broken(
+            count > MOST_POINTS and Mistake("points", f"{count} points", f"at most {MOST_POINTS} of them"),
+            *(
+                not SHORTEST * whole <= chord < inf
+                and Mistake(
+                    f"points[{i}]",
+                    f"{written_place(self.points[i])} m, {chord:.3g} m from the point before",
+                    f"a point at least {SHORTEST:g} of all the distances between the points away from the one before",
+                )
+                for i, chord in enumerate(chords, start=1)
+            ),
+        )
+        shape = shape_of(self)
+        # a pure number, zero at a cusp
+        speed = shape.speed(shape.samples)
+        yield from broken(
+            not np.min(speed) >= SLOWEST
+            and Mistake(
+                "points",
+                "points through which a smooth line has to turn back on the spot, near "
+                f"{written_place(shape.place(shape.samples[[np.argmin(speed)]])[0])} m",
+                "points (and directions) that a smooth line follows; more of them where it turns sharply",
+            )
+        )
+        yield from super().rules()
 
 
 class Spline(SmoothLine):
@@ -219,97 +317,4 @@ def with_half_waves(curve: NeutralLine, amplitude: float, half_waves: int) -> Sp
     start, *points, end = ((x, y) for x, y in np.vstack((ends[:1], inner[1:-1], ends[1:])).tolist())
     return Spline.model_construct(
         kind="spline", points=(curve.start, *points, curve.end), start_direction=start, end_direction=end
-    )
-
-
-def _curve_rules(curve: NeutralLine | SmoothLine) -> Iterator[Mistake]:
-    if isinstance(curve, Polynomial):
-        yield from _graph_rules(curve)
-    if isinstance(curve, SmoothLine):
-        yield from _spline_rules(curve)
-    radii = [dist(end, curve.center) for end in (curve.start, curve.end)] if isinstance(curve, Arc) else [1.0, 1.0]
-    yield from broken(
-        curve.start == curve.end
-        and Mistake("", f"a start and an end at the same place {written_place(curve.start)} m", "two different places"),
-        min(radii) == 0.0 and Mistake("", "an end at the arc's own center", "ends on a circle about the center"),
-        not abs(radii[1] - radii[0]) <= MEETING * radii[0]
-        and Mistake(
-            "",
-            f"ends that lie on no common circle: the start is {radii[0]:.9g} m from the center, the end "
-            f"{radii[1]:.9g} m",
-            f"distances that differ by at most {MEETING:g} of the radius",
-        ),
-    )
-    places = (curve.start, curve.end, *getattr(curve, "points", ()), getattr(curve, "center", curve.start))
-    length, largest = shape_of(curve).length, max(abs(number) for place in places for number in place)
-    term = _largest_term(curve) if isinstance(curve, Polynomial) else 0.0
-    yield from broken(
-        not SHORTEST * largest <= length < inf
-        and Mistake(
-            "",
-            f"a length of {length:.3g} m at coordinates up to {largest:.3g} m",
-            f"a length of at least {SHORTEST:g} of the largest coordinate",
-        ),
-        not SHORTEST * term <= length
-        and Mistake(
-            "coefficients",
-            f"a term of {term:.3g} m in a curve of {length:.3g} m",
-            f"a length of at least {SHORTEST:g} of the largest term",
-        ),
-    )
-
-
-def _graph_rules(curve: Graph) -> Iterator[Mistake]:
-    """Mistakes of a polynomial that leave no graph with a finite slope; a rule needs the rules before."""
-    (first, last), count, axis = curve.range, len(curve.coefficients), "xy".index(curve.axis)
-    yield from broken(
-        count > HIGHEST_DEGREE + 1
-        and Mistake("coefficients", f"{count} coefficients", f"at most {HIGHEST_DEGREE + 1} of them"),
-        first == last and Mistake("range", f"a range from {first:g} m to the same {last:g} m", "two different values"),
-    )
-    finite = isfinite(_largest_term(curve)) and isfinite(last - first)
-    slope = steepest(shape_of(curve), along=axis) if finite else inf
-    yield from broken(
-        not slope <= STEEPEST
-        and Mistake(
-            "coefficients",
-            f"a slope of up to {slope:.3g} in the range",
-            f"a slope of at most {STEEPEST:g} (a steeper curve may be a function of {'yx'[axis]})",
-        )
-    )
-
-
-def _largest_term(curve: Graph) -> float:
-    """Largest term |c_k v^k| of f in the range, m; not finite beyond the range of floating-point numbers."""
-    variable = max(abs(v) for v in curve.range)
-    powers = accumulate(repeat(variable, len(curve.coefficients) - 1), operator.mul, initial=1.0)
-    return max(abs(c) * power if c else 0.0 for c, power in zip(curve.coefficients, powers, strict=True))
-
-
-def _spline_rules(curve: SmoothLine) -> Iterator[Mistake]:
-    count, chords = len(curve.points), [dist(*pair) for pair in pairwise(curve.points)]
-    whole = sum(chords)
-    yield from broken(
-        count > MOST_POINTS and Mistake("points", f"{count} points", f"at most {MOST_POINTS} of them"),
-        *(
-            not SHORTEST * whole <= chord < inf
-            and Mistake(
-                f"points[{i}]",
-                f"{written_place(curve.points[i])} m, {chord:.3g} m from the point before",
-                f"a point at least {SHORTEST:g} of all the distances between the points away from the one before",
-            )
-            for i, chord in enumerate(chords, start=1)
-        ),
-    )
-    shape = shape_of(curve)
-    # a pure number, zero at a cusp
-    speed = shape.speed(shape.samples)
-    yield from broken(
-        not np.min(speed) >= SLOWEST
-        and Mistake(
-            "points",
-            "points through which a smooth line has to turn back on the spot, near "
-            f"{written_place(shape.place(shape.samples[[np.argmin(speed)]])[0])} m",
-            "points (and directions) that a smooth line follows; more of them where it turns sharply",
-        )
     )

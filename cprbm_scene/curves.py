@@ -203,13 +203,6 @@ def graph(coefficients: Sequence[float], first: float, last: float, *, along: in
     return Curve((value, first) if along else (first, value), extent, q, np.linspace(0.0, 1.0, _PANELS + 1), samples)
 
 
-def steepest(curve: Curve, *, along: int) -> float:
-    """Largest |f'| of a graph in the range; not finite beyond the range of floating-point numbers."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        rates = np.abs(curve.derivative(curve.samples, 1))
-        return float(np.max(rates[:, 1 - along] / rates[:, along]))
-
-
 def spline(points: Sequence[Point], directions: tuple[Point | None, Point | None]) -> Curve:
     """Cubic spline of the chord length through ``points`` (at least three), m.
 

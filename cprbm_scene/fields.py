@@ -34,6 +34,7 @@ from pydantic import (
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     ModelWrapValidatorHandler,
+    PositiveFloat,
     StringConstraints,
     ValidationError,
     ValidationInfo,
@@ -144,15 +145,12 @@ def _or_expression(value: object, handler: ValidatorFunctionWrapHandler, info: V
     return value if of_file and isinstance(value, str) and value.startswith("=") else handler(value)
 
 
-Scatter = Annotated[float, Field(gt=0.0)] | None
-
-
 class Tolerance(Record):
     """Scatter of a parameter, normal or uniform."""
 
-    normal: Scatter = None
+    normal: PositiveFloat | None = None
     """Standard deviation of a normal scatter, in the parameter's unit."""
-    uniform: Scatter = None
+    uniform: PositiveFloat | None = None
     """Half of the width of a uniform scatter, in the parameter's unit."""
 
 
@@ -206,11 +204,11 @@ class Reading:
         Raises:
             SceneError: the expression has no value, or another unit.
         """
-        if isinstance(value, str) and value.startswith("="):
-            return self._evaluated(value, unit)
-        if unit is None or isinstance(value, bool) or not isinstance(value, int | float):
-            return value
         with suppress(OverflowError):
+            if isinstance(value, str) and value.startswith("="):
+                return self._evaluated(value, unit)
+            if unit is None or isinstance(value, bool) or not isinstance(value, int | float):
+                return value
             return unit.in_si(float(value), self.units)
         return math.inf
 
@@ -299,8 +297,9 @@ class Reading:
             number, (size, own) = float(written[1]), unit_of(written[2] or given.unit, name)
         elif setting is not None:
             number, size = math.nan if isinstance(setting, str) else setting, 1.0
-        if not math.isfinite(number) or own.dimension != unit.dimension:
-            raise mistake(repr(setting), f"a finite number in {given.unit or 'no unit'}, such as 1.9{given.unit}", name)
+        if not math.isfinite(number * size) or own.dimension != unit.dimension:
+            found = repr(given.value if setting is None else setting)
+            raise mistake(found, f"a finite number in {given.unit or 'no unit'}, such as 1.9{given.unit}", name)
         return Value(float(Fraction(repr(number)) * Fraction(repr(size))), unit if given.unit else None)
 
 

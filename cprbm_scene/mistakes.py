@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from itertools import islice
 from typing import Any, NoReturn, get_args
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
@@ -74,6 +72,11 @@ def first_broken(*rules: object) -> Iterator[Mistake]:
     return islice(broken(*rules), 1)
 
 
+def first_alone(rules: Callable[[Any], Iterator[Mistake]]) -> Callable[[Any], Iterator[Mistake]]:
+    """The rules of a record up to the first mistake: later rules need what earlier rules ensure."""
+    return lambda record: islice(rules(record), 1)
+
+
 MOST = 100
 """Largest number of mistakes in an error: a larger number repeats a single mistake."""
 
@@ -117,9 +120,9 @@ def unknown_name(key: str, name: str, what: str, known: Iterable[str]) -> Mistak
     return Mistake(key, f"{name!r}, which names no {what}{hint(name, names)}", f"the name of a {what}: {listed}")
 
 
-def written_place(place: Sequence[float] | NDArray[np.float64]) -> str:
+def written_place(place: Iterable[float]) -> str:
     """A place as text."""
-    return f"({place[0]:.9g}, {place[1]:.9g})"
+    return "({:.9g}, {:.9g})".format(*place)
 
 
 _MEASURED = re.compile(r"\s*[-+]?[\d.]+(?:e[-+]?\d+)?\s*[^\d\s]{1,8}\s*", re.ASCII | re.IGNORECASE)

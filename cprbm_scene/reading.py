@@ -78,15 +78,13 @@ def toml_data(path: str | Path) -> dict[str, Any]:
     readable = "a readable TOML file in UTF-8"
     try:
         text = text_of(path, "TOML", readable)
-        if not _DEEP_KEY.search(text):
-            return tomllib.loads(text)
-        wrong = mistake(f"a key of more than {DEEPEST} parts", "the keys of a scene")
-    except SceneError as error:
-        wrong = error
+        if _DEEP_KEY.search(text):
+            raise mistake(f"a key of more than {DEEPEST} parts", "the keys of a scene")
+        return tomllib.loads(text)
     except (RecursionError, ValueError) as error:
         # nested too deeply, or an integer with too many digits
-        wrong = mistake(f"text that is no TOML ({error})", readable)
-    raise SceneError([replace(each, file=str(path)) for each in wrong.mistakes])
+        wrong = error if isinstance(error, SceneError) else mistake(f"text that is no TOML ({error})", readable)
+        raise SceneError([replace(each, file=str(path)) for each in wrong.mistakes]) from None
 
 
 def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) -> Scene:
@@ -133,8 +131,7 @@ def read_question(path: str | Path, parameters: Mapping[str, float | str] | None
     if "question" not in data:
         return scene_from(data, file=str(path), parameters=parameters)
     if parameters:
-        found = f"values of {', '.join(parameters)}"
-        raise SceneError([Mistake("parameters", found, "a scene of beams", str(path))])
+        raise SceneError([Mistake("parameters", f"values of {', '.join(parameters)}", "a scene of beams", str(path))])
     return offset_from(data, file=str(path))
 
 
@@ -295,7 +292,4 @@ def _tuples(value: Any) -> Any:  # noqa: ANN401 - whatever TOML holds
 
 def schema() -> dict[str, Any]:
     """The JSON schema of a scene file as plain data, in the dialect that editors of TOML know."""
-    found = Scene.model_json_schema(mode="validation")
-    # the name of the file is no key of the file
-    found["properties"].pop("file")
-    return {"$schema": "http://json-schema.org/draft-07/schema#", **found, "title": "Scene"}
+    return {"$schema": "http://json-schema.org/draft-07/schema#", **Scene.model_json_schema(), "title": "Scene"}

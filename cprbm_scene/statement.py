@@ -15,6 +15,7 @@ from itertools import chain
 from typing import Annotated, Any, Literal, cast
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
+from pydantic.json_schema import SkipJsonSchema
 
 from cprbm_scene.contact_records import (
     BeamContact,
@@ -205,7 +206,7 @@ class Scene(Record):
     """Statements of the source on probes."""
     verdict_limit: PositiveShare = 0.015
     """Largest stated uncertainty for the verdict AGREE, a fraction of a probe's scale."""
-    file: str = ""
+    file: SkipJsonSchema[str] = ""  # no key of a file
     _reading: Reading = PrivateAttr(default_factory=Reading)
 
     def rules(self) -> Iterator[Mistake]:

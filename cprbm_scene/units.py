@@ -72,10 +72,6 @@ class Unit(NamedTuple):
         size = math.prod(SIZES[name] ** power for (_, name), power in zip(units, self, strict=True) if power)
         return float(Fraction(repr(value)) * size) if size != 1 and math.isfinite(value) else value
 
-    def times(self, other: Unit, power: int = 1) -> Unit:
-        """Product with a power of another unit."""
-        return Unit(*(one + power * two for one, two in zip(self, other, strict=True)))
-
     def __str__(self) -> str:
         named = zip(("m", "N", "rad", "Pa"), self, strict=True)
         return "*".join(f"{name}**{power}" if power != 1 else name for name, power in named if power)
@@ -136,7 +132,8 @@ def _product(function: Callable[..., float], values: Sequence[Value], units: Fil
     """Product or quotient of two values."""
     (one, unit), (other, second) = values
     if second is not None:
-        unit = (unit or NUMBER).times(second, -1 if function is operator.truediv else 1)
+        sense = -1 if function is operator.truediv else 1
+        unit = Unit(*(power + sense * further for power, further in zip(unit or NUMBER, second, strict=True)))
     return Value(function(one, other), unit)
 
 
