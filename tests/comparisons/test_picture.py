@@ -28,8 +28,7 @@ from cprbm_scene import (
     scene_from,
 )
 from cprbm_scene.frozendict import frozendict
-from tests.cprbm_scene.editing import edited
-from tests.cprbm_scene.scenes import LINKAGE
+from tests.cprbm_scene.editing import LINKAGE, edited
 from tests.verdict.jumping import Jumping
 
 RIGID = {"beam": "spring", "thick": False}

@@ -1,10 +1,11 @@
-"""Files: what can be read, tables of points, units, and the immutable scene."""
+"""Files and data: what can be read, units, parameters, tables of points, notes, and the immutable scene."""
 
 import copy
 import math
 import pickle
 from contextlib import suppress
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated, get_args, get_origin, get_type_hints
 
 import pytest
@@ -17,19 +18,86 @@ from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import MOST
 from cprbm_scene.reading import DEEPEST
 from cprbm_scene.solving import notes
-from cprbm_scene.statement import Record, Units
+from cprbm_scene.statement import BeamForce, DisplacementDrive, DistributedLoad, Record, Units
 from cprbm_scene.units import LONGEST
-from tests.cprbm_scene.conftest import HINGE as FILE
-from tests.cprbm_scene.editing import HINGE, REMOVED, edited, mistakes, two_lines
+from tests.cprbm_scene.editing import (
+    BOWED,
+    CIRCULAR,
+    DRIVEN,
+    FILE,
+    HINGE,
+    LINKAGE,
+    LOADED,
+    PARABOLA,
+    PARAMETRIC,
+    POINTS,
+    REMOVED,
+    SLIDING,
+    THROUGH_POINTS,
+    TIP,
+    TURN,
+    A,
+    R,
+    cantilever,
+    edited,
+    mistakes,
+    two_lines,
+)
 from tests.robustness.toml import toml_of
 
 
-def _refusal(path):
+def refused(question, *arguments, **options):
+    """The error of a question that is refused."""
     with pytest.raises(SceneError) as caught:
-        read(path)
-    (mistake,) = caught.value.mistakes
-    assert mistake.file == str(path)
-    return mistake.found
+        question(*arguments, **options)
+    return caught.value
+
+
+MANY_PARTS = f"a key of more than {DEEPEST} parts"
+REFUSED = [
+    *((text, "no TOML") for text in (b"name = ", b"[beams", b"a = 1\na = 2", b"\0")),
+    *((b"a = " + text * 99_999, "text that is no TOML") for text in (b"[", b"{a=", b"9")),
+    (b"\x7fELF\x80\xff\xfe", "no UTF-8 text (at byte 4)"),
+    (b"#" * (LONGEST + 1), "a file that is larger; allowed: at most 1 MB"),
+    # the parser takes the square of the number of parts
+    *(
+        (begin + b".".join([name] * 100_000) + end, MANY_PARTS)
+        for name in (b"a", b'"a b"', b"'c'", b"a ")
+        for begin, end in ((b"", b" = 1"), (b"[", b"]"), (b"x = {", b" = 1}"))
+    ),
+]
+
+
+def test_a_file_that_cannot_be_read_is_refused_with_its_name(tmp_path):
+    path = tmp_path / "file.toml"
+    for text, words in REFUSED:
+        path.write_bytes(text)
+        assert words in str(refused(read, path))
+        assert [mistake.file for mistake in refused(read, path).mistakes] == [str(path)]
+    for name, words in (
+        (tmp_path / "none.toml", "No such file"),
+        (tmp_path, "directory"),
+        ("a\0.toml", "cannot be read"),
+    ):
+        assert words in str(refused(read, name))
+    for text in (b"#" * LONGEST, b".".join([b"a"] * DEEPEST) + b" = 1"):
+        path.write_bytes(text)
+        assert not any(words in str(refused(read, path)) for words in ("larger", MANY_PARTS))
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="the system has no file without end")
+def test_a_file_without_end_is_refused():
+    assert "a file that is larger" in str(refused(read, "/dev/zero"))
+
+
+def test_the_message_names_file_key_finding_and_what_is_allowed(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(FILE.read_text("utf-8").replace('thickness = "= t"', "thickness = -0.002", 1), "utf-8")
+    words = "beams.beam1.thickness: found -0.002; allowed: a number greater than 0"
+    assert str(refused(read, path)) == f"{path}: {words}"
+    path.write_text("")
+    required = {"name", "materials", "beams", "bodies", "stages", "probes"}
+    assert {mistake.key for mistake in refused(read, path).mistakes} == required
 
 
 def test_the_hinge_reads_as_it_is_written():
@@ -58,119 +126,59 @@ def test_a_scene_is_frozen_all_the_way_down():
     assert hash(scene) == hash(read(FILE))
 
 
-def test_a_missing_file(tmp_path):
-    assert "No such file" in _refusal(tmp_path / "none.toml")
+WRITTEN = [
+    (LINKAGE, lambda scene: scene.pins["at_A"].points, ("A", "A1")),
+    (CIRCULAR, lambda scene: scene.contacts["touch"].center, (0.0, -R)),
+    (CIRCULAR, lambda scene: (scene.contacts["touch"].beams, scene.contacts["touch"].radius), (("beam",), R)),
+    (edited(("contacts/touch/thick", REMOVED), base=CIRCULAR), lambda scene: scene.contacts["touch"].thick, True),
+    (BOWED, lambda scene: scene.beams["lower"].curve.coefficients, tuple(PARABOLA["coefficients"])),
+    (BOWED, lambda scene: scene.beams["lower"].curve.end, (0.05 + A / 2 * TIP**2, TIP)),
+    (THROUGH_POINTS, lambda scene: scene.beams["lower"].curve.points, tuple(map(tuple, POINTS))),
+    (SLIDING, lambda scene: [body.motion for body in scene.bodies.values()], ["fixed", "slides"]),
+    (DRIVEN, lambda scene: type(scene.stepped(scene.stages[0])), DisplacementDrive),
+    (edited(("drives/d", TURN), base=DRIVEN), lambda scene: scene.stepped(scene.stages[0]).kind, "rotation"),
+    (
+        LOADED,
+        lambda scene: scene.loads["F"],
+        BeamForce(kind="beam_force", beam="lower", at=0.3, direction=(0.0, -2.0)),
+    ),
+    (
+        edited(("loads/q/along", [0, 0.25]), base=LOADED),
+        lambda scene: scene.loads["q"],
+        DistributedLoad(kind="distributed", beam="upper", direction=(0.0, -1.0), along=(0.0, 0.25)),
+    ),
+    (LOADED, lambda scene: scene.loads["q"].along, (0.0, 1.0)),
+    # a claim without a station is about every station
+    (edited(("claims/0/station", REMOVED)), lambda scene: [claim.station for claim in scene.claims], [None, 0.67]),
+]
 
 
-def test_a_folder(tmp_path):
-    assert "directory" in _refusal(tmp_path)
-
-
-def test_a_name_that_is_no_path():
-    assert "cannot be read" in _refusal("a\0b.toml")
-
-
-def test_a_binary_file(tmp_path):
-    path = tmp_path / "binary.toml"
-    path.write_bytes(b"\x7fELF\x80\xff\xfe")
-    assert "no UTF-8 text (at byte 4)" in _refusal(path)
-
-
-@pytest.mark.parametrize("text", ["name = ", "[beams", "a = 1\na = 2", "\0", "x = " + "[" * 5000])
-def test_broken_toml(tmp_path, text):
-    path = tmp_path / "broken.toml"
-    path.write_text(text)
-    assert "no TOML" in _refusal(path)
-
-
-def test_an_empty_file_names_every_required_key(tmp_path):
-    path = tmp_path / "empty.toml"
-    path.write_text("")
-    with pytest.raises(SceneError) as caught:
-        read(path)
-    required = {"name", "materials", "beams", "bodies", "stages", "probes"}
-    assert {mistake.key for mistake in caught.value.mistakes} == required
-
-
-def test_the_message_names_file_key_finding_and_what_is_allowed(tmp_path, hinge_text):
-    path = tmp_path / "case.toml"
-    path.write_text(hinge_text.replace('thickness = "= t"', "thickness = -0.002", 1))
-    with pytest.raises(SceneError) as caught:
-        read(path)
-    assert str(caught.value) == (f"{path}: beams.beam1.thickness: found -0.002; allowed: a number greater than 0")
-
-
-def test_a_claim_without_a_station_is_about_every_station():
-    scene = scene_from(edited(("claims/0/station", REMOVED)))
-    assert [claim.station for claim in scene.claims] == [None, 0.67]
-    assert set(mistakes(("claims/0/station", REMOVED), ("claims/0/probe", "B.rotation"))) == {"claims[0].probe"}
-
-
-FOUND = sorted((Path(__file__).parent / "found").glob("*.toml"))
-
-
-def refused(tmp_path, text):
-    path = tmp_path / "large.toml"
-    path.write_bytes(text)
-    with pytest.raises(SceneError) as caught:
-        read(path)
-    return str(caught.value)
-
-
-def test_a_file_is_read_no_further_than_it_may_be_long(tmp_path):
-    assert "a file that is larger; allowed: at most 1 MB" in refused(tmp_path, b"#" * (LONGEST + 1))
-    assert "larger" not in refused(tmp_path, b"#" * LONGEST)
-
-
-@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="the system has no file without end")
-def test_a_file_without_end_is_refused():
-    with pytest.raises(SceneError, match="a file that is larger"):
-        read("/dev/zero")
-
-
-@pytest.mark.parametrize("part", [b"a", b'"a b"', b"'c'", b"a "])
-def test_a_key_of_many_parts_is_refused_before_it_is_parsed(tmp_path, part):
-    """The parser would take the square of their number; it reads what has just as many as are allowed."""
-    many = b".".join([part] * 100_000)
-    for text in (many + b" = 1", b"[" + many + b"]", b"x = {" + many + b" = 1}"):
-        assert f"a key of more than {DEEPEST} parts" in refused(tmp_path, text)
-    assert "a key of more" not in refused(tmp_path, b".".join([part] * DEEPEST) + b" = 1")
-
-
-@pytest.mark.parametrize("text", [b"a = " + b"[" * 99_999, b"a = " + b"{a=" * 99_999, b"a = " + b"9" * 99_999])
-def test_what_the_parser_gives_up_is_no_toml(tmp_path, text):
-    assert "text that is no TOML" in refused(tmp_path, text)
-
-
-@pytest.mark.parametrize(("table", "most"), [("beams", 256), ("bodies", 256), ("contacts", 1000)])
-def test_a_scene_has_so_many_at_most(table, most):
-    one = next(iter(HINGE[table].values()))
-    found = mistakes((table, {f"n{k}": one for k in range(most + 1)}))
-    assert found[table].endswith(f"at most {most} of them")
+@pytest.mark.parametrize(("data", "part", "expected"), WRITTEN)
+def test_a_record_reads_as_it_is_written(data, part, expected):
+    assert part(scene_from(data)) == expected
 
 
 def test_a_stage_has_so_many_stations_at_most_and_none_of_them_twice():
-    data = copy.deepcopy(HINGE)
-    data["claims"] = []
-    data["stages"][0].pop("shown", None)
-    data["stages"][0]["stations"] = [0.00067 * k for k in range(1, 10_002)]
+    data = edited(
+        ("claims", []), ("stages/0/shown", []), ("stages/0/stations", [0.00067 * k for k in range(1, 10_002)])
+    )
     assert len(scene_from(data).stages[0].stations) == 10_001
-    data["stages"][0]["stations"].append(0.37)
-    with pytest.raises(SceneError, match="at most 10001 of them"):
-        scene_from(data)
-    data["stages"][0]["stations"] = [0.3, 0.1, 0.2, 0.1 * (1.0 + 3e-10), 0.3 * (1.0 + 3e-9)]
-    with pytest.raises(SceneError, match=r"stages\[0\].stations\[3\]: found 0.1 again") as caught:
-        scene_from(data)
-    assert len(caught.value.mistakes) == 1
+    more = ("stages/0/stations/10001", 0.37)
+    assert "at most 10001 of them" in mistakes(more, base=data)["stages[0].stations"]
+    again = ("stages/0/stations", [0.3, 0.1, 0.2, 0.1 * (1.0 + 3e-10), 0.3 * (1.0 + 3e-9)])
+    found = mistakes(again, base=data)
+    assert list(found) == ["stages[0].stations[3]"]
+    assert found["stages[0].stations[3]"].startswith("0.1 again")
 
 
 def test_of_very_many_mistakes_the_first_are_told():
-    data = copy.deepcopy(HINGE)
-    data["probes"] = [{"of": f"nobody{k}", "quantity": "displacement"} for k in range(5000)]
-    with pytest.raises(SceneError) as caught:
-        scene_from(data)
-    assert len(caught.value.mistakes) == MOST + 1
-    assert "more mistakes" in str(caught.value)
+    probes = [{"of": f"nobody{k}", "quantity": "displacement"} for k in range(5000)]
+    error = refused(scene_from, edited(("probes", probes)))
+    assert len(error.mistakes) == MOST + 1
+    assert "more mistakes" in str(error)
+
+
+FOUND = sorted((Path(__file__).parent / "found").glob("*.toml"))
 
 
 @pytest.mark.parametrize("file", [pytest.param(file, id=file.stem) for file in FOUND])
@@ -180,39 +188,29 @@ def test_what_a_fuzzer_has_found_is_a_question_or_a_wrong_one(file):
 
 
 def through_a_table(path, text, *edits):
-    """Mistakes of a cantilever through the points of a table, and the points."""
+    """Points of a cantilever through the points of a table."""
     path.write_bytes(text)
-    base = two_lines(0.01)
-    del base["beams"]["upper"], base["contacts"], base["bodies"]["ground"]["points"]["P"]
-    base["beams"]["lower"]["curve"] = {"kind": "spline", "points": path.name}
-    try:
-        scene = scene_from(edited(*edits, base=base), file=str(path.parent / "scene.toml"))
-    except SceneError as error:
-        (mistake,) = error.mistakes
-        return mistake
-    return scene.beams["lower"].curve.points
+    base = cantilever({"kind": "spline", "points": path.name}, (0.0, 0.0), (0.1, 0.0))
+    return scene_from(edited(*edits, base=base), file=str(path.parent / "scene.toml")).beams["lower"].curve.points
 
 
 PLACES = ((0.0, 0.0), (0.03, 0.008), (0.07, 0.004), (0.1, 0.0))
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        b"x [mm], y [mm]\n0,0\n30,8\n70,4\n100,0\n",
-        b"# measured\r\ns;y (m);x (cm)\r\n1;0;0\r\n1;0.008;3\r\n\r\n1;0.004;7\r\n1;0;10",
-        b'\xef\xbb\xbf"x/mm"\t"Y in mm"\n0\t0\n30\t8\n70\t4\n1e2\t0',
-        b"y,x\n0,0\n.008,.03\n.004,.07\n0,.1",
-    ],
-)
-def test_points_of_a_table_have_the_units_of_the_header(tmp_path, text):
-    assert through_a_table(tmp_path / "p.csv", text) == PLACES
+MILLIMETRES = [("units", {"length": "mm"}), ("bodies/block/points/Q", [100, 0]), ("beams/lower/thickness", 2)]
+TABLES = [
+    (b"x [mm], y [mm]\n0,0\n30,8\n70,4\n100,0\n", []),
+    (b"# measured\r\ns;y (m);x (cm)\r\n1;0;0\r\n1;0.008;3\r\n\r\n1;0.004;7\r\n1;0;10", []),
+    (b'\xef\xbb\xbf"x/mm"\t"Y in mm"\n0\t0\n30\t8\n70\t4\n1e2\t0', []),
+    (b"y,x\n0,0\n.008,.03\n.004,.07\n0,.1", []),
+    # a column without a unit has the unit of the scene
+    (b"x,y [cm]\n0,0\n30,.8\n70,.4\n100,0\n", [*MILLIMETRES, ("beams/lower/width", 10)]),
+]
 
 
-def test_a_column_without_a_unit_has_the_unit_of_the_scene(tmp_path):
-    edits = [("units", {"length": "mm"}), ("bodies/block/points/Q", [100, 0]), ("beams/lower/thickness", 2)]
-    found = through_a_table(tmp_path / "p.csv", b"x,y [cm]\n0,0\n30,.8\n70,.4\n100,0\n", *edits)
-    assert found == PLACES
+@pytest.mark.parametrize(("text", "edits"), TABLES)
+def test_points_of_a_table_have_the_units_of_the_header(tmp_path, text, edits):
+    assert through_a_table(tmp_path / "p.csv", text, *edits) == PLACES
 
 
 WRONG_TABLES = [
@@ -232,84 +230,49 @@ WRONG_TABLES = [
 
 def test_a_wrong_table_is_named_with_row_and_column(tmp_path):
     for text, words in WRONG_TABLES:
-        mistake = through_a_table(tmp_path / "p.csv", text)
-        assert mistake.key == "beams.lower.curve.points"
-        assert words in str(mistake)
-    missing = through_a_table(tmp_path / "p.csv", b"", ("beams/lower/curve/points", "q.csv"))
-    assert "q.csv', a file that cannot be read (No such file or directory)" in missing.found
+        error = refused(through_a_table, tmp_path / "p.csv", text)
+        assert [mistake.key for mistake in error.mistakes] == ["beams.lower.curve.points"]
+        assert words in str(error)
+    missing = refused(through_a_table, tmp_path / "p.csv", b"", ("beams/lower/curve/points", "q.csv"))
+    assert "q.csv', a file that cannot be read (No such file or directory)" in str(missing)
 
 
-def test_a_named_free_end_is_a_weld_to_a_body_of_one_point():
-    by_hand = two_lines(0.01)
+def test_free_ends_and_fixed_bodies_have_points():
+    by_hand, probe = two_lines(0.01), ("probes/1", {"of": "T", "quantity": "displacement"})
     by_hand["bodies"]["T-body"] = {"motion": "free", "points": {"T": [0.1, 0.01]}}
     by_hand["beams"]["upper"]["end"] = {"joint": "weld", "point": "T"}
-    probe = {"of": "T", "quantity": "displacement"}
-    named = edited(("beams/upper/end/point", "T"), ("probes/1", probe), base=two_lines(0.01))
-    assert scene_from(named) == scene_from(edited(("probes/1", probe), base=by_hand))
-    found = mistakes(("bodies/T-body", by_hand["bodies"]["T-body"]), base=named)
-    assert "another body with the name 'T-body'" in found["beams.upper.end.point"]
-    asked = ("probes/0", {"of": "upper", "quantity": "displacement"})
-    assert "end = { joint = 'free', point = 'NAME' }" in mistakes(asked, base=two_lines(0.01))["probes[0]"]
-
-
-def test_a_fixed_body_without_points_has_a_point_at_its_edge():
+    named = edited(("beams/upper/end/point", "T"), probe, base=two_lines(0.01))
+    assert scene_from(named) == scene_from(edited(probe, base=by_hand))
     edge = {"kind": "beam-circle", "beam": "lower", "body": "wall", "center": [0.05, -0.02], "radius": 0.01}
     data = edited(("bodies/wall", {"motion": "fixed"}), ("contacts/edge", edge), base=two_lines(0.01))
     assert scene_from(data).bodies["wall"].points == {"wall-point": (0.05, -0.02)}
     assert scene_from(edited(("contacts", {}), base=data)).bodies["wall"].points == {"wall-point": (0.0, 0.0)}
 
 
-@pytest.mark.parametrize(
-    ("path", "value", "words"),
-    [
-        ("loads/M/kind", "gravity", "is 'distributed' meant?"),
-        ("gravity", 9.81, "is a load of kind 'distributed' meant?"),
-        ("beams/beam1/weight", 1.0, "is a load of kind 'distributed' meant?"),
-        ("beams/beam1/friction", 0.3, "friction is not modelled"),
-        ("contacts/contact/friction_coefficient", 0.3, "friction_coefficient is not modelled"),
-        ("materials/abs/yield_stress", 4e7, "yield_stress is not modelled"),
-        ("loads/M/kind", "temperature", "temperature is not modelled"),
-    ],
-)
-def test_a_word_of_another_program_is_answered_by_meaning(path, value, words):
-    assert any(words in sentence for sentence in mistakes((path, value)).values())
+CROSSED = edited(("contacts", {}), base=two_lines(0.0, second=((0.0, -0.01), (0.1, 0.01))))
+NOTES = [
+    # reference: M L/(E I) of the hinge is 4.3 with its 2.3 GPa and 0.67 N m, a million times as much with 2.1 kPa
+    (edited(("materials/abs/youngs_modulus", 2.1e3)), "loads.M: M L/(E I) is ", "Is a stress in MPa written as Pa?"),
+    (edited(("materials/abs/youngs_modulus", 2.1)), "loads.M: M L/(E I) is ", "Is a stress in GPa written as Pa?"),
+    (
+        edited(("stages/0/stations", [670000.0]), ("claims", []), ("stages/0/shown", [])),
+        "loads.M: M L/(E I) is ",
+        "Is a force in uN written as N?",
+    ),
+    (CROSSED, "beams.upper: crosses the beam 'lower' at the start, at (0.05, ", "a pair in may_cross needs no note."),
+]
 
 
-@pytest.mark.parametrize(
-    ("edits", "words"),
-    [
-        # reference: M L/(E I) of the hinge is 4.3 with its 2.3 GPa and 0.67 N m, a million times as much with 2.1 kPa
-        ([("materials/abs/youngs_modulus", 2.1e3)], "Is a stress in MPa written as Pa?"),
-        ([("materials/abs/youngs_modulus", 2.1)], "Is a stress in GPa written as Pa?"),
-        ([("stages/0/stations", [670000.0]), ("claims", []), ("stages/0/shown", [])], "Is a force in uN written as N?"),
-    ],
-)
-def test_an_implausible_load_has_a_note_with_the_mix_up_of_units(edits, words):
-    (note,) = notes(scene_from(edited(*edits)))
-    assert note.startswith("loads.M: M L/(E I) is ")
-    assert note.endswith(words)
-    assert not list(notes(scene_from(HINGE)))
+@pytest.mark.parametrize(("data", "begin", "end"), NOTES)
+def test_an_implausible_scene_has_a_note(data, begin, end):
+    (note,) = notes(scene_from(data))
+    assert note.startswith(begin)
+    assert note.endswith(end)
 
 
-def test_beams_that_cross_without_a_contact_have_a_note():
-    crossed = edited(("contacts", {}), base=two_lines(0.0, second=((0.0, -0.01), (0.1, 0.01))))
-    (note,) = notes(scene_from(crossed))
-    assert note.startswith("beams.upper: crosses the beam 'lower' at the start, at (0.05, ")
-    assert not list(notes(scene_from(crossed | {"may_cross": [["lower", "upper"]]})))
-    assert not list(notes(scene_from(edited(("contacts", {}), base=two_lines(0.01)))))
-
-
-def test_a_thickness_above_the_radius_is_refused_with_its_place():
-    bowl = {"kind": "polynomial", "axis": "x", "coefficients": [0.0, -4.0, 40.0], "range": [0.0, 0.1]}
-    found = mistakes(
-        ("beams/lower/curve", bowl), ("beams/lower/thickness", 0.0126), ("contacts", {}), base=two_lines(1.0)
-    )
-    assert (
-        "half of which is 0.504 of the radius of curvature at 0.5 of the length, near (0.05, -0.1) m"
-        in (found["beams.lower.thickness"])
-    )
-    found = mistakes(("beams/beam1/thickness", 2.0))["beams.beam1.thickness"]
-    assert "(in mm in place of m, or in um in place of mm?)" in found
+def test_a_plausible_scene_has_no_note():
+    for data in (HINGE, CROSSED | {"may_cross": [["lower", "upper"]]}, edited(("contacts", {}), base=two_lines(0.01))):
+        assert not list(notes(scene_from(data)))
 
 
 def units(annotation):
@@ -455,30 +418,127 @@ def test_the_data_of_a_file_in_other_units_are_those_of_the_scene(tmp_path):
     assert scene_from(cases.data(str(path)), file=str(path)) == cases.opened(str(path))
 
 
-def test_a_unit_that_there_is_not_is_refused():
-    with pytest.raises(SceneError, match=r"units\.length: found 'inch' \(is 'in' meant\?\); allowed: .*'mm'.*'in'"):
-        scene_from({**DATA, "units": {"length": "inch"}})
-    with pytest.raises(SceneError, match=r"units\.mass"):
-        scene_from({**DATA, "units": {"mass": "kg"}})
-
-
-def test_a_claim_that_may_be_of_moments_and_angles_is_to_say_its_stage():
+def test_a_mistake_is_told_in_other_units_too():
     claims = [{"probe": "T.displacement", "station": 0.0013, "bound": 0.03}]
-    with pytest.raises(SceneError, match=r"claims\[0\]\.station: found a number in the unit of several stages"):
-        scene_from({**DATA, "claims": claims})
+    words = "claims[0].station: found a number in the unit of several stages"
+    assert words in str(refused(scene_from, {**DATA, "claims": claims}))
+    stages = [{"name": "one", "steps": "nothing", "stations": [1.0]}]
+    assert "stages[0].steps: found 'nothing'" in str(refused(scene_from, {**DATA, "stages": stages, "claims": []}))
 
 
-@pytest.mark.parametrize("modulus", [1e300, 1e100, 1e-100])
-def test_a_modulus_beyond_all_materials_is_refused_with_the_allowed_range(modulus):
-    materials = {"steel": {"youngs_modulus": modulus, "poisson_ratio": 0.29}}
-    with pytest.raises(SceneError, match=r"materials\.steel\.youngs_modulus: .*between 1e-50 and 1e\+50 in SI units"):
-        scene_from({**DATA, "materials": materials})
+VALUES = [
+    ("= t", 0.002),
+    ("= 2*half", 0.002),
+    ("=0.001 + half", 0.002),
+    ("= 50e-4*sqrt(0.16) - t/2 + half", 0.002),
+    ("= 2*t*sin(slope)", 0.002),
+    ("= t*tan(slope)*sqrt(3)", 0.002),
+    ("= hypot(0.6*t, 0.8*t)", 0.002),
+    ("= min(t, L, 1)", 0.002),
+    ("= abs(max(-t, -L))", 0.002),
+    ("= t**2/L*50", 0.002),
+    ("= sqrt(t*L/50)", 0.002),
+    ("= k*0.004", 0.002),
+    ("= t*pi/3.141592653589793", 0.002),
+    ("= L*atan2(t, L)", 0.1 * math.atan2(0.002, 0.1)),
+    ("= 1000*sqrt(M/(E*L*k))", 1000.0 * math.sqrt(0.04 / (200e9 * 0.1 * 0.5))),
+]
 
 
-def test_what_a_mistake_in_the_scene_is_called_is_told_in_other_units_too():
-    data = {**DATA, "stages": [{"name": "one", "steps": "nothing", "stations": [1.0]}]}
-    with pytest.raises(SceneError, match=r"stages\[0\]\.steps: found 'nothing'"):
-        scene_from({**data, "claims": []})
+def test_an_expression_has_the_value_of_its_arithmetic():
+    for expression, thickness in VALUES:
+        assert scene_from(edited(("beams/lower/thickness", expression), base=PARAMETRIC)).beams[
+            "lower"
+        ].thickness == pytest.approx(thickness, rel=1e-14)
+
+
+def test_literals_have_the_unit_of_the_key():
+    """The same two cantilevers in millimetres, degrees and kilonewtons: 50 is 50 mm, sin takes degrees."""
+    data = edited(("beams/lower/thickness", "= 4*sin(30) + k*0"), base=PARAMETRIC)
+    data["units"] = {"length": "mm", "angle": "deg"}
+    for beam in data["beams"].values():
+        beam["width"] = "= 5*t"
+    data["beams"]["upper"] |= {"curve": {"kind": "line", "start": [0, 20], "end": [100, 20]}, "thickness": "= t"}
+    data["bodies"]["ground"]["points"]["P"] = [0, "= 10*t"]
+    data["bodies"]["block"]["points"]["Q"] = ["= L", 0]
+    data["beams"]["lower"]["curve"] |= {"start": ["= L - 100", 0.0], "end": ["= 50 + 25*t", "= 0*t"]}
+    lower = scene_from(data).beams["lower"]
+    assert (lower.thickness, lower.width) == (pytest.approx(0.002, rel=1e-15), pytest.approx(0.01, rel=1e-15))
+    assert lower.curve.end == (pytest.approx(0.1, rel=1e-15), 0.0)
+
+
+@pytest.mark.parametrize(
+    ("setting", "thickness"), [("1.9mm", 0.0019), (" 1900 um ", 0.0019), ("1.9", 0.0019), (0.0019, 0.0019)]
+)
+def test_a_setting_replaces_a_value(setting, thickness):
+    scene = scene_from(edited(("beams/lower/thickness", "= 2*half"), base=PARAMETRIC), parameters={"t": setting})
+    assert scene.beams["lower"].thickness == pytest.approx(thickness, rel=1e-15)
+    assert scene.parameters["t"].value == pytest.approx(thickness, rel=1e-15)
+
+
+WRONG_SETTINGS = [
+    ({"x": 1.0}, "parameters.x: found 'x', which names no parameter"),
+    ({"t": "3mm"}, "parameters.t.value: found 3 mm; allowed: a number from 1.6 to 2.4 mm"),
+    ({"t": "2deg"}, "parameters.t: found '2deg'; allowed: a finite number in mm"),
+    ({"t": "thin"}, "parameters.t: found 'thin'; allowed: a finite number in mm, such as 1.9mm"),
+    ({"t": math.nan}, "parameters.t: found nan; allowed: a finite number"),
+    ({"t": "1e400mm"}, "parameters.t: found '1e400mm'; allowed: a finite number"),
+    ({"half": "1mm"}, "an expression alone; an expression takes no other value"),
+]
+
+
+def test_a_wrong_setting_is_refused():
+    for settings, words in WRONG_SETTINGS:
+        assert words in str(refused(scene_from, PARAMETRIC, parameters=settings))
+    words = "names no parameter; allowed: the name of a parameter: there is none"
+    assert words in str(refused(scene_from, two_lines(0.01), parameters={"t": 1.0}))
+
+
+def test_a_scene_with_other_parameters_is_checked_like_a_file():
+    scene = read(FILE)
+    thin = scene.with_parameters(t=1.9e-3)
+    assert thin.beams["beam1"].thickness == 0.0019
+    assert thin.beams["beam1"].curve.center[1] == pytest.approx(0.025 + (0.0019 + 0.0005) / 2, rel=1e-15)
+    assert pickle.loads(pickle.dumps(thin)).with_parameters(t=2e-3).beams == scene.beams
+    with pytest.raises(SceneError, match=r"parameters\.t\.value"):
+        scene.with_parameters(t=3e-3)
+    with pytest.raises(SceneError, match="overlap at the start"):
+        scene.with_parameters(gap=-1e-3)
+    with pytest.raises(ValueError, match="without parameters"):
+        scene_from(two_lines(0.01)).with_parameters(t=1e-3)
+    with pytest.raises(ValueError, match="altered after reading"):
+        scene.model_copy(update={"claims": ()}).with_parameters(t=1e-3)
+
+
+@pytest.mark.parametrize("name", ["hinge", "gripper", "prestressed"])
+def test_every_parameter_of_a_built_in_case_may_change_by_two_percent(name):
+    scene = cases.opened(name)
+    for parameter, record in scene.parameters.items():
+        for factor in (0.98, 1.02):
+            changed = scene.with_parameters(**{parameter: factor * record.value})
+            assert changed.parameters[parameter].value == factor * record.value
+
+
+TODAY = {
+    "hinge": lambda scene: (scene.place_of("D"), (0.051, -0.02625)),
+    "gripper": lambda scene: (
+        (*scene.place_of("A"), *scene.place_of("O"), scene.contacts["circle"].radius),
+        (0.08560254037844386, 0.05173205080756888, -0.001, 0.0017320508075688774, 0.019),
+    ),
+    "prestressed": lambda scene: (
+        (*scene.place_of("O1"), *scene.beams["beam2"].curve.end),
+        (-0.0005, 0.0, 0.0005, 0.06),
+    ),
+}
+"""Numbers of the cases before parameters, at commit cffdfe7."""
+
+
+@pytest.mark.parametrize("name", TODAY)
+def test_the_built_in_cases_keep_their_numbers(name):
+    ours, before = TODAY[name](cases.opened(name))
+    assert ours == pytest.approx(before, rel=1e-15)
+    opened = cases.opened(name, {"t": "1.05mm" if name == "prestressed" else "2.1mm"})
+    assert opened.beams["beam1"].thickness == pytest.approx(1.05 * cases.opened(name).beams["beam1"].thickness)
 
 
 WAYS = {
@@ -499,15 +559,9 @@ def test_no_method_changes_a_frozendict():
         with pytest.raises(TypeError, match="stays as it is"):
             change(one)
     assert one == {"a": 3}
-
-
-def test_every_method_of_a_dict_that_changes_it_is_among_the_ways():
-    """What a ``dict`` has and a mapping that is only read has not."""
-    from types import MappingProxyType
-
+    # a ``dict`` has these methods, a mapping that is only read has not
     changing = set(dir(dict)) - set(dir(MappingProxyType)) - {"__getattribute__", "fromkeys"}
-    changing = {name for name in changing if getattr(frozendict, name) is getattr(dict, name)}
-    assert not changing
+    assert not {name for name in changing if getattr(frozendict, name) is getattr(dict, name)}
 
 
 def test_order_has_no_part_in_hash_and_equality():

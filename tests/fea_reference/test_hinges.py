@@ -8,8 +8,7 @@ from fea_reference import Settings, answer
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.system import assemble
-from tests.cprbm_scene.editing import edited
-from tests.cprbm_scene.scenes import LINKAGE
+from tests.cprbm_scene.editing import LINKAGE, edited
 
 COARSE = Settings(elements=8, kinematics="bending")
 PROBES = [

@@ -14,8 +14,7 @@ from comparisons import cases
 from comparisons.cli.main import run
 from cprbm_scene import Ending, SceneError, scene_from
 from fea_reference import solid
-from tests.cprbm_scene.editing import edited, two_lines
-from tests.cprbm_scene.scenes import LINKAGE
+from tests.cprbm_scene.editing import LINKAGE, edited, two_lines
 from tests.robustness.toml import toml_of
 from tests.together.features import ELLIPSE, INSIDE, RAIL, held_by, resting, three_points
 
