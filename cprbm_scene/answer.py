@@ -200,7 +200,7 @@ class ContactState:
     """State of one contact at a station.
 
     Attributes:
-        active: whether the contact presses by more than the floor in :mod:`cprbm_scene.solving`.
+        active: whether the contact presses by more than the floor in :mod:`cprbm_scene.contact_events`.
         places: positions where the beams or edges touch, (k, 2), m; also of a contact that touches without force.
         indeterminate: whether equilibrium leaves the contact's force open; None where the solver does not know.
     """

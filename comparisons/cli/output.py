@@ -26,7 +26,7 @@ from comparisons.cli.errors import printable
 from comparisons.present.columns import Plain, Section, Table
 from comparisons.writing import text_of, write
 from cprbm_scene import Question, Scene
-from cprbm_scene.solving import notes
+from cprbm_scene.notes import notes
 
 T = TypeVar("T")
 

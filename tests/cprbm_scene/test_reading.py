@@ -16,8 +16,8 @@ from cprbm_scene import OffsetQuestion, Scene, SceneError, read, read_question, 
 from cprbm_scene.fields import Measured
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import MOST
+from cprbm_scene.notes import notes
 from cprbm_scene.reading import DEEPEST
-from cprbm_scene.solving import notes
 from cprbm_scene.statement import BeamForce, DisplacementDrive, DistributedLoad, Record, Units
 from cprbm_scene.units import LONGEST
 from tests.cprbm_scene.editing import (
@@ -249,6 +249,7 @@ def test_free_ends_and_fixed_bodies_have_points():
     assert scene_from(edited(("contacts", {}), base=data)).bodies["wall"].points == {"wall-point": (0.0, 0.0)}
 
 
+BESIDE = edited(("contacts", {}), base=two_lines(0.0018))
 CROSSED = edited(("contacts", {}), base=two_lines(0.0, second=((0.0, -0.01), (0.1, 0.01))))
 NOTES = [
     # reference: M L/(E I) of the hinge is 4.3 with its 2.3 GPa and 0.67 N m, a million times as much with 2.1 kPa
@@ -259,6 +260,7 @@ NOTES = [
         "loads.M: M L/(E I) is ",
         "Is a force in uN written as N?",
     ),
+    (BESIDE, "beams.upper: overlaps the beam 'lower' at the start by 0.0002 m: without a contact", "needs no note."),
     (CROSSED, "beams.upper: crosses the beam 'lower' at the start, at (0.05, ", "a pair in may_cross needs no note."),
 ]
 
@@ -271,7 +273,9 @@ def test_an_implausible_scene_has_a_note(data, begin, end):
 
 
 def test_a_plausible_scene_has_no_note():
-    for data in (HINGE, CROSSED | {"may_cross": [["lower", "upper"]]}, edited(("contacts", {}), base=two_lines(0.01))):
+    allowed = {"may_cross": [["lower", "upper"]]}
+    apart = (edited(("contacts", {}), base=two_lines(gap)) for gap in (0.01, 0.0019999))
+    for data in (HINGE, CROSSED | allowed, BESIDE | allowed, *apart):
         assert not list(notes(scene_from(data)))
 
 
