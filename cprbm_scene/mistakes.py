@@ -170,17 +170,14 @@ def in_words(error: ValidationError, data: object, fields: Mapping[str, FieldInf
         short = kind == "too_short" and isinstance(given, tuple) and len(given) >= context["min_length"]
         if not short and not (kind == "missing" and f" (is {details['loc'][-1]!r} meant?)" in meant):
             key = _key(details["loc"], data, own=kind in ("missing", "extra_forbidden"))
-            inner = context.get("error")
-            own = inner.mistakes if isinstance(inner, SceneError) else [_mistake(details, fields)]
+            own = getattr(context.get("error"), "mistakes", None) or [_mistake(details, fields)]
             yield from (replace(each, key=f"{key}.{each.key}".strip(".")) for each in own)
 
 
 def _mistake(details: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Mistake:
     """A mistake with both halves of the message, and with the discriminator of a union as the key."""
     kind, loc, given, context = details["type"], details["loc"], details.get("input"), details.get("ctx", {})
-    key, found, allowed = "", shown(given), details["msg"]
-    if kind in _ALLOWED:
-        allowed = _ALLOWED[kind].format(**context)
+    key, known, allowed = "", list[str](), _ALLOWED.get(kind, "{message}").format(message=details["msg"], **context)
     match kind:
         case "tuple_type" if loc[-1] == "points" and isinstance(given, str):
             allowed += ", or the name of a table of points in a scene file"
@@ -190,26 +187,24 @@ def _mistake(details: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Mistake:
             allowed = "a text without control characters"
         case "string_pattern_mismatch" if " " not in context["pattern"]:
             allowed = "a name of letters, digits, '_' and '-' that starts with a letter or '_'"
-        case "missing":
-            found = "nothing"
-            allowed = "an item here: the list is too short" if isinstance(loc[-1], int) else allowed
+        case "missing" if isinstance(loc[-1], int):
+            allowed = "an item here: the list is too short"
         case "too_long" if context["max_length"] == len(("x", "y")):
             allowed = allowed.removeprefix("at most ")
         case "literal_error":
-            found += hint(given, re.findall("'([^']*)'", context["expected"])) if isinstance(given, str) else ""
+            known = re.findall("'([^']*)'", context["expected"])
         case "float_type":
             allowed += ", or a table with the keys 'at' and 'values'" if loc[-1] == "number" else ""
             if isinstance(given, str):
                 allowed += _NUMBERS if _MEASURED.fullmatch(given) else ", or an expression that begins with '='"
         case "union_tag_invalid" | "union_tag_not_found":
             key = context["discriminator"].strip("'")
-            value, tags = details["input"].get(key), _tags(fields[str(loc[0])].annotation, key)
-            found = "nothing" if kind == "union_tag_not_found" else shown(value)
-            found += hint(value, tags) if isinstance(value, str) else ""
-            allowed = f"one of {', '.join(map(repr, tags))}"
+            given, known = details["input"].get(key), _tags(fields[str(loc[0])].annotation, key)
+            allowed = f"one of {', '.join(map(repr, known))}"
         case "model_type" if "stress" in fields:  # of the record of units
             allowed += f", as {_UNITS}"
-    return Mistake(key, found, allowed)
+    found = "nothing" if kind in ("missing", "union_tag_not_found") else shown(given)
+    return Mistake(key, found + (hint(given, known) if known and isinstance(given, str) else ""), allowed)
 
 
 def _tags(annotation: Any, tag: str) -> list[str]:  # noqa: ANN401 - annotations have no type

@@ -92,12 +92,15 @@ def repeated_contacts(scene: Scene) -> Iterator[Mistake]:
     """Contacts of the same beams, or of the same beam and rigid shape."""
     seen: dict[object, str] = {}
     for name, contact in scene.contacts.items():
-        what, part, same = "beam", ".beam", frozenset[object](contact.beams)
-        if isinstance(contact, BeamContact):
-            what, part = "pair", ".between"
-        if isinstance(contact, RigidContact):
-            what, part = "beam and the shape", ""
-            same = frozenset(value for value in contact if value[0] not in {"thick", "paper"})
+        match contact:
+            case RigidContact():
+                # the same shape, whatever the formulation
+                shape = frozenset[object](value for value in contact if value[0] not in {"thick", "paper"})
+                what, part, same = "beam and the shape", "", shape
+            case BeamContact():
+                what, part, same = "pair", ".between", frozenset(contact.beams)
+            case _:
+                what, part, same = "beam", ".beam", frozenset(contact.beams)
         first = seen.setdefault(same, name)
         yield from broken(
             first != name

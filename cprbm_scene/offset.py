@@ -96,15 +96,20 @@ class OffsetQuestion(Record):
         u, shape = np.linspace(0.0, 1.0, SAMPLES), shape_of(self.curve)
         p, tangents = shape.point(u), shape.tangent(u)
         across = tangents[:, 0 if self.axis == "y" else 1]
-        if np.min(np.abs(across)) < _ACROSS or np.ptp(np.sign(across)) > 0.0:
-            yield Mistake("axis", repr(self.axis), "an axis to which the curve is nowhere parallel")
-            return
         normals = self.sign * np.column_stack((-tangents[:, 1], tangents[:, 0]))
-        for part, offsets in (("offsets", self.offsets), ("shown.offsets", shown)):
-            for i, t in enumerate(offsets):
-                # beyond the radius of curvature the offset curve runs backwards, with a cusp
-                forwards = (np.diff(p + t * normals, axis=0) * tangents[:-1]).sum(axis=1)
-                yield from broken(
-                    np.min(forwards) <= 0.0
-                    and Mistake(f"{part}[{i}]", f"{t:g}", "less than the radius of curvature on that side of the curve")
-                )
+        places = [
+            (f"{part}[{i}]", t)
+            for part, own in (("offsets", self.offsets), ("shown.offsets", shown))
+            for i, t in enumerate(own)
+        ]
+        parallel = bool(np.min(np.abs(across)) < _ACROSS or np.ptp(np.sign(across)) > 0.0)
+        yield from broken(
+            parallel and Mistake("axis", repr(self.axis), "an axis to which the curve is nowhere parallel"),
+            # beyond the radius of curvature the offset curve runs backwards, with a cusp
+            *(
+                not parallel
+                and np.min((np.diff(p + t * normals, axis=0) * tangents[:-1]).sum(axis=1)) <= 0.0
+                and Mistake(key, f"{t:g}", "less than the radius of curvature on that side of the curve")
+                for key, t in places
+            ),
+        )
