@@ -33,13 +33,16 @@ moment             (1,)    magnitude of the moment by which a stop holds, N·m; 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from cprbm_scene.statement import Scene
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -200,7 +203,7 @@ class ContactState:
     """State of one contact at a station.
 
     Attributes:
-        active: whether the contact presses by more than the floor in :mod:`cprbm_scene.contact_events`.
+        active: whether the contact presses by more than the floor :data:`ACTIVE`.
         places: positions where the beams or edges touch, (k, 2), m; also of a contact that touches without force.
         indeterminate: whether equilibrium leaves the contact's force open; None where the solver does not know.
     """
@@ -351,3 +354,47 @@ def frozen_array(values: object) -> Array:
     array = np.array(values, dtype=float, ndmin=1)
     array.setflags(write=False)
     return array
+
+
+ACTIVE = 1e-9
+"""Floor of an active contact's force, over the largest force at the station: round-off leaves far less."""
+
+UNLOADED = 1e-12
+"""The same over the natural force, the largest E·I over the square of the longest beam: no load acts below."""
+
+
+def contact_states(
+    names: Iterable[str], forces: PointForces, touching: Mapping[str, Array], natural: tuple[float, float]
+) -> Mapping[str, ContactState]:
+    """States of the contacts ``names`` by their forces; ``natural`` are the scene's length (m) and force (N).
+
+    A moment counts as a force at the natural length.  Without any forces a contact that touches is active.
+    """
+    size = np.hypot(forces.force[:, 0], forces.force[:, 1]) + np.abs(forces.moment) / natural[0]
+    floor = max(ACTIVE * float(np.max(size, initial=0.0)), UNLOADED * natural[1])
+    source, nowhere = np.array(forces.source, dtype=str), frozen_array(np.zeros((0, 2)))
+    return {
+        name: ContactState(
+            bool(size[source == name].sum() > floor) if len(size) else name in touching, touching.get(name, nowhere)
+        )
+        for name in names
+    }
+
+
+def openings(scene: Scene, stations: Sequence[StationAnswer]) -> tuple[Event, ...]:
+    """Events of contacts with forces at a station and without forces at the next station of the same branch.
+
+    Between two stages the interval begins where the stepped load or drive stands before the later stage.
+    """
+    found, reached = [], dict.fromkeys((*scene.loads, *scene.drives), 0.0)
+    steps = {stage.name: stage.steps for stage in scene.stages}
+    for before, after in pairwise(stations):
+        reached[steps[before.stage]] = before.value
+        if before.branch == after.branch:
+            low, high = sorted((reached[steps[after.stage]], after.value))
+            found += [
+                Event(after.stage, name, "opens", 0.5 * (low + high), (low, high))
+                for name, contact in before.contacts.items()
+                if contact.active and not after.contacts[name].active
+            ]
+    return tuple(found)

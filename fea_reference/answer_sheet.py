@@ -10,8 +10,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from cprbm_scene.answer import Array, BeamState, ContactState, PointForce, PointForces, frozen_array
-from cprbm_scene.contact_events import contact_states
+from cprbm_scene.answer import Array, BeamState, ContactState, PointForce, PointForces, contact_states, frozen_array
 from cprbm_scene.statement import Scene, TurningBody
 from fea_reference.march import March
 from fea_reference.model import BeamPart

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm_scene.answer import Answer, Ending, Event, StationAnswer, frozen_array
-from cprbm_scene.contact_events import openings
+from cprbm_scene.answer import Answer, Ending, Event, StationAnswer, frozen_array, openings
 from cprbm_scene.solving import one_thread, station_reached
 from cprbm_scene.statement import Scene, Stage
 from fea_reference import answer_sheet

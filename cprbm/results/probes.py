@@ -31,8 +31,7 @@ from cprbm.continuation.path import potential
 from cprbm.results.statics import NO_FORCE, Statics, cross, pin_moments, stop_moment
 from cprbm.results.view import View
 from cprbm_scene import Probe
-from cprbm_scene.answer import Array, ContactState, PointForces, frozen_array
-from cprbm_scene.contact_events import contact_states
+from cprbm_scene.answer import Array, ContactState, PointForces, contact_states, frozen_array
 from cprbm_scene.question_records import Quantity
 from cprbm_scene.statement import DisplacementDrive, EdgeContact, PinnedEnd
 

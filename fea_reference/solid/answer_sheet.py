@@ -9,8 +9,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from cprbm_scene.answer import Array, ContactState, PointForce, PointForces, frozen_array
-from cprbm_scene.contact_events import contact_states
+from cprbm_scene.answer import Array, ContactState, PointForce, PointForces, contact_states, frozen_array
 from cprbm_scene.statement import Scene, TurningBody
 from fea_reference.solid.bodies import is_own, stands_on
 from fea_reference.solid.contacts import Touch

@@ -6,8 +6,7 @@ import logging
 import time
 from dataclasses import dataclass
 
-from cprbm_scene.answer import Answer, Ending, Event, StationAnswer, frozen_array
-from cprbm_scene.contact_events import openings
+from cprbm_scene.answer import Answer, Ending, Event, StationAnswer, frozen_array, openings
 from cprbm_scene.solving import one_thread, station_reached
 from cprbm_scene.statement import Scene, Stage
 from fea_reference.solid import answer_sheet
