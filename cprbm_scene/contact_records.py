@@ -200,11 +200,13 @@ class LineContact(RigidContact):
                 for i, (a, b) in corners
             )
         )
-        x, y = np.array(self.points).T
+        points = np.array(self.points)
+        low, high = np.minimum(points[:-1], points[1:]), np.maximum(points[:-1], points[1:])
+        x, y = points.T
         dx, dy = (np.diff(places)[:, None] for places in (x, y))
         side = dx * (y - y[:-1, None]) - dy * (x - x[:-1, None])
-        # ends of a piece on different sides of the other piece, or on its line
-        apart = side[:, :-1] * side[:, 1:] > 0.0
+        # pieces meet with ends on different sides of each other, or on the other's line, unless an extent is beside
+        apart = (side[:, :-1] * side[:, 1:] > 0.0) | (high[:, None] < low).any(axis=2)
         meet = np.triu(~(apart | apart.T), k=2)
         meet[0, -1] &= not self.closed
         yield from (

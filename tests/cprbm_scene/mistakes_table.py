@@ -515,6 +515,11 @@ SECTIONS = {
             ("points", [[0.0, 0.0], [0.0, 0.0]], "contacts.touch.points[1]", "0 m from the one before"),
             ("points", [[-0.1, 0.0], [0.2, 0.0], [0.1, 0.0]], "contacts.touch.points[1]", "turns back on itself"),
             ("points", [[0.0, -0.1], [0.1, -0.1], [0.1, -0.05], [0.05, -0.2]], "meet itself"),
+            (
+                "points",
+                [[0, -0.1], [0.1, -0.1], [0.1, -0.05], [-0.05, -0.05], [-0.05, -0.1], [0.05, -0.1]],
+                "that meets the one from 0 to 1",
+            ),
             ("points", [[0.0, 0.0], [10000000.0, 0.0]], "contacts.touch.points[1]", "1e+08 of the beam's length"),
             ("side", "above", "one of 'left' or 'right'"),
             ("body", "graund", "is 'ground' meant?"),

@@ -361,6 +361,7 @@ def uniform(curve, axis, end=(0.1, 0.0)):
 FORK, FOLD = ((0.0, 0.0), (0.08, 0.04)), ((0.0, 0.0), (0.08, 0.001))
 TEE, CROSS = ((0.05, 0.0), (0.05, 0.08)), ((0.05, -0.03), (0.05, 0.08))
 EDGES = [CIRCLE, LINE, HALF_PLANE, FUNCTION, ELLIPSE, SPLINE]
+RACK = [[-0.01, -0.02], [0.03, -0.02], [0.035, -0.01], [0.045, -0.01], [0.05, -0.02], [0.12, -0.02]]
 OTHER_SIDE = [("side", "right"), ("normal", [0, -1.0]), ("side", "below"), ("side", "inside"), ("side", "right")]
 
 FITS = {
@@ -382,6 +383,8 @@ FITS = {
     "bend": cantilever(BOWL, (0, 0), (0.1, 0), thickness=0.0124),
     "thick beside a bend": tapered(0.004, 0.028),
     **{f"uniform {k}": uniform(c, "x") for k, c in enumerate((straight((0, 0), (L, 0)), HALF_CIRCLE, DISH))},
+    # pieces of a line on the same straight line do not meet
+    "rack": over({**LINE, "points": RACK}),
     # beside the ends of a line is no solid; the end of a thick beam's line is round
     "beside a line": over({**LINE, "points": [[0.2, 0.05], [0.3, 0.05]]}),
     "before a line": over({**LINE, "points": [[L + 0.5 * T + 1e-6, 0.5 * T], [L + 0.1, 0.05]]}),
