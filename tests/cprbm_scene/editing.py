@@ -199,6 +199,20 @@ HUNG = QUESTION | {
     "loads": {"F": {"kind": "force", "point": "P", "direction": [0.0, -1.0]}},
 }
 """A plate on two pinned bars."""
+STOPPED = edited(
+    ("beams/low/end/joint", "weld"),
+    ("stops", {"s": {"beam": "low", "end": "start", "towards": "S", "least": -1.2, "most": 0.2}}),
+    base=HUNG,
+)
+ASSEMBLED = edited(
+    ("beams/lower/end", {"joint": "pin", "point": "Q"}),
+    ("beams/upper/end/point", "T"),
+    ("bodies/block", {"motion": "fixed", "points": {"Q": [0.09, 0.03]}}),
+    ("loads/F/point", "T"),
+    ("contacts", {}),
+    ("assembly", {"moments": {"lower": 0.1}}),
+    base=two_lines(0.01),
+)
 
 A, TIP = 29.28, 0.05  # the parabola x = A y²/2 + 0.05 m up to y = TIP
 PARABOLA = {"kind": "polynomial", "axis": "y", "coefficients": [0.05, 0.0, A / 2], "range": [0.0, TIP]}

@@ -5,6 +5,7 @@ of the path.  A row of several edits has a list of paths and values.
 """
 
 from tests.cprbm_scene.editing import (
+    ASSEMBLED,
     BELOW,
     BOWED,
     CIRCULAR,
@@ -25,6 +26,7 @@ from tests.cprbm_scene.editing import (
     SLIDING,
     SLOTTED,
     SPLINE,
+    STOPPED,
     THROUGH_POINTS,
     TURNED,
     WITH_FORCE,
@@ -786,6 +788,39 @@ SECTIONS = {
                 ("= 0*t", "greater than 0"),
                 ("= t - 3*t", "greater than 0"),
             )
+        ),
+    ),
+    "stops": (
+        STOPPED,
+        "stops/s/",
+        True,
+        (
+            ("end", "end", "the end of 'low', whose joint is 'weld'"),
+            ("towards", "Q", "'Q', a point of 'plate'; a point of 'ground', to which the end is pinned"),
+            ("towards", "R", "'R', which is where the pin is"),
+            # the line from R to S has the angle atan2(0.047, 0.031) = 0.98772
+            ("least", -0.9, "-0.9 rad, where the beam as drawn stands at -0.98772 rad (-56.59 degrees)"),
+            ("most", -1.0, "-1 rad, where the beam as drawn stands at -0.98772 rad"),
+            ("least", 0.5, "stops.s", "least = 0.5 rad and most = 0.2 rad; a least angle that is less than the most"),
+            ([("stops/s/least", REMOVED), ("stops/s/most", REMOVED)], "stops.s", "neither 'least' nor 'most'"),
+            ([("stops/t", STOPPED["stops"]["s"])], "stops.t", "the start of 'low', which stops.s limits"),
+        ),
+    ),
+    "an assembly": (
+        ASSEMBLED,
+        "",
+        True,
+        (
+            ("assembly", REMOVED, "beams.lower.end", "a beam end that meets no body: the curve's end is at (0.1, 0) m"),
+            ("bodies/block/points/Q", [0.1, 0.0], "assembly", "no beam with an end to be brought to its point"),
+            ("assembly/moments/upper", 1.0, "a moment on 'upper', whose end is where it belongs"),
+            ("beams/lower/start/joint", "pin", "beams.lower.start", "the beam has to stand by itself"),
+            (
+                "bodies/block/points/Q",
+                [0.1, 0.03],
+                "beams.lower.end",
+                "too short to reach 'Q': 0.1 m long, on a way of",
+            ),
         ),
     ),
 }

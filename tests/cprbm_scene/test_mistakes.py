@@ -9,6 +9,7 @@ from cprbm_scene import scene_from
 from cprbm_scene.solving import requirements
 from tests.cprbm_scene.editing import (
     ACROSS,
+    ASSEMBLED,
     BELOW,
     BOTH,
     CIRCULAR,
@@ -24,6 +25,7 @@ from tests.cprbm_scene.editing import (
     REMOVED,
     SLIDING,
     SLOTTED,
+    STOPPED,
     TURN,
     TURNED,
     WITH_FORCE,
@@ -70,7 +72,7 @@ def test_a_width_along_a_beam_has_the_mistakes_of_a_thickness():
 PUNCH = {"motion": "slides", "along": [0.0, 1.0], "points": {"P": [0.026, 0.2]}}
 VARYING = {"at": [0.0, 1.0], "values": [0.002, 0.001]}
 GOOD = [
-    *((base, []) for base in (DRIVEN, TURNED, SLIDING, WITH_FORCE, SLOTTED, BOTH, LINKAGE)),
+    *((base, []) for base in (DRIVEN, TURNED, SLIDING, WITH_FORCE, SLOTTED, BOTH, LINKAGE, STOPPED, ASSEMBLED)),
     (HINGE, [("bodies/Träger", {"motion": "fixed", "points": {"Füße": [0.0, 0.2], "φ_1": [0.1, 0.2]}})]),
     # contacts: a beam beside its other contacts, several circles, all quantities of a circle, a moment about a pin
     (HINGE, [("contacts/own", OWN), ("contacts/other", {**OWN, "beam": "beam2"})]),
