@@ -36,7 +36,7 @@ import numpy as np
 from cprbm_scene.contact_records import Rigid, measures
 from cprbm_scene.curve_records import MEETING, SHORTEST, shape_of
 from cprbm_scene.curves import Array, Curve, least, unit_vector
-from cprbm_scene.mistakes import Mistake, broken, written_place
+from cprbm_scene.mistakes import Mistake, broken, first_alone, written_place
 from cprbm_scene.statement import (
     Arc,
     Beam,
@@ -227,12 +227,28 @@ def _itself(key: str, beam: Beam) -> Iterator[Mistake]:
     )
 
 
+@first_alone
 def _rigid(scene: Scene, key: str, contact: Rigid) -> Iterator[Mistake]:
     """A shape out of proportion to the beam, or a beam that overlaps the shape or lies behind the edge."""
-    beam, circle = scene.beams[contact.beam], isinstance(contact, CircleContact)
-    shape = shape_of(beam.curve)
-    if mistakes := list(_proportions(key, contact, shape.length)):
-        return iter(mistakes[:1])
+    beam, circle, (places, sizes) = scene.beams[contact.beam], isinstance(contact, CircleContact), measures(contact)
+    shape, largest = shape_of(beam.curve), max(abs(coordinate) for place in places for coordinate in place)
+    yield from broken(
+        *(
+            not SHORTEST * shape.length <= size <= shape.length / SHORTEST
+            and Mistake(
+                f"{key}.{part}",
+                f"{size:.3g} m, which is {size / shape.length:.3g} of the beam's length",
+                f"between {SHORTEST:g} and {1.0 / SHORTEST:g} of the beam's length",
+            )
+            for part, size in sizes
+        ),
+        not SHORTEST * largest <= shape.length
+        and Mistake(
+            f"{key}.center" if circle else key,
+            f"coordinates up to {largest:.3g} m beside a beam of {shape.length:.3g} m",
+            f"coordinates of which the beam's length is at least {SHORTEST:g}",
+        ),
+    )
     samples = np.union1d(np.linspace(*WHOLE, 2 * _SAMPLES - 1), beam.knots)
     depth = -least(lambda u: distance(contact, shape.point(u)) - _half(beam, u, thick=contact.thick), samples)[0]
     measure, of = (beam.thinnest, "its thickness") if contact.thick else (shape.length, "its length")
@@ -240,36 +256,13 @@ def _rigid(scene: Scene, key: str, contact: Rigid) -> Iterator[Mistake]:
     held = not circle and any(joint.point in own for _, joint, _ in beam.ends)
     what = "that overlaps the circle" if circle else "on the wrong side of the edge, or overlapping the edge,"
     side = f"circle from {getattr(contact, 'side', '')}" if circle else "edge from the free side"
-    return broken(
+    yield from broken(
         depth > max(OVERLAP * measure, MEETING * shape.length if held else 0.0)
         and Mistake(
             key,
             f"the beam {contact.beam!r} {what} at the start by {depth:.3g} m, {depth / measure:.3g} of {of}",
             f"a beam that touches the {side} or is apart (overlap at most {OVERLAP:g} of {of})",
         )
-    )
-
-
-def _proportions(key: str, contact: Rigid, length: float) -> Iterator[Mistake]:
-    """Mistakes of sizes and coordinates beside the beam's ``length``, m."""
-    places, sizes = measures(contact)
-    largest = max(abs(coordinate) for place in places for coordinate in place)
-    return broken(
-        *(
-            not SHORTEST * length <= size <= length / SHORTEST
-            and Mistake(
-                f"{key}.{part}",
-                f"{size:.3g} m, which is {size / length:.3g} of the beam's length",
-                f"between {SHORTEST:g} and {1.0 / SHORTEST:g} of the beam's length",
-            )
-            for part, size in sizes
-        ),
-        not SHORTEST * largest <= length
-        and Mistake(
-            f"{key}.center" if isinstance(contact, CircleContact) else key,
-            f"coordinates up to {largest:.3g} m beside a beam of {length:.3g} m",
-            f"coordinates of which the beam's length is at least {SHORTEST:g}",
-        ),
     )
 
 

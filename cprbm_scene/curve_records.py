@@ -16,11 +16,10 @@ from math import cos, dist, inf, isfinite, sin
 from typing import Annotated, Literal, cast
 
 import numpy as np
-from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
+from pydantic import BeforeValidator, Field, ValidationInfo
 
 from cprbm_scene.curves import Curve, circular_arc, graph, spline, straight_line
 from cprbm_scene.fields import (
-    OR_EXPRESSION,
     Angle,
     Coefficients,
     Direction,
@@ -51,12 +50,10 @@ def _of_table(value: object, info: ValidationInfo) -> object:
     return read_points(info.context.folder / value, info.context.units.length)
 
 
-_POINT = {"type": "array", "prefixItems": [OR_EXPRESSION] * 2, "minItems": 2, "maxItems": 2}
 SplinePoints = Annotated[
     tuple[Point, ...],
     Field(min_length=3),
-    BeforeValidator(_of_table),
-    WithJsonSchema({"anyOf": [{"type": "array", "items": _POINT, "minItems": 3}, {"type": "string"}]}),
+    BeforeValidator(_of_table, json_schema_input_type=Annotated[tuple[Point, ...], Field(min_length=3)] | str),
 ]
 """Points of a spline, or the path of a table with the points, relative to the scene's folder."""
 

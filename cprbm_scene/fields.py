@@ -39,7 +39,6 @@ from pydantic import (
     ValidationError,
     ValidationInfo,
     ValidatorFunctionWrapHandler,
-    WithJsonSchema,
     WrapValidator,
     model_validator,
 )
@@ -118,10 +117,6 @@ class Record(BaseModel):
         return iter(())
 
 
-OR_EXPRESSION = {"anyOf": [{"type": "number"}, {"type": "string", "pattern": "^="}]}
-"""JSON schema of a number, or of an expression in place of the number."""
-
-
 class Units(Record):
     """Units of the numbers in a file; moments, distributed loads and energies are of force and length."""
 
@@ -157,7 +152,9 @@ class Tolerance(Record):
 class Parameter(Record):
     """A named number for expressions; after reading all numbers are in SI."""
 
-    value: Annotated[float, WrapValidator(_or_expression), WithJsonSchema(OR_EXPRESSION)]
+    value: Annotated[
+        float, WrapValidator(_or_expression, json_schema_input_type=float | Annotated[str, Field(pattern="^=")])
+    ]
     """Value in the ``unit``, or an expression in the file's units."""
     unit: str = ""
     """Product of units, such as ``mm``, ``N*mm`` or ``N/mm**2``; empty for a plain number."""

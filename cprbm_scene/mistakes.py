@@ -72,9 +72,9 @@ def first_broken(*rules: object) -> Iterator[Mistake]:
     return islice(broken(*rules), 1)
 
 
-def first_alone(rules: Callable[[Any], Iterator[Mistake]]) -> Callable[[Any], Iterator[Mistake]]:
-    """The rules of a record up to the first mistake: later rules need what earlier rules ensure."""
-    return lambda record: islice(rules(record), 1)
+def first_alone(rules: Callable[..., Iterator[Mistake]]) -> Callable[..., Iterator[Mistake]]:
+    """The rules up to the first mistake: later rules need what earlier rules ensure."""
+    return lambda *given: islice(rules(*given), 1)
 
 
 MOST = 100
