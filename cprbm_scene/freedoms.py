@@ -32,7 +32,7 @@ from cprbm_scene.curve_records import MEETING
 from cprbm_scene.curves import Array
 from cprbm_scene.curves import unit_vector as unit
 from cprbm_scene.fields import Record
-from cprbm_scene.mistakes import Mistake, broken, first_broken, written_place
+from cprbm_scene.mistakes import Mistake, broken, first_alone, first_broken, written_place
 from cprbm_scene.names import MECHANICAL, connected, references
 from cprbm_scene.statement import (
     BeamForce,
@@ -312,6 +312,7 @@ def wrong_actions(scene: Scene) -> Iterator[Mistake]:
             )
 
 
+@first_alone
 def _without_motion(
     freedoms: Freedoms, key: str, acting: BodyLoad | Drive, driven: Mapping[str, Drive]
 ) -> Iterator[Mistake]:
@@ -321,12 +322,17 @@ def _without_motion(
     """
     scene, owner, load = freedoms.scene, freedoms.owner(acting), isinstance(acting, BodyLoad)
     body, turns = scene.bodies[owner], isinstance(acting, Moment | RotationDrive)
-    if body.motion == "fixed":
-        movable = {name: each.points for name, each in scene.bodies.items() if each.motion != "fixed"}
-        names = movable if turns else [point for points in movable.values() for point in points]
-        place, of = ("body", "") if turns else ("point", f" {getattr(acting, 'point', '')!r}, a point of")
-        allowed = f"a {place} that can move: {', '.join(map(repr, names)) or 'there is none'}"
-        return iter((Mistake(f"{key}.{place}", f"{_ACTING[acting.kind]}{of} the fixed body {owner!r}", allowed),))
+    movable = {name: each.points for name, each in scene.bodies.items() if each.motion != "fixed"}
+    names = movable if turns else [point for points in movable.values() for point in points]
+    place, of = ("body", "") if turns else ("point", f" {getattr(acting, 'point', '')!r}, a point of")
+    yield from broken(
+        body.motion == "fixed"
+        and Mistake(
+            f"{key}.{place}",
+            f"{_ACTING[acting.kind]}{of} the fixed body {owner!r}",
+            f"a {place} that can move: {', '.join(map(repr, names)) or 'there is none'}",
+        )
+    )
     row, guide = freedoms.row(acting), freedoms.guide(owner)
     drives = {
         name: drive for name, drive in driven.items() if freedoms.owner(drive) == owner and not (load and drive.begins)
@@ -335,7 +341,7 @@ def _without_motion(
     across = not independent([*guide, row])[-1]
     twice = bool(opposed) or not independent([*guide, *map(freedoms.row, drives.values()), row])[-1]
     first = " and ".join(opposed or drives)
-    return first_broken(
+    yield from broken(
         across
         and turns
         and Mistake(

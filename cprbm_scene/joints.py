@@ -23,7 +23,7 @@ def distant_ends(scene: Scene) -> Iterator[Mistake]:
         for side, joint, place in beam.ends:
             apart, point = _distance(scene, beam, side), str(joint.point)
             yield from broken(
-                apart is not None
+                apart > 0.0
                 and not (side == "end" and (is_apart(scene, beam) or scene.lacks("", "assembly")))
                 and Mistake(
                     f"beams.{name}.{side}",
@@ -36,17 +36,14 @@ def distant_ends(scene: Scene) -> Iterator[Mistake]:
 
 def is_apart(scene: Scene, beam: Beam) -> bool:
     """True if an assembly brings the beam's end to the point."""
-    assembled = scene.assembly is not None and isinstance(beam.end, PinnedEnd)
-    return assembled and _distance(scene, beam, "end") is not None
+    return scene.assembly is not None and isinstance(beam.end, PinnedEnd) and _distance(scene, beam, "end") > 0.0
 
 
-def _distance(scene: Scene, beam: Beam, side: str) -> float | None:
-    """Distance of an end from the point, m; None if the end meets the point or has none."""
+def _distance(scene: Scene, beam: Beam, side: str) -> float:
+    """Distance of an end from the point, m; zero if the end meets the point or has none."""
     point = getattr(beam, side).point
-    if point not in scene.owners:
-        return None
-    apart = dist(getattr(beam.curve, side), scene.place_of(point))
-    return None if apart <= MEETING * shape_of(beam.curve).length else apart
+    apart = dist(getattr(beam.curve, side), scene.place_of(point)) if point in scene.owners else 0.0
+    return apart if apart > MEETING * shape_of(beam.curve).length else 0.0
 
 
 def wrong_assembly(scene: Scene) -> Iterator[Mistake]:
