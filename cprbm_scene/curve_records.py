@@ -45,9 +45,11 @@ MEETING = 1e-6
 
 def _of_table(value: object, info: ValidationInfo) -> object:
     """Points of the table that a text names, in the file's units; another value unchanged."""
-    if not isinstance(value, str) or not isinstance(info.context, Reading):
-        return value
-    return read_points(info.context.folder / value, info.context.units.length)
+    return (
+        read_points(info.context.folder / value, info.context.units.length)
+        if isinstance(value, str) and isinstance(info.context, Reading)
+        else value
+    )
 
 
 SplinePoints = Annotated[

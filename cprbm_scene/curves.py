@@ -97,9 +97,8 @@ class Curve:
     @cached_property
     def largest_curvature(self) -> float:
         """Largest absolute curvature, 1/m."""
-        if self._panels is None:
-            return float(self._bend(np.zeros(1))[0])
-        return -least(lambda w: -self._bend(w), self.samples)[0]
+        constant = self._panels is None
+        return float(self._bend(np.zeros(1))[0]) if constant else -least(lambda w: -self._bend(w), self.samples)[0]
 
     def point(self, u: Array) -> Array:
         """Points (n, 2), m, at fractions ``u`` (n,) of the arc length."""

@@ -238,14 +238,12 @@ class Reading:
         number, own = self._expression(text, "")
         if self._lacks("units", "length"):
             silent()  # the unit of the file's lengths is unknown
-        if own is None or unit is None:
-            return number if unit is None else unit.in_si(number, self.units)
-        if own.dimension != unit.dimension:
+        if own is not None and unit is not None and own.dimension != unit.dimension:
             raise mistake(
                 f"{text!r}, a number in {own}" if str(own) else f"{text!r}, a ratio without unit",
                 f"a number in {unit}" if str(unit) else "a number without unit",
             )
-        return number
+        return number if unit is None or own is not None else unit.in_si(number, self.units)
 
     def _expression(self, text: str, key: str, users: tuple[str, ...] = ()) -> Value:
         known = silent() if self.parameters is None else self.parameters
@@ -351,9 +349,11 @@ Direction = Annotated[tuple[Number, Number], AfterValidator(_nonzero)]
 
 def _by_powers(coefficients: object, info: ValidationInfo) -> object:
     """Coefficients of f in SI."""
-    if not isinstance(info.context, Reading) or not isinstance(coefficients, tuple):
-        return coefficients
-    return tuple(info.context.in_si(value, Unit(length=1 - k)) for k, value in enumerate(coefficients))
+    return (
+        tuple(info.context.in_si(value, Unit(length=1 - k)) for k, value in enumerate(coefficients))
+        if isinstance(info.context, Reading) and isinstance(coefficients, tuple)
+        else coefficients
+    )
 
 
 Coefficients = Annotated[tuple[Number, ...], Field(min_length=2), BeforeValidator(_by_powers)]

@@ -35,8 +35,8 @@ def references(value: object, key: str = "", of: Of | None = None) -> Iterator[t
     """Kinds, keys and names of all references within a ``value`` at a ``key``, itself a reference if ``of`` a kind."""
     match value:
         case Record():
-            metadata = {name: info.metadata for name, info in type(value).model_fields.items()}
-            kinds = {name: next((of for of in each if isinstance(of, Of)), None) for name, each in metadata.items()}
+            fields = type(value).model_fields.items()
+            kinds = {name: next((of for of in info.metadata if isinstance(of, Of)), None) for name, info in fields}
             inner = [(f".{(of and of.key) or name}", getattr(value, name), of) for name, of in kinds.items()]
         case Mapping():
             # the names of a mapping with a kind are references

@@ -91,9 +91,7 @@ class SlidingBody(Record):
     @property
     def pin(self) -> Name | None:
         """The point in the slot, about which the body turns; None without ``turns``."""
-        if not self.turns:
-            return None
-        return next(iter(self.points)) if self.about is None else self.about
+        return (self.about or next(iter(self.points))) if self.turns else None
 
     def rules(self) -> Iterator[Mistake]:
         """A pin without a point, of another body or without ``turns``."""
