@@ -203,7 +203,7 @@ class ContactState:
     """State of one contact at a station.
 
     Attributes:
-        active: whether the contact presses by more than the floor :data:`ACTIVE`.
+        active: whether the contact presses by more than the share ``ACTIVE`` of the largest force at the station.
         places: positions where the beams or edges touch, (k, 2), m; also of a contact that touches without force.
         indeterminate: whether equilibrium leaves the contact's force open; None where the solver does not know.
     """

@@ -165,9 +165,11 @@ def _too_deep(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]
 
 def _crossing(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]:
     """Beams as lines that cross."""
-    place, (first, second) = crossing(scene, *contact.between), contact.between
-    found = f"{first!r} and {second!r} that cross at the start, at {place} m"
-    return broken(place and Mistake(key, found, "neutral lines that touch or are apart"))
+    place, names = crossing(scene, *contact.between), " and ".join(map(repr, contact.between))
+    return broken(
+        place
+        and Mistake(key, f"{names} that cross at the start, at {place} m", "neutral lines that touch or are apart")
+    )
 
 
 def crossing(scene: Scene, *names: str) -> str:

@@ -272,8 +272,8 @@ class Reading:
         """Value of a parameter that its ``users`` refer to, from the first parameter to the last."""
         known = self.parameters or {}
         if name in users or (name not in known and not self._lacks("parameters", name)):
-            cycle = f"a cycle: {' -> '.join((*users, name))}"
-            raise ExpressionError(cycle if name in users else unknown_name("", name, "parameter", known).found)
+            unknown = unknown_name("", name, "parameter", known).found
+            raise ExpressionError(f"a cycle: {' -> '.join((*users, name))}" if name in users else unknown)
         if name in known and name not in self.values:
             self.values[name] = None
             self.values[name] = self._computed(name, known[name], (*users, name))
@@ -320,11 +320,10 @@ class Measured:
         unit = self.unit if isinstance(self.unit, Unit) else self.unit(info.context, info.data)
         number = info.context.in_si(value, unit)
         checked = handler(number if isinstance(value, str) else value)
-        if unit is None or unit == NUMBER:
-            return checked
-        if number == 0.0 == checked or SMALLEST <= abs(number) <= LARGEST:
-            return number
-        raise PydanticCustomError("range", f"zero or a magnitude between {SMALLEST:g} and {LARGEST:g} in SI units")
+        pure = unit is None or unit == NUMBER
+        if not (pure or number == 0.0 == checked or SMALLEST <= abs(number) <= LARGEST):
+            raise PydanticCustomError("range", f"zero or a magnitude between {SMALLEST:g} and {LARGEST:g} in SI units")
+        return checked if pure else number
 
 
 Number = Annotated[float, Measured(NUMBER)]

@@ -169,9 +169,8 @@ def wrong_mobility(scene: Scene) -> Iterator[Mistake]:
         return
     loose = list(unsupported(freedoms))
     yield from (mistake for mistake, names in loose if not _acted_on(freedoms, names))
-    if any(len(freedoms.parts_of(pin)) == 1 for pin in scene.pins.values()):
-        return
-    if scene.pins:
+    joining = all(len(freedoms.parts_of(pin)) > 1 for pin in scene.pins.values())
+    if scene.pins and joining:
         keys, rows = zip(*freedoms.constraints(scene.drives), strict=True)
         yield from (
             Mistake(
@@ -181,7 +180,7 @@ def wrong_mobility(scene: Scene) -> Iterator[Mistake]:
             )
             for key in dict.fromkeys(key for key, free in zip(keys, independent(rows), strict=True) if not free)
         )
-    if not loose and scene.assembly is None:
+    if joining and not loose and scene.assembly is None:
         yield from _loose(freedoms)
 
 

@@ -34,7 +34,7 @@ def edited(*edits, base=HINGE):
 
 
 def mistakes(*edits, base=HINGE):
-    """Key, and the two halves of the sentence, of each mistake that the edits make."""
+    """Key and both halves of the sentence of every mistake after the edits."""
     try:
         scene_from(edited(*edits, base=base), file="case.toml")
     except SceneError as error:

@@ -1,9 +1,9 @@
 """Coverage-guided fuzzing of the scene reader: ``python -m tests.cprbm_scene.fuzzing --runs 2000 --seed 905``.
 
-It begins with the built-in cases and what was found earlier, alters one of them at places drawn from the seed (numbers,
-names, lines, whole tables, bytes), reads it, and keeps what takes the reader along a way between two lines that nothing
-has taken before.  What ends in anything but a scene or a SceneError, or takes more than ``SECONDS`` of the processor or
-``MEMORY``, is put into ``found/`` beside this file, where a test reads it ever after; the exit code is then 1.
+The fuzzer begins with the built-in cases and earlier finds, alters a file at places drawn from the seed (numbers,
+names, lines, whole tables, bytes), reads the altered file, and keeps files that lead the reader from line to line on a
+new way.  A file without a scene or a SceneError, or beyond ``SECONDS`` of the processor or ``MEMORY``, goes into
+``found/`` beside this module, and a test reads the file ever after; the exit code is then 1.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ Lines = set[tuple[CodeType, int, int]]
 
 
 def numbers_altered(text: bytes, others: list[bytes], drawn: random.Random) -> bytes:
-    """One number in the place of another, from a list of bad ones, scaled, or from elsewhere in the text."""
+    """A number replaced by a bad number, by a multiple, or by another number of the text."""
     places = list(NUMBER.finditer(text))
     if not places:
         return text
@@ -101,7 +101,7 @@ ALTERED: tuple[Callable[[bytes, list[bytes], random.Random], bytes], ...] = (
 
 
 def followed(path: Path) -> tuple[Lines, str]:
-    """The ways from line to line that reading a file takes in the reader, and what went wrong, if anything did."""
+    """The ways of the reader from line to line while a file is read, and the error, if any."""
     ways: Lines = set()
     last: dict[FrameType, int] = {}
 

@@ -166,7 +166,7 @@ def test_a_spline_meets_its_points_with_one_tangent_and_one_curvature():
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(offset=st.floats(2.1, 4.0), towards=st.floats(0.0, 6.28), radius=st.floats(0.2, 1.0))
 def test_the_distance_of_two_circles_is_that_of_their_centres_less_the_radii(offset, towards, radius):
-    """Nearly full circles whose openings point away from each other."""
+    """Nearly full circles with opposite openings."""
     centre = (offset * np.cos(towards), offset * np.sin(towards))
 
     def ring(middle, R, opening):
@@ -198,7 +198,7 @@ def test_the_distance_of_a_point_is_the_least_over_samples(x, y, first, turn, di
 @settings(max_examples=100, deadline=None, derandomize=True)
 @given(st.lists(st.floats(-40.0, 40.0), min_size=3, max_size=7), st.floats(0.01, 1.0))
 def test_no_polynomial_overlaps_itself(coefficients, share):
-    """The thickest beam of any polynomial: places nearer than its thickness are neighbours along it."""
+    """The thickest beam of any polynomial: places nearer than the thickness are neighbours along the beam."""
     shape = shape_of(polynomial("x", (0.0, *coefficients), (-1.0, 1.0)))
     thickness = share * min(0.2 * shape.length, 0.999 / max(shape.largest_curvature, 1e-9))
     u = np.linspace(0.0, 1.0, 1500)
@@ -283,7 +283,7 @@ def hinge(gap):
 
 
 def from_one_block(share, *, slope=0.05, joint="weld", body="block"):
-    """A level beam, and above it a beam of varying thickness that ends beside it and rises away."""
+    """A level beam, and an upper beam of varying thickness that rises from the end of the level beam."""
     y = T - share * T
     base = two_lines(0.0, second=((0.0, y + 0.1 * slope), (0.1, y)))
     base["bodies"][body]["points"]["S"] = [0.1, y]
@@ -301,7 +301,7 @@ def bows(gap):
 
 
 def leaning(closer):
-    """Lines that are not parallel, with edges that touch all along: u is normal to the lower edge."""
+    """Lines with an angle between them, and edges in touch all along: u is normal to the lower edge."""
     sine = 0.01
     u, along = np.array([-sine, sqrt(1.0 - sine**2)]), np.array([sqrt(1.0 - sine**2), sine])
     middle = np.array([0.05, 0.0]) + (0.5e-3 + sine * 0.05 + 0.001 - closer) * u

@@ -280,7 +280,7 @@ def test_a_plausible_scene_has_no_note():
 
 
 def units(annotation):
-    """The units that an annotation states for its numbers, None for numbers without a unit."""
+    """Units of an annotation's numbers, None for numbers without a unit."""
     if annotation is float:
         return {None}
     if get_origin(annotation) is Annotated:
@@ -563,7 +563,7 @@ def test_no_method_changes_a_frozendict():
         with pytest.raises(TypeError, match="stays as it is"):
             change(one)
     assert one == {"a": 3}
-    # a ``dict`` has these methods, a mapping that is only read has not
+    # methods of a ``dict`` beyond a mapping for reading only
     changing = set(dir(dict)) - set(dir(MappingProxyType)) - {"__getattribute__", "fromkeys"}
     assert not {name for name in changing if getattr(frozendict, name) is getattr(dict, name)}
 
