@@ -194,7 +194,7 @@ def _names(table: str, part: str, item: object) -> Iterator[tuple[str, str]]:
     yield table, part
     match table, item:
         case "bodies", {"points": dict() as points}:
-            yield from (("points", point) for point in points)
+            yield from (("points", f"{point}") for point in points)
         case "beams", dict():
             # an end with another joint may be a free end with a mistake
             ends = [item.get(side) for side in ("start", "end")]

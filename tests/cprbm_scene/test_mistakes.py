@@ -174,6 +174,9 @@ ONE_ROUND = [
     # a misspelled key is no missing key
     ({"beams/lower/width": REMOVED, "beams/lower/widht": 0.01, "stages/0/name": REMOVED, "stages/0/nme": "load"},
      {"beams.lower.widht", "stages[0].nme"}),
+    # names that are no texts, from Python
+    ({"bodies/block/points": {7: [0.1, 0.0], "Q": [0.1, 0.0]}, "materials/steel/poisson_ratio": 2.0},
+     {"bodies.block.points[7]", "materials.steel.poisson_ratio"}),
     # the names of a misspelled table are unknown
     ({"body": TWO["bodies"], "bodies": REMOVED, "probes/0/points": 7}, {"body", "probes[0].points"}),
     ({"contact": TWO["contacts"], "contacts": REMOVED, "probes/0": {"of": "touch", "quantity": "force"}}, {"contact"}),
