@@ -6,7 +6,7 @@ Stations have the unit of the stepped load or drive, values of claims the unit o
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from math import isclose
-from typing import Annotated, Any, Literal, cast
+from typing import Annotated, Any, ClassVar, Literal, cast
 
 from pydantic import Field, WithJsonSchema, create_model, model_validator
 
@@ -45,41 +45,19 @@ class Assembly(Record):
     """Moments on pinned ends by the names of beams, counter-clockwise."""
 
 
-class _Acting(Record):
-    """Load or drive: stations state the values in the unit of the kind."""
-
-    kind: str
-
-    @property
-    def unit(self) -> Unit:
-        """Unit of the values."""
-        return _UNIT_OF_KIND[self.kind]
-
-
-_UNIT_OF_KIND: Mapping[str, Unit] = frozendict(
-    {
-        "moment": MOMENT,
-        "force": FORCE,
-        "beam_force": FORCE,
-        "beam_moment": MOMENT,
-        "distributed": LINE_LOAD,
-        "displacement": LENGTH,
-        "rotation": ANGLE,
-    }
-)
-
-
-class Moment(_Acting):
+class Moment(Record):
     """Moment on a body, counter-clockwise."""
 
+    unit: ClassVar[Unit] = MOMENT
     kind: Literal["moment"]
     body: BodyName
     """Body under the moment, counter-clockwise."""
 
 
-class Force(_Acting):
+class Force(Record):
     """Dead force at a point of a body."""
 
+    unit: ClassVar[Unit] = FORCE
     kind: Literal["force"]
     point: PointName
     """Point of a body under the force."""
@@ -87,9 +65,10 @@ class Force(_Acting):
     """Direction, constant while the part turns."""
 
 
-class BeamForce(_Acting):
+class BeamForce(Record):
     """Dead force at a place of a beam."""
 
+    unit: ClassVar[Unit] = FORCE
     kind: Literal["beam_force"]
     beam: BeamName
     """Beam under the load."""
@@ -99,9 +78,10 @@ class BeamForce(_Acting):
     """Direction, constant while the part turns."""
 
 
-class BeamMoment(_Acting):
+class BeamMoment(Record):
     """Moment at a place of a beam, counter-clockwise."""
 
+    unit: ClassVar[Unit] = MOMENT
     kind: Literal["beam_moment"]
     beam: BeamName
     """Beam under the load."""
@@ -109,9 +89,10 @@ class BeamMoment(_Acting):
     """Place, a fraction of the beam's arc length."""
 
 
-class DistributedLoad(_Acting):
+class DistributedLoad(Record):
     """Dead load per length of a beam, constant along a part: a weight, not a pressure."""
 
+    unit: ClassVar[Unit] = LINE_LOAD
     kind: Literal["distributed"]
     beam: BeamName
     """Beam under the load."""
@@ -150,7 +131,7 @@ _From = create_model(  # type: ignore[call-overload]
 """Field with a name that Python reserves."""
 
 
-class _Drive(_Acting, _From):
+class _Drive(_From):
     """Prescribed motion, from the begin of the first stage, or of the stage ``from``: before that the motion is free.
 
     From its stage on the drive holds the value that the motion has there, or goes on from it.
@@ -165,6 +146,7 @@ class _Drive(_Acting, _From):
 class DisplacementDrive(_Drive):
     """Prescribed displacement of a point of a body along a direction."""
 
+    unit: ClassVar[Unit] = LENGTH
     kind: Literal["displacement"]
     point: PointName
     """Driven point of a body."""
@@ -175,6 +157,7 @@ class DisplacementDrive(_Drive):
 class RotationDrive(_Drive):
     """Prescribed rotation of a body, counter-clockwise."""
 
+    unit: ClassVar[Unit] = ANGLE
     kind: Literal["rotation"]
     body: BodyName
     """Body with a prescribed rotation, counter-clockwise."""
