@@ -245,7 +245,9 @@ def bench(
     with output.status(shown=not request.quiet) as say:
         say("reference of the errors")
         known = measures.reference(question, request.solvers)
-    session = running.Session(opened if whole else question, plan, taking, provenance.machine(), known, absent)
+    session = running.Session(
+        measures.in_bending(opened) if whole else question, plan, taking, provenance.machine(), known, absent
+    )
     take_steps(request, session, session.jobs(), running.Session.do, bench_section)
     failed = [row for row in session.rows() if row.contender.name in running.OURS and not row.outcome.completed]
     for row in failed:

@@ -6,6 +6,7 @@ import re
 import textwrap
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 
 from comparisons.case import Comparison, Verdict
@@ -15,7 +16,7 @@ from comparisons.present import offset
 from comparisons.present.columns import NOTHING, Column, Table, follow, table_of
 from comparisons.present.row_tables import row_units, share
 from comparisons.present.table import brief_lines
-from comparisons.sentences import pressure, theory_sentence
+from comparisons.sentences import pressure, remedy_sentence, theory_sentence
 from comparisons.verdict import SEVERITY, Word
 from comparisons.verdict.rows import ROUND_OFF, Row
 
@@ -38,14 +39,14 @@ def brief(compared: Comparison | OffsetComparison, argument: str, page: Path | N
         page: written page of the case; None without a report.
     """
     verdict = compared.verdict
-    first = _wrapped(headline(compared.question.name, verdict, verdict.because))
+    first = _wrapped(headline(compared.question.name, verdict, verdict.because if compared.rows else verdict.sentence))
     last = _next_step(argument, verdict, page)
     if isinstance(compared, OffsetComparison):
         errors = offset.error_table(compared)
         explained = _wrapped(f"{errors.title}. {errors.note}")
         return "\n".join((*first, "", *brief_lines(errors, width=WIDTH), *explained, *last))
-    theories = _wrapped(theory_sentence(compared.runs, compared.rows))
-    last = [*_found_sizes(compared), *theories, *last]
+    rest = [theory_sentence(compared.runs, compared.rows), *dict.fromkeys(map(remedy_sentence, compared.runs.pair))]
+    last = [*_found_sizes(compared), *chain.from_iterable(map(_wrapped, rest if compared.rows else ())), *last]
     rows = last_rows_of_stages(compared)
     tables = (nearest_rows(compared, rows, count) for count in range(min(ROWS, len(rows)), 0, -1))
     reports = ([*first, "", *brief_lines(table, width=WIDTH), *filter(None, (table.note,)), *last] for table in tables)

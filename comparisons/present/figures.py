@@ -88,7 +88,7 @@ def designs_figure(designs: Sequence[Comparison]) -> Figure:
     views = [view_of(each.scene, each.runs.answers["fea"].stations[-1]) for each in designs]
     limits = [bounds_of(each.scene, [view], "moment") for each, view in zip(designs, views, strict=True)]
     low, high = np.min([each.low for each in limits], axis=0), np.max([each.high for each in limits], axis=0)
-    with canvas(*_sides(low, high, _SHAPES, (0.9, 1.1))) as drawing:
+    with canvas(*_sides(low, high, _SHAPES, (0.9, 1.3))) as drawing:
         axes = drawing.add_subplot()
         for each, view, colour in zip(designs, views, cycle(_DESIGNS), strict=False):
             draw_parts(axes, view.of("body", "weld", "pin", "pivot"), colour)
@@ -113,7 +113,7 @@ def shapes(scene: Scene, answers: Mapping[str, Answer], stations: Sequence[tuple
     low, high = extent(scene, views)
     columns = 1 if alone or float(np.ptp((high - low) / max(high - low))) >= 0.6 else 2
     rows, steps = -(-len(views) // columns), {stage.name: stage.steps for stage in scene.stages}
-    width, height = _sides(low, high, _SHAPES, (0.8, 0.5))
+    width, height = _sides(low, high, _SHAPES, (0.8, 0.8))
     with canvas(columns * width, rows * height + 0.6) as drawing:
         for place, (view, pair, (stage, value)) in enumerate(zip(views, found, stations, strict=True)):
             axes = drawing.add_subplot(rows, columns, place + 1)
@@ -175,7 +175,7 @@ def _set_window(axes: Axes, scene: Scene, low: Array, high: Array) -> None:
 
 def stress_picture(scene: Scene, view: View, bounds: Bounds, quantity: Coloured, kind: str, dots: float) -> bytes:
     """A view as ``png`` or ``svg``: beams at true thickness with colours of a quantity, over the beams at rest."""
-    with canvas(*_sides(bounds.low, bounds.high, _STRESS, (1.5, 0.75))) as drawing:
+    with canvas(*_sides(bounds.low, bounds.high, _STRESS, (1.6, 1.0))) as drawing:
         axes = drawing.add_subplot()
         draw_parts(axes, view.of("edge", "rest"))
         _draw_colours(drawing, axes, scene, view, bounds, quantity)

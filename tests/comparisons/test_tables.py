@@ -75,6 +75,13 @@ def test_a_table_keeps_to_its_width_and_splits_between_columns(width, monkeypatc
         assert {len(row.rstrip()) for row in lines[place + 2 : place + 4]} == {len(lines[place].rstrip())}
 
 
+def test_title_and_note_take_the_width_of_the_screen():
+    title, note = "A title that is wider than its table", "COMPLETED: every station was reached and certified"
+    lines = lines_of(Table(title, ("stage", "at"), (("press", "1.5 N"),), note), 60)
+    assert lines[0] == title
+    assert note in lines
+
+
 def test_sentences_fold_between_words_and_names_fold_anywhere():
     claim, name = "displacement of B within 0.62 % of ANSYS, 80 elements per beam", "x" * 60 + ".displacement"
     lines = lines_of(Table("Claims", ("claim", "theirs", "ours"), ((claim, "0.620 %", "0.718 %"),)), 50)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from comparisons.choices import Choices
+from comparisons.present.brief import brief
 from cprbm_scene import Ending, Loss
 from tests.verdict.comparing import altered, compared, ending, only, word_of
 from tests.verdict.jumping import Jumping
@@ -89,6 +90,15 @@ def test_a_critical_point_is_told_in_degrees_with_its_mechanism(crank):
         "The branch ends in forward at 1.2288 rad (70.41°) (stopB: fold) in the CPRBM and 1.2287 rad"
     )
     assert "0.0043° apart against a stated 0.0091°, 0.30° allowed; the theories are 0.029° apart: AGREE." in first
+
+
+@pytest.mark.parametrize(("loss", "remedy"), [(Loss.FOLD, 'beyond = "jump"'), (Loss.BIFURCATION, "imperfection")])
+def test_runs_that_end_before_the_first_station_name_the_critical_point_and_a_remedy(crank, loss, remedy):
+    cprbm, fea = Jumping("cprbm", stops=True, loss=loss), Jumping("fea", stops=True, loss=loss)
+    pair = (lambda scene, choices, own=own: replace(own(scene, choices), stations=()) for own in (cprbm, fea))
+    printed = " ".join(brief(compared(crank, *pair), "crank.toml").split())
+    assert ": UNDECIDED (RUN_ENDED). No station has a row that can be compared. The branch ends in forward" in printed
+    assert remedy in printed
 
 
 def test_runs_of_one_solver_that_disagree_on_a_mechanism_are_named(crank):
