@@ -355,6 +355,7 @@ def _histograms(scatter: Scatter, chosen: Sequence[Measure]) -> Iterator[Figure]
             axes.hist(values_of(measure, scatter.standing), bins="auto", color=BLUE)
             axes.axvline(measure.values(scatter.nominal)[0], color=RED, linewidth=1.0)
             axes.set_xlabel(f"{measure}, {measure.unit}".rstrip(", "), fontsize=8)
+            axes.set_ylabel("points", fontsize=8)
         yield finished(figure, "scatter", "Numbers of points by value at the last stations. Line: nominal value.")
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -77,22 +78,29 @@ def write_tables(folder: Path, sweep: Sweep) -> None:
 
 
 def _wide(sweep: Sweep, task: Task, outcome: Outcome) -> dict[str, Any]:
-    """A point with the numbers of the last station of every stage; without the stresses along beams."""
+    """A point with the numbers of the last station of every stage."""
     row = _in_units(sweep, _point(task, outcome))
-    for number in last_numbers(outcome):
+    for number in last_numbers(magnitudes(outcome)):
         factor, unit = file_unit(sweep.scene, number["unit"])
         row[f"{number['stage']} {name_of(number)}, {unit}"] = in_unit(number["value"], factor)
     return row
 
 
+def magnitudes(outcome: Outcome) -> Outcome:
+    """The outcome with the largest magnitude, component ``max``, in place of the values along a beam."""
+    found: dict[tuple[str, float, str], Record] = {}
+    for each in outcome.numbers:
+        largest = {"component": "max", "arc_length": None, "value": abs(each["value"])}
+        number = each if each["arc_length"] is None else {**each, **largest}
+        place = number["stage"], number["station"], name_of(number)
+        found[place] = max(found.get(place, number), number, key=lambda one: float(one["value"]))
+    return replace(outcome, numbers=tuple(found.values()))
+
+
 def last_numbers(outcome: Outcome) -> list[Record]:
-    """Numbers of the last station of every stage, without values along beams."""
+    """Numbers of the last station of every stage."""
     last = {number["stage"]: number["station"] for number in outcome.numbers}
-    return [
-        number
-        for number in outcome.numbers
-        if number["station"] == last[number["stage"]] and number["arc_length"] is None
-    ]
+    return [number for number in outcome.numbers if number["station"] == last[number["stage"]]]
 
 
 def name_of(number: Record) -> str:
@@ -164,7 +172,7 @@ def write_page(folder: Path, sweep: Sweep) -> None:
     Raises:
         OSError: a file cannot be written.
     """
-    solved = sweep.solved()
+    solved = [(task, magnitudes(outcome)) for task, outcome in sweep.solved()]
     names = _names_of(_fullest(solved)) if solved else []
     figures = tuple(_figures(sweep, solved, names)) if solved else ()
     put_section(folder, Section("", figures=figures))
@@ -205,8 +213,7 @@ def _names_of(outcome: Outcome) -> list[tuple[str, str]]:
 
 def _curve_of(outcome: Outcome, stage: str, name: str) -> list[Record]:
     """Numbers of a name in a stage, station by station."""
-    mine = (each for each in outcome.numbers if each["stage"] == stage and each["arc_length"] is None)
-    return [each for each in mine if name_of(each) == name]
+    return [each for each in outcome.numbers if (each["stage"], name_of(each)) == (stage, name)]
 
 
 def _unit_of(sweep: Sweep, numbers: Sequence[Record], kind: str = "") -> tuple[float, str]:
@@ -298,11 +305,12 @@ def _slider(sweep: Sweep, solved: Solved, stage: str, name: str) -> Mapping[str,
     curves = [_curve_of(outcome, stage, name) for _, outcome in solved]
     ends = [curve[-1] for curve in curves if curve]
     (size, unit), (step, step_unit) = _unit_of(sweep, ends), _unit_of(sweep, ends, "station")
+    steps = next(each.steps for each in sweep.scene.stages if each.name == stage)
     return {
-        "title": f"Stage {stage}: {name}, {unit}, against the load or drive, {step_unit}",
+        "title": f"Stage {stage}: {name}, {unit}, against {steps}, {step_unit}",
         "curves": [
             {
-                "label": f"{place_text(sweep.axes, task.point)}: {outcome.ending}",
+                "label": f"{place_text(sweep.axes, task.point)}{'' if outcome.completed else f': {outcome.ending}'}",
                 "points": [[n["station"] / step, n["value"] / size, n["branch"]] for n in curve],
             }
             for (task, outcome), curve in zip(solved, curves, strict=True)
