@@ -16,8 +16,8 @@ import pytest
 import comparisons
 from comparisons.choices import Choices
 from comparisons.cli.main import run
+from comparisons.sweeps.demands import Measure
 from comparisons.sweeps.outcome import Outcome
-from comparisons.sweeps.tables import magnitudes, name_of
 from cprbm_scene import read
 from tests.sweeps.elastica import tip
 from tests.sweeps.scenes import CANTILEVER, table
@@ -43,9 +43,10 @@ def test_of_values_along_a_beam_the_largest_magnitude_counts():
         {**record, "arc_length": place, "value": value} for place, value in ((0.0, 2.0), (0.1, -3.0), (0.2, 1.0))
     ]
     force = {**record, "probe": "c.force", "arc_length": None, "value": -5.0}
-    (largest, other) = magnitudes(Outcome("cprbm", "COMPLETED", "", numbers=(*stresses, force))).numbers
-    assert (name_of(largest), largest["value"], largest["arc_length"]) == ("b.bending_stress.max", 3.0, None)
-    assert other == force
+    outcome = Outcome("cprbm", "COMPLETED", "", numbers=(*stresses, force))
+    stress, pressure = (Measure("load", probe, "", False, 1, 1.0, "") for probe in ("b.bending_stress", "c.force"))
+    assert (stress.last(outcome)["value"], stress.values(outcome)) == (3.0, [3.0])
+    assert (pressure.last(outcome), pressure.values(outcome)) == (force, [-5.0])
 
 
 def test_a_grid_has_a_row_per_number_and_a_larger_grid_takes_the_points_over(scene, tmp_path, capsys):
