@@ -49,8 +49,8 @@ def headline(runs: Runs, rows: Sequence[Row], decided: tuple[Word, Reason | None
         return "No station has a row that can be compared."
     row = max((row for row in mine if row.reason is reason), key=pressure)
     if word is Word.AGREE:
-        counts = f"All {total} rows agree" if len(mine) == total else f"{len(mine)} of {total} rows agree"
-        found = "The only row agrees," if total == 1 else f"{counts}; the closest is"
+        counts = f"All {total}" if len(mine) == total else f"{len(mine)} of {total}"
+        found = "The only row agrees," if total == 1 else f"{counts} rows agree; the closest is"
         return f"{found} {place(runs.scene, row)}: {_measured(row)}.{_others(rows)}"
     verb = "differ" if word is Word.DIFFER else "are undecided"
     return f"{len(mine)} of {total} rows {verb}, first of all {place(runs.scene, row)}: {_explained(runs, row, reason)}"

@@ -58,15 +58,10 @@ def at_last_loads(scene: Scene) -> Scene:
     return scene.model_copy(update={"stages": stages})
 
 
-def in_bending(scene: Scene) -> Scene:
-    """The scene in the theory of the errors."""
-    return scene.model_copy(update={"theory": "bending"})
-
-
 def benchmark_scene(scene: Scene) -> Scene:
     """The scene in bending, with its last loads and the probes of both measures, and without claims."""
     probes = tuple(probe for probe in scene.probes if measure_of(scene, probe) is not None)
-    return at_last_loads(in_bending(scene)).model_copy(update={"probes": probes, "claims": ()})
+    return at_last_loads(scene).model_copy(update={"probes": probes, "claims": (), "theory": "bending"})
 
 
 def measure_of(scene: Scene, probe: Probe) -> Measure | None:

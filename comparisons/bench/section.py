@@ -134,8 +134,7 @@ def _line(axes: Axes, method: Contender, points: Sequence[tuple[float, float]], 
 def _decades(axes: Axes, name: str, sizes: Sequence[float] = ()) -> None:
     """Logarithmic scales with whole decades, so that an axis has two ticks or more, and ticks at the sizes."""
     logarithmic(axes, sizes)
-    axes.set_ylabel(name)
-    axes.set_ylim(_whole(axes.get_ylim()))
+    axes.set(ylabel=name, ylim=_whole(axes.get_ylim()))
     if not sizes:
         axes.set_xlim(_whole(axes.get_xlim()))  # of all panels that share the axis
 

@@ -42,6 +42,8 @@ _STYLE: dict[Any, Any] = {  # the stubs name every key of every version
     "svg.fonttype": "path",
     "font.family": "DejaVu Sans",
     "font.size": 11.0,
+    "axes.titlelocation": "left",
+    "axes.titlesize": 12.0,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "legend.frameon": False,
@@ -171,8 +173,7 @@ def show_lengths(scene: Scene, axis: matplotlib.axis.Axis, name: str = "") -> No
 
 def logarithmic(axes: Axes, x: Sequence[float] = ()) -> None:
     """Give both axes logarithmic scales with a grid, and ticks at the numbers ``x``."""
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log")
     if x:
         axes.set_xticks(x, [f"{each:g}" for each in x])
     axes.minorticks_off()

@@ -120,8 +120,7 @@ def shapes(scene: Scene, answers: Mapping[str, Answer], stations: Sequence[tuple
             _draw_mechanism(axes, scene, view, pair)
             if alone:
                 draw_names(axes, scene)
-            axes.set_title(f"{stage}: {steps[stage]} = {load_text(scene, stage, value)}", loc="left")
-            _set_window(axes, scene, low, high)
+            _set_window(axes, scene, low, high, f"{stage}: {steps[stage]} = {load_text(scene, stage, value)}")
         common_legend(drawing, "lower center", 2)
         where = f"at {at_station(scene, *stations[0])}" if alone else "at several stations"
         apart = " Dotted: the way of an end that is drawn apart from its pin." if scene.assembly is not None else ""
@@ -163,12 +162,11 @@ def _sides(low: Array, high: Array, longest_side: float, room: tuple[float, floa
     return max(_SHORTEST[0], float(x)) + room[0], max(_SHORTEST[1], float(y)) + room[1]
 
 
-def _set_window(axes: Axes, scene: Scene, low: Array, high: Array) -> None:
-    """Equal scales, margins of six hundredths of the longer side, and displayed units."""
+def _set_window(axes: Axes, scene: Scene, low: Array, high: Array, title: str = "") -> None:
+    """Title, equal scales, margins of six hundredths of the longer side, and displayed units."""
     margin = 0.06 * float(np.max(high - low))
-    axes.set_xlim(low[0] - margin, high[0] + margin)
-    axes.set_ylim(low[1] - margin, high[1] + margin)
-    axes.set_aspect("equal", adjustable="box")
+    (left, below), (right, above) = low - margin, high + margin
+    axes.set(title=title, xlim=(left, right), ylim=(below, above), aspect="equal")
     show_lengths(scene, axes.xaxis, "x")
     show_lengths(scene, axes.yaxis, "y")
 
@@ -181,8 +179,7 @@ def stress_picture(scene: Scene, view: View, bounds: Bounds, quantity: Coloured,
         _draw_colours(drawing, axes, scene, view, bounds, quantity)
         draw_parts(axes, view.of("body", "weld", "pin", "pivot", "stop"))
         _draw_pushes(axes, scene, view, bounds)
-        _set_window(axes, scene, bounds.low, bounds.high)
-        axes.set_title(f"{scene.name}, {view_title(scene, view)}", loc="left", fontsize=10)
+        _set_window(axes, scene, bounds.low, bounds.high, f"{scene.name}, {view_title(scene, view)}")
         return image(drawing, kind, dots)
 
 

@@ -81,10 +81,8 @@ def write_tables(folder: Path, sweep: Sweep) -> None:
 def _wide(sweep: Sweep, task: Task, outcome: Outcome) -> dict[str, Any]:
     """A point with the numbers of the last station of every stage."""
     row = _in_units(sweep, _point(task, outcome))
-    for measure in measures(sweep.scene):
-        if (number := measure.last(outcome)) is not None:
-            row[f"{measure}, {measure.unit}"] = in_unit(number["value"], measure.size)
-    return row
+    ends = ((measure, measure.last(outcome)) for measure in measures(sweep.scene))
+    return row | {f"{each}, {each.unit}": in_unit(end["value"], each.size) for each, end in ends if end is not None}
 
 
 def name_of(number: NumberRecord) -> str:
@@ -168,8 +166,10 @@ def write_page(folder: Path, sweep: Sweep) -> None:
         if not outcome.completed
     ]
     family = json.dumps(_slider(sweep, solved, shown[0]) if shown else {"curves": []}).replace("<", "\\u003c")
-    context = {"sweep": sweep, "figures": figures, "failed": failed, "family": family}
-    write(folder / "index.html", rendered("sweep.html", context))
+    write(
+        folder / "index.html",
+        rendered("sweep.html", {"sweep": sweep, "figures": figures, "failed": failed, "family": family}),
+    )
 
 
 def _figures(sweep: Sweep, solved: Solved, shown: Sequence[Measure]) -> Iterator[Figure]:
@@ -191,7 +191,7 @@ def _fullest(solved: Solved) -> Outcome:
 def _shown(scene: Scene, outcome: Outcome) -> list[Measure]:
     """Numbers of the last stations of an outcome, without components that are round-off at all stations."""
     sizes = {each: max((abs(one["value"]) for one in each.numbers(outcome)), default=0.0) for each in measures(scene)}
-    largest = {unit: max(size for each, size in sizes.items() if each.unit == unit) for unit in {m.unit for m in sizes}}
+    largest = dict(sorted((each.unit, size) for each, size in sizes.items()))  # the last of a unit stays
     return [each for each, size in sizes.items() if size > ROUND_OFF * largest[each.unit] and each.last(outcome)]
 
 
@@ -211,8 +211,11 @@ def _over_parameters(sweep: Sweep, solved: Solved, shown: Sequence[Measure]) -> 
             known = [measure.last(outcome) for _, outcome in solved]
             size, label = _unit_of(sweep, [each for each in known if each is not None])
             numbers = [np.nan if each is None else each["value"] / size for each in known]
-            axes.set_title(f"{measure.stage}: {measure.name}, {label}".rstrip(", "), fontsize=9)
-            axes.set_xlabel(first.label)
+            axes.set(
+                title=f"{measure.stage}: {measure.name}, {label}".rstrip(", "),
+                xlabel=first.label,
+                ylabel=sweep.axes[-1].label if mapped else "",
+            )
             if mapped:
                 _contours(figure, axes, sweep.axes, solved, numbers)
             else:
@@ -245,7 +248,6 @@ def _contours(figure: Any, axes: Axes, pair: Sequence[Axis], solved: Solved, num
         return
     least, size = np.nanmin(values), np.nanmax(np.abs(values)) or 1.0
     levels = np.linspace(least, max(np.nanmax(values), least + ROUND_OFF * size), 12)
-    axes.set_ylabel(second.label)
     x, y = (np.array(axis.values()) / axis.size for axis in pair)
     for branch in range(len(kinds)):
         own = np.ma.masked_where(branches != branch, values).reshape(first.count, second.count).T
@@ -260,8 +262,7 @@ def _curves(sweep: Sweep, solved: Solved, stage: Stage, shown: Sequence[Measure]
         for axes, measure in zip(panels(figure, len(shown), 3.0), shown, strict=True):
             whole = measure.numbers(longest)
             (size, label), (step, step_label) = _unit_of(sweep, whole[-1:]), _unit_of(sweep, whole, "station")
-            axes.set_title(f"{measure.name}, {label}".rstrip(", "), fontsize=9)
-            axes.set_xlabel(f"{stage.steps}, {step_label}")
+            axes.set(title=f"{measure.name}, {label}".rstrip(", "), xlabel=f"{stage.steps}, {step_label}")
             for task, outcome in solved:
                 share = (task.point[first.name] - first.low) / (first.high - first.low)
                 colour = 0.1 + 0.5 * share, 0.2 + 0.55 * share, 0.45 + 0.45 * share  # from dark to light blue
@@ -303,13 +304,11 @@ def _checked(sweep: Sweep, solved: Solved) -> Figure:
     ]
     with canvas(6.4, 4.0) as figure:
         axes = figure.add_subplot()
-        axes.set_xlabel(sweep.axes[0].label)
+        axes.set(xlabel=sweep.axes[0].label, ylabel=sweep.axes[1].label if len(sweep.axes) > 1 else _RATIO)
         x, y = ([axis.of(point) for point, _ in checked] for axis in (sweep.axes * 2)[:2])
         if len(sweep.axes) > 1:
-            axes.set_ylabel(sweep.axes[1].label)
             figure.colorbar(axes.scatter(x, y, c=ratios, cmap="viridis"), ax=axes, label=_RATIO)
         else:
             axes.plot(x, ratios, "o", color=BLUE)
             axes.axhline(1.0, color=RED, linewidth=0.8)
-            axes.set_ylabel(_RATIO)
         return finished(figure, "checked", "Largest difference over stated uncertainty at the checked points.")
