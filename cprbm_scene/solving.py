@@ -38,7 +38,16 @@ from cprbm_scene.curve_records import shape_of
 from cprbm_scene.fields import Units
 from cprbm_scene.freedoms import Freedoms, unsupported
 from cprbm_scene.mistakes import Mistake, SceneError, broken
-from cprbm_scene.statement import BeamContact, BodyLoad, CircleContact, EllipseContact, Load, Scene, SplineContact
+from cprbm_scene.statement import (
+    BeamContact,
+    BodyLoad,
+    CircleContact,
+    EllipseContact,
+    Load,
+    Material,
+    Scene,
+    SplineContact,
+)
 from cprbm_scene.units import BY_QUANTITY, SIZES
 
 Requirement = Literal["theory", "overlap at rest", "from", "together", "support", "edge"]
@@ -217,17 +226,27 @@ def notes(scene: Scene) -> Iterator[str]:
                 f"beams.{second}: crosses the beam {first!r} at the start, at {place} m: without a contact of the two, "
                 "no force acts there; a pair in may_cross needs no note."
             )
+    yield from [*_load_notes(scene)] or (
+        f"materials.{name}: youngs_modulus is {material.youngs_modulus:.3g} Pa, implausible below {SOFTEST:g} "
+        f"and above {STIFFEST:g} Pa. Is the number in {scene.display_units.stress}, the file's unit of stress?"
+        for name, material in scene.materials.items()
+        if not SOFTEST <= material.youngs_modulus <= STIFFEST
+    )
+
+
+def _load_notes(scene: Scene) -> Iterator[str]:
+    """Sentences on implausible loads."""
     for name, load in scene.loads.items():
-        stages = (stage for stage in scene.stages if name in stage.stepped)
-        largest = max((abs(value) for stage in stages for value in stage.stations), default=0.0)
+        largest = max(
+            (abs(value) for stage in scene.stages if name in stage.stepped for value in stage.stations), default=0.0
+        )
         beams = scene.beams if isinstance(load, BodyLoad) else [load.beam]
         ratio, beam = min((largest * _per_unit(scene, load, beam), beam) for beam in beams)
         if ratio > LARGE:
             symbol = {"force": "P L^2", "beam_force": "P L^2", "distributed": "q L^3"}.get(load.kind, "M L")
-            modulus = scene.materials[scene.beams[beam].material].youngs_modulus
             yield (
-                f"loads.{name}: {symbol}/(E I) is {ratio:.3g} for the beam {beam!r}, implausible above "
-                f"{LARGE:g}.{_explanation(ratio, modulus, scene.display_units)}"
+                f"loads.{name}: {symbol}/(E I) is {ratio:.3g} for the beam {beam!r}, implausible above {LARGE:g}."
+                + _explanation(ratio, scene.materials[scene.beams[beam].material], scene.display_units)
             )
 
 
@@ -239,7 +258,7 @@ def _per_unit(scene: Scene, load: Load, name: str) -> float:
     return float(shape_of(beam.curve).length ** (2 - load.unit.length) / stiffness)
 
 
-def _explanation(ratio: float, modulus: float, units: Units) -> str:
+def _explanation(ratio: float, material: Material, units: Units) -> str:
     """The question about the mix-up of units that brings r and E closest to ordinary values; empty without any."""
     mixed = (
         (quantity, own, other, float(SIZES[other] / SIZES[own]))
@@ -251,6 +270,6 @@ def _explanation(ratio: float, modulus: float, units: Units) -> str:
         (abs(math.log10(true)), f" Is a {quantity} in {other} written as {own}?")
         for quantity, own, other, factor in mixed
         if (true := ratio * factor ** _POWERS[quantity]) <= LARGE
-        and SOFTEST <= modulus * (factor if quantity == "stress" else 1.0) <= STIFFEST
+        and SOFTEST <= material.youngs_modulus * (factor if quantity == "stress" else 1.0) <= STIFFEST
     )
     return min(found, default=(0.0, ""))[1]
