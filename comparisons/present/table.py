@@ -47,7 +47,7 @@ def screen_text(table: Table, *, width: int) -> str:
     for widths in _split(columns, 2 if table.headers[1:2] == ("unit",) else 1, width):
         grid = Grid(box=box.SIMPLE_HEAD)
         for column, size in widths.items():
-            left = column == 0 or _least(columns[column]) < max(map(cell_len, columns[column]))  # names and sentences
+            left = column == 0 or any(cell_len(row[column]) > _LONG for row in table.rows)  # names and sentences
             grid.add_column(
                 Text(table.headers[column]), justify="left" if left else "right", overflow="fold", width=size
             )
