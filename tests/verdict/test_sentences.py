@@ -54,6 +54,14 @@ def test_a_case_that_agrees_names_the_closest_row(hinge):
     assert compared(hinge, C, F).verdict.because.startswith("All 126 rows agree; the closest is ")
 
 
+def test_a_single_row_has_no_plural(hinge):
+    (stage,) = hinge.stages
+    stage = stage.model_copy(update={"stations": (0.67,), "shown": ()})
+    probes = tuple(probe for probe in hinge.probes if probe.quantity == "rotation")
+    alone = hinge.model_copy(update={"stages": (stage,), "probes": probes, "claims": ()})
+    assert compared(alone, C, F).verdict.because.startswith("The only row agrees, BD.rotation at load 0.67 N·m: ")
+
+
 def test_whose_uncertainty_is_too_large(away):
     assert "most of it of the CPRBM" in compared(away, COARSE[0], F).verdict.because
     assert "most of it of the finite elements" in compared(away, C, COARSE[1]).verdict.because
