@@ -2,12 +2,13 @@
 
 A column has the arrays of one name and shape, in the order of the stations.  Let b[k, i] be the 64 bits of number i at
 station k, read as an integer.  The integer grows with the number, so it is as smooth along stations and places as the
-number.  The third differences along both have mostly zero leading bits:
+number.  The differences along both have mostly zero leading bits:
 
-    d = Δᵢ³ Δₖ³ b  (mod 2⁶⁴),    z = 2d for d ≥ 0,  -2d - 1 for d < 0.
+    d = Δᵢᑫ Δₖᵖ b  (mod 2⁶⁴),    z = 2d for d ≥ 0,  -2d - 1 for d < 0.
 
-Integers of fixed size add and subtract without rounding: the sums of the differences are the bits of the numbers.  The
-file has the first bytes of all z, then the second bytes, and so on, compressed.  Equal arrays stand once.
+The orders p and q belong to the column: they grow by one, along the better axis, as long as z has fewer bits.  Integers
+of fixed size add and subtract without rounding: the sums of the differences are the bits of the numbers.  The file has
+the orders, then the first bytes of all z, the second bytes, and so on, compressed.  Equal arrays stand once.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import json
 import math
 import zlib
 from base64 import b64decode, b64encode
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
 from enum import Enum
 from functools import cache
@@ -36,9 +37,6 @@ DAMAGES = (EOFError, zlib.error, gzip.BadGzipFile, KeyError, IndexError, TypeErr
 
 _COMPRESSION = 4
 """Level of gzip: level 6 takes 2.5 times as long for two per cent."""
-
-_AXES = (0, 0, 0, 1, 1, 1)
-"""Axes of the differences: along stations and along places; second or fourth differences take more room."""
 
 Integers = NDArray[np.int64]
 
@@ -61,7 +59,7 @@ def unpacked(content: bytes) -> dict[str, Answer]:
         ValueError: ``content`` has no answers; other errors of damaged bytes are in ``DAMAGES``.
     """
     document = json.loads(gzip.decompress(content))
-    arrays = _read_columns(document["columns"], document["differences"])
+    arrays = _read_columns(document)
     return {name: _value(Answer, data, arrays) for name, data in document["answers"].items()}
 
 
@@ -110,37 +108,53 @@ class _Columns:
     def document(self) -> dict[str, Any]:
         """Number of rows and shape of every column, and the differences of all."""
         columns = [np.array(rows) for _, rows in self.arrays.values()]
-        integers = [_differences(each.view("<i8")).ravel() for each in columns]
-        joined = np.concatenate(integers, dtype="<i8") if integers else np.zeros(0, "<i8")
-        signless = (joined << 1) ^ (joined >> 63)
-        planes = signless.view(np.uint8).reshape(-1, 8).T.tobytes()
+        found = [_differences(each.view("<i8")) for each in columns]
+        joined = np.concatenate([each.ravel() for each, _ in found], dtype="<i8") if found else np.zeros(0, "<i8")
+        planes = _signless(joined).view(np.uint8).reshape(-1, 8).T.tobytes()
         return {
             "columns": [each.shape for each in columns],
+            "orders": [orders for _, orders in found],
             "differences": b64encode(zlib.compress(planes)).decode("ascii"),
         }
 
 
-def _read_columns(shapes: list[list[int]], differences: str) -> list[Array]:
+def _read_columns(document: Mapping[str, Any]) -> list[Array]:
     """The read-only columns of :meth:`_Columns.document`."""
+    shapes, orders, differences = (document[key] for key in ("columns", "orders", "differences"))
     planes = np.frombuffer(zlib.decompress(b64decode(differences)), np.uint8)
     signless = np.ascontiguousarray(planes.reshape(8, -1).T).view("<u8").ravel()
     joined = (signless >> np.uint64(1)).view("<i8") ^ -(signless & np.uint64(1)).view("<i8")
     parts = np.split(joined, np.cumsum([math.prod(shape) for shape in shapes])[:-1]) if shapes else []
-    columns: list[Array] = [_sums(part.reshape(shape)).view("<f8") for part, shape in zip(parts, shapes, strict=True)]
+    columns: list[Array] = [
+        _sums(part.reshape(shape), order).view("<f8") for part, shape, order in zip(parts, shapes, orders, strict=True)
+    ]
     for column in columns:
         column.setflags(write=False)
     return columns
 
 
-def _differences(integers: Integers) -> Integers:
-    for axis in _AXES:
-        integers = np.diff(integers, axis=axis, prepend=0)
-    return integers
+def _signless(integers: Integers) -> Integers:
+    return (integers << 1) ^ (integers >> 63)
 
 
-def _sums(integers: Integers) -> Integers:
-    for axis in reversed(_AXES):
-        integers = np.cumsum(integers, axis=axis)
+def _differences(integers: Integers) -> tuple[Integers, list[int]]:
+    """Differences of a column with the fewest bits, and their orders along stations and along places."""
+    orders, bits = [0, 0], _bits(integers)
+    while (found := min((_bits(np.diff(integers, axis=axis, prepend=0)), axis) for axis in (0, 1)))[0] < bits:
+        bits, axis = found
+        integers, orders[axis] = np.diff(integers, axis=axis, prepend=0), orders[axis] + 1
+    return integers, orders
+
+
+def _bits(integers: Integers) -> float:
+    """Number of bits without leading zeros."""
+    return float(np.log2(1.0 + _signless(integers).view(np.uint64)).sum())
+
+
+def _sums(integers: Integers, orders: Sequence[int]) -> Integers:
+    for axis, order in enumerate(orders):
+        for _ in range(order):
+            integers = np.cumsum(integers, axis=axis)
     return integers
 
 

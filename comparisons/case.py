@@ -155,6 +155,7 @@ def _verdict(
         *said.passed_sentences(runs, rows),
         said.calibration_sentence(scene, rows),
         said.theory_sentence(runs, rows),
+        *dict.fromkeys(map(said.remedy_sentence, runs.pair)),
         said.wider_limits(scene) if word is Word.AGREE else "",
     )
     return Verdict(word, tuple(filter(None, sentences)), completed, tuple(_branch_verdicts(rows)), reason)

@@ -30,24 +30,17 @@ def print_from(least: int) -> None:
         logger.propagate = not least
 
 
-class _StepHandler(logging.Handler):
-    """Handler that passes on the numbers of finished and of all steps."""
-
-    def __init__(self, call: Callable[[int, int], None]) -> None:
-        super().__init__(logging.INFO)
-        self._call = call
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Pass the numbers on, if the record has both."""
-        done, whole = getattr(record, "done", None), getattr(record, "whole", None)
-        if done is not None and whole is not None:
-            self._call(done, whole)
-
-
 @contextmanager
 def steps_from(names: tuple[str, ...], call: Callable[[int, int], None]) -> Iterator[None]:
     """Context in which ``call`` gets the numbers of finished and of all steps from the loggers ``names``."""
-    handler = _StepHandler(call)
+
+    def count(record: logging.LogRecord) -> bool:
+        if hasattr(record, "done") and hasattr(record, "whole"):
+            call(record.done, record.whole)
+        return False  # nothing is printed
+
+    handler = logging.Handler()
+    handler.addFilter(count)
     loggers = [logging.getLogger(name) for name in names]
     before = [logger.level for logger in loggers]
     for logger in loggers:

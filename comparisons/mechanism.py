@@ -145,7 +145,8 @@ class Mechanism:
         """Tables and drawing of the CPRBM's answer, for a notebook."""
         answer = self.solve()
         drawing = (figures.answer_figure(self.scene, answer),) if answer.stations else ()
-        return _html(f"{answer.ending.name}. {answer.sentence}", answer_tables(self.scene, answer), drawing)
+        ended = "" if answer.stations else f": {answer.sentence or answer.ending.value}"  # otherwise the table has it
+        return _html(f"{self.scene.name}: {answer.ending.name}{ended}", answer_tables(self.scene, answer), drawing)
 
 
 def _saved(drawing: Figure, path: str | Path | None) -> Figure:

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from comparisons.case import Verdict
+from comparisons.case import Comparison, Verdict
 from comparisons.formats import percent
 from comparisons.geometry import ordinates
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
@@ -94,6 +94,10 @@ class OffsetComparison:
     def pressures(self) -> list[float]:
         """Differences of the rows over their stated uncertainties."""
         return [row.pressure for row in self.rows]
+
+
+Compared = Comparison | OffsetComparison
+"""Comparison of a scene or of an offset question."""
 
 
 def compared_offset(question: OffsetQuestion, construct: OffsetConstruction = cprbm_offset_points) -> OffsetComparison:

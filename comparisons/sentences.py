@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 
 from comparisons.formats import at_station, distance_text, number, percent, with_unit
 from comparisons.quantities import load_unit
-from comparisons.stations import event_tolerance, problems
+from comparisons.stations import ends_at_critical, event_tolerance, problems
 from comparisons.verdict import Reason, Word
 from comparisons.verdict.events import (
     MIRRORED,
@@ -23,9 +23,20 @@ from comparisons.verdict.events import (
 from comparisons.verdict.judge import error_ratios, tally, true_errors
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs import SOLVERS, Runs
-from cprbm_scene import Answer, Scene
+from cprbm_scene import Answer, Ending, Loss, Scene
 
 NAMES = {"cprbm": "the CPRBM", "fea": "the finite elements"}
+_REMEDIES: Mapping[Loss | Ending, str] = {
+    Loss.FOLD: 'a drive in place of the load, or `beyond = "jump"` in the stage',
+    Loss.BIFURCATION: "a small `imperfection` of a beam, which selects a side",
+    **dict.fromkeys((Loss.CONTACT, Loss.STOP, Loss.SLIP), '`beyond = "jump"` in the stage'),
+    Ending.STEP_TOO_SMALL: "more links, a smaller last station, or the theory `shear` for taut beams",
+    Ending.BEAMS_CROSSED: "a station before the crossing, and a contact for every pair that touches",
+    Ending.LEFT_BOUNDARY: "the formulation `auto`",
+    Ending.NOT_CERTIFIED: "more links and elements",
+}
+"""Changes of the scene or the settings by the cause of an early end."""
+
 _OPTIONS = {"cprbm": ("-n", "links"), "fea": ("--elements", "elements")}
 
 
@@ -38,8 +49,9 @@ def headline(runs: Runs, rows: Sequence[Row], decided: tuple[Word, Reason | None
         return "No station has a row that can be compared."
     row = max((row for row in mine if row.reason is reason), key=pressure)
     if word is Word.AGREE:
-        counts = f"All {total} rows agree" if len(mine) == total else f"{len(mine)} of {total} rows agree"
-        return f"{counts}; the closest is {place(runs.scene, row)}: {_measured(row)}.{_others(rows)}"
+        counts = f"All {total}" if len(mine) == total else f"{len(mine)} of {total}"
+        found = "The only row agrees," if total == 1 else f"{counts} rows agree; the closest is"
+        return f"{found} {place(runs.scene, row)}: {_measured(row)}.{_others(rows)}"
     verb = "differ" if word is Word.DIFFER else "are undecided"
     return f"{len(mine)} of {total} rows {verb}, first of all {place(runs.scene, row)}: {_explained(runs, row, reason)}"
 
@@ -109,6 +121,12 @@ def ended_sentence(runs: Runs, names: Iterable[str]) -> str:
         by_problem.setdefault(_first(problem_sentences(runs.scene, runs.same_theory[name])), []).append(name)
     parts = "; ".join(f"{', '.join(runs)}: {problem}" for problem, runs in by_problem.items())
     return f"Runs without a complete answer: {parts}."
+
+
+def remedy_sentence(answer: Answer) -> str:
+    """Changes that may continue an answer beyond its early end; empty without advice."""
+    cause = answer.critical[-1].loss if ends_at_critical(answer) else answer.ending
+    return f"To go on: {_REMEDIES[cause]}." if cause in _REMEDIES else ""
 
 
 def audit_sentence(solver: str, complaints: Sequence[str]) -> str:

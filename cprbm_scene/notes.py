@@ -50,6 +50,16 @@ def notes(scene: Scene) -> Iterator[str]:
                 f"beams.{second}: {meeting}: without a contact of the two, no force acts there; a pair in may_cross "
                 "needs no note."
             )
+    yield from [*_load_notes(scene)] or (
+        f"materials.{name}: youngs_modulus is {material.youngs_modulus:.3g} Pa, implausible below {SOFTEST:g} "
+        f"and above {STIFFEST:g} Pa. Is the number in {scene.display_units.stress}, the file's unit of stress?"
+        for name, material in scene.materials.items()
+        if not SOFTEST <= material.youngs_modulus <= STIFFEST
+    )
+
+
+def _load_notes(scene: Scene) -> Iterator[str]:
+    """Sentences on implausible loads."""
     for name, load in scene.loads.items():
         stages = (stage for stage in scene.stages if name in stage.stepped)
         largest = max((abs(value) for stage in stages for value in stage.stations), default=0.0)

@@ -59,9 +59,9 @@ def at_last_loads(scene: Scene) -> Scene:
 
 
 def benchmark_scene(scene: Scene) -> Scene:
-    """The scene with its last loads and the probes of both measures, and without claims."""
+    """The scene in bending, with its last loads and the probes of both measures, and without claims."""
     probes = tuple(probe for probe in scene.probes if measure_of(scene, probe) is not None)
-    return at_last_loads(scene).model_copy(update={"probes": probes, "claims": ()})
+    return at_last_loads(scene).model_copy(update={"probes": probes, "claims": (), "theory": "bending"})
 
 
 def measure_of(scene: Scene, probe: Probe) -> Measure | None:

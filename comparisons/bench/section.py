@@ -18,6 +18,7 @@ from comparisons.choices import Count
 from comparisons.formats import number, percent
 from comparisons.present.canvas import Axes, canvas, common_legend, finished, logarithmic
 from comparisons.present.columns import (
+    NOTHING,
     Column,
     Figure,
     Plain,
@@ -100,6 +101,7 @@ def _precision(rows: Rows, measures: Sequence[Measure]) -> Figure:
                     text = size_text(shown[place].count)
                     axes.annotate(text, points[place], (5.0, below), textcoords="offset points", color=method.look[0],
                                   fontsize=8.0)  # fmt: skip
+        for axes, measure in zip(panels, measures, strict=True):
             _decades(axes, _MEASURED[measure])
         panels[-1].set_xlabel("seconds of set-up and solve")
         common_legend(drawing, "upper center", 3)
@@ -132,10 +134,15 @@ def _line(axes: Axes, method: Contender, points: Sequence[tuple[float, float]], 
 def _decades(axes: Axes, name: str, sizes: Sequence[float] = ()) -> None:
     """Logarithmic scales with whole decades, so that an axis has two ticks or more, and ticks at the sizes."""
     logarithmic(axes, sizes)
-    axes.set_ylabel(name)
-    for axis in (axes.yaxis,) if sizes else (axes.yaxis, axes.xaxis):
-        low, high = np.log10(axis.get_view_interval())
-        axis.set_view_interval(10.0 ** np.floor(low), 10.0 ** np.ceil(high), ignore=True)
+    axes.set(ylabel=name, ylim=_whole(axes.get_ylim()))
+    if not sizes:
+        axes.set_xlim(_whole(axes.get_xlim()))  # of all panels that share the axis
+
+
+def _whole(interval: tuple[float, float]) -> tuple[float, float]:
+    """The whole decades around an interval."""
+    low, high = np.log10(interval)
+    return float(10.0 ** np.floor(low)), float(10.0 ** np.ceil(high))
 
 
 def tables_of(measured: Session) -> tuple[Table, ...]:
@@ -183,7 +190,7 @@ def _tolerance(measured: Session) -> float | None:
 def _fastest(measured: Session, clocked: Clocked) -> Table:
     labels = {each.name: each.label for each in measured.methods()}
     rows = tuple(
-        (f"{percent(one['error'])} of {one['measure']}", labels.get(one["fastest"], "nobody"), number(one["ahead"]),
+        (f"{percent(one['error'])} of {one['measure']}", labels.get(one["fastest"], NOTHING), number(one["ahead"]),
          *(number(one["seconds"].get(name)) for name in labels))
         for one in standings(measured) if one["clocked"] == clocked
     )  # fmt: skip

@@ -19,6 +19,7 @@ from comparisons.logs import SOLVERS
 from comparisons.pairing import Solvers, exact_answer, solid_answer, solvers_of
 from comparisons.present.strips import Coloured, with_stresses
 from comparisons.quantities import load_unit
+from comparisons.sentences import remedy_sentence
 from comparisons.tolerances import Tolerance
 from comparisons.writing import write
 from cprbm_scene import Answer, Scene
@@ -82,7 +83,8 @@ def _report_problems(scene: Scene, answer: Answer, audited: Audit, searches: tup
     ending, code = answer.ending.value, UNDECIDED if answer.completed else INCOMPLETE
     sentences = [f"the audit fails {complaint}" for complaint in audited.complaints]
     if not answer.completed:
-        sentences = [answer.sentence if answer.sentence.startswith(ending) else f"{ending}. {answer.sentence}".rstrip()]
+        ended = answer.sentence if answer.sentence.startswith(ending) else f"{ending}. {answer.sentence}".rstrip()
+        sentences = [". ".join(filter(None, (ended, remedy_sentence(answer))))]
     sentences = sentences or [search.sentence(scene) for search in searches if not search.met]
     for sentence in sentences:
         click.echo(f"cprbm: {scene.name}: {sentence}", err=True)

@@ -15,7 +15,7 @@ from typing import Literal, TypeVar
 
 import click
 
-from comparisons import case, cases, logs, offset_verdict, pairing, provenance
+from comparisons import case, cases, logs, pairing, provenance
 from comparisons.bench import measures, running
 from comparisons.bench.section import bench_section, size_text
 from comparisons.case import Comparison
@@ -24,7 +24,8 @@ from comparisons.cli import output
 from comparisons.cli.commands import load_tool
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
 from comparisons.cli.main import OPTIMISERS
-from comparisons.present import brief, case_tables, csv_table, figures, offset, page
+from comparisons.offset_verdict import Compared, compared_offset
+from comparisons.present import brief, csv_table, figures, page
 from comparisons.present.columns import Plain, Section
 from comparisons.store import Run, run_into
 from comparisons.studies import calibration as calibrations
@@ -37,8 +38,6 @@ from comparisons.verdict.runs import Runs
 from comparisons.writing import write
 from cprbm_scene import OffsetQuestion, Question
 from cprbm_scene.frozendict import frozendict
-
-Compared = Comparison | offset_verdict.OffsetComparison
 
 
 def compare_all(request: output.Request) -> int:
@@ -84,7 +83,7 @@ def _comparisons(
     for place, question in enumerate(progress.through(questions)):
         pending, following = following, begun(place + 1)
         if isinstance(question, OffsetQuestion):
-            yield offset_verdict.compared_offset(question, run.solvers.offset)
+            yield compared_offset(question, run.solvers.offset)
         elif pending is not None:
             yield case.compare(pending())
         else:
@@ -125,11 +124,7 @@ def _show(request: output.Request, compared: Compared) -> None:
         click.echo(brief.brief(compared, shlex.join([cases.argument(compared.question), *values]), request.out) + "\n")
         return
     if not request.quiet:
-        for section in (
-            case_tables.case_sections(compared)
-            if isinstance(compared, Comparison)
-            else offset.offset_sections(compared)
-        ):
+        for section in page.sections_of(compared):
             output.print_section(section)
     click.echo(brief.headline(compared.question.name, compared.verdict, compared.verdict.sentence))
     for sentence in _failed_searches(compared):
@@ -138,9 +133,8 @@ def _show(request: output.Request, compared: Compared) -> None:
 
 def _failed_searches(compared: Compared) -> list[str]:
     """Sentences on searches for N without success."""
-    if isinstance(compared, offset_verdict.OffsetComparison):
-        return []
-    return [search.sentence(compared.scene) for search in compared.tolerances if not search.met]
+    scenes = [compared] if isinstance(compared, Comparison) else []
+    return [search.sentence(each.scene) for each in scenes for search in each.tolerances if not search.met]
 
 
 def _export(request: output.Request, compared: Sequence[Comparison]) -> None:
@@ -169,7 +163,7 @@ def converge_all(request: output.Request, sizes: tuple[int, ...]) -> int:
             if request.out is not None:
                 page.put_section(page.own_folder(request.out, question.name), section)
                 chapters.append(page.section_chapter(question, [section]))
-            _keep(request, run, questions[: len(finished)], page.convergence_page(chapters), document)
+            _keep(request, run, questions[: len(finished)], page.Page(*convergence.TITLE, chapters), document)
             shown.clear()
             if request.prints:
                 output.print_tables(() if request.quiet else section.tables)
@@ -224,7 +218,7 @@ def bench(
     """
     if sizes is not None and numbers:
         raise click.UsageError("found --sizes and -n; allowed: one of them.")
-    opened, whole = request.scene(), stations == "all"
+    opened, whole = request.scene().model_copy(update={"theory": "bending"}), stations == "all"
     counts = tuple(n if isinstance(n, int) else frozendict(n) for n in numbers) or (sizes or ())
     for n in counts:
         check(replace(request.choices, links=n), opened)

@@ -6,16 +6,18 @@ import re
 import textwrap
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import chain
 from pathlib import Path
 
 from comparisons.case import Comparison, Verdict
 from comparisons.formats import at_station, component_names, components, number, percent
-from comparisons.offset_verdict import OffsetComparison
+from comparisons.offset_verdict import Compared, OffsetComparison
 from comparisons.present import offset
 from comparisons.present.columns import NOTHING, Column, Table, follow, table_of
 from comparisons.present.row_tables import row_units, share
 from comparisons.present.table import brief_lines
-from comparisons.sentences import pressure, theory_sentence
+from comparisons.sentences import pressure, remedy_sentence, theory_sentence
 from comparisons.verdict import SEVERITY, Word
 from comparisons.verdict.rows import ROUND_OFF, Row
 
@@ -25,11 +27,11 @@ LINES, WIDTH = 30, 80
 ROWS = 12
 """Most rows of the table: of all rows the nearest to their limits."""
 
-_SENTENCE_LINES = 6
+_wrapped = partial(textwrap.wrap, width=WIDTH, max_lines=6, placeholder=" … (-v)", break_on_hyphens=False)
 _COMMAND = re.compile(r"`(-[^`]* [^`]*|solve [^`]*)`")
 
 
-def brief(compared: Comparison | OffsetComparison, argument: str, page: Path | None = None) -> str:
+def brief(compared: Compared, argument: str, page: Path | None = None) -> str:
     """Report of at most ``LINES`` lines of ``WIDTH`` columns, with terminal colours.
 
     Args:
@@ -38,14 +40,14 @@ def brief(compared: Comparison | OffsetComparison, argument: str, page: Path | N
         page: written page of the case; None without a report.
     """
     verdict = compared.verdict
-    first = _wrapped(headline(compared.question.name, verdict, verdict.because))
+    first = _wrapped(headline(compared.question.name, verdict, verdict.because if compared.rows else verdict.sentence))
     last = _next_step(argument, verdict, page)
     if isinstance(compared, OffsetComparison):
         errors = offset.error_table(compared)
-        explained = _wrapped(f"{errors.title}. {errors.note}")
-        return "\n".join((*first, "", *brief_lines(errors, width=WIDTH), *explained, *last))
-    theories = _wrapped(theory_sentence(compared.runs, compared.rows))
-    last = [*_found_sizes(compared), *theories, *last]
+        lines = *brief_lines(errors, width=WIDTH), *_wrapped(f"{errors.title}. {errors.note}")
+        return "\n".join((*first, "", *lines, *last))
+    rest = [theory_sentence(compared.runs, compared.rows), *dict.fromkeys(map(remedy_sentence, compared.runs.pair))]
+    last = [*_found_sizes(compared), *chain.from_iterable(map(_wrapped, rest if compared.rows else ())), *last]
     rows = last_rows_of_stages(compared)
     tables = (nearest_rows(compared, rows, count) for count in range(min(ROWS, len(rows)), 0, -1))
     reports = ([*first, "", *brief_lines(table, width=WIDTH), *filter(None, (table.note,)), *last] for table in tables)
@@ -86,10 +88,10 @@ def nearest_rows(compared: Comparison, rows: Sequence[Row], count: int) -> Table
     )
 
 
-def summary(finished: Sequence[Comparison | OffsetComparison]) -> Table:
+def summary(finished: Sequence[Compared]) -> Table:
     """Table with a row for every case."""
     columns = [
-        Column[Comparison | OffsetComparison]("case", "question.name"),
+        Column[Compared]("case", "question.name"),
         Column("word", "verdict.word.value"),
         Column("reason", lambda compared: follow(compared, "verdict.reason.value") or ""),
         Column("rows agreeing", _agreeing),
@@ -100,7 +102,7 @@ def summary(finished: Sequence[Comparison | OffsetComparison]) -> Table:
     return table_of("Summary", columns, finished, "Seconds: of all runs, by the solvers' own clocks.")
 
 
-def _agreeing(compared: Comparison | OffsetComparison) -> str:
+def _agreeing(compared: Compared) -> str:
     words = [row.word for row in compared.rows if row.word is not None]
     return f"{words.count(Word.AGREE)} of {len(words)}"
 
@@ -126,10 +128,6 @@ def _lines(row: Row, factor: float, unit: str) -> list[tuple[str, ...]]:
         )
         for place, name in enumerate(component_names(row.probe.quantity) if any(found) else ("",))
     ]
-
-
-def _wrapped(sentence: str) -> list[str]:
-    return textwrap.wrap(sentence, WIDTH, max_lines=_SENTENCE_LINES, placeholder=" … (-v)", break_on_hyphens=False)
 
 
 def _found_sizes(compared: Comparison) -> Iterator[str]:

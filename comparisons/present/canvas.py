@@ -23,20 +23,27 @@ if TYPE_CHECKING:
     import matplotlib.axes
     import matplotlib.axis
     import matplotlib.figure
+    import matplotlib.transforms
 
 Axes: TypeAlias = "matplotlib.axes.Axes"
 Drawing: TypeAlias = "matplotlib.figure.Figure"
+Bbox: TypeAlias = "matplotlib.transforms.Bbox"
 """Matplotlib's classes for annotations: a module with a drawing loads no Matplotlib."""
 
 BLUE, RED, GREY, INK, GREEN, RULE = "#1f5fa8", "#c8321e", "#8a8a8a", "#202428", "#0a7d33", "#e4e4e4"
 LINES = (("-", "o"), ("--", "s"), (":", "^"), ("-.", "D"))
 """Lines and markers of the probes in one figure."""
 
+_MARGIN = 0.1
+"""White margin of a figure, inches."""
+
 _STYLE: dict[Any, Any] = {  # the stubs name every key of every version
     "svg.hashsalt": "cprbm",
     "svg.fonttype": "path",
     "font.family": "DejaVu Sans",
     "font.size": 11.0,
+    "axes.titlelocation": "left",
+    "axes.titlesize": 12.0,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "legend.frameon": False,
@@ -85,7 +92,9 @@ def finished(drawing: Drawing, name: str, caption: str) -> Figure:
     if layout is not None:  # made once, it serves both formats
         layout.execute(drawing)
         drawing.set_layout_engine("none")
-    return Figure(name, caption, _short_svg(image(drawing, "svg")), _palette_png(image(drawing, "png")))
+    box = drawing.get_tightbbox().padded(_MARGIN)  # equal scales leave white bands beside the axes
+    svg, png = (image(drawing, kind, box=box) for kind in ("svg", "png"))
+    return Figure(name, caption, _short_svg(svg), _palette_png(png))
 
 
 def _short_svg(svg: bytes) -> bytes:
@@ -112,11 +121,11 @@ def _palette_png(png: bytes) -> bytes:
     return stream.getvalue()
 
 
-def image(drawing: Drawing, kind: str, dots: float | None = None) -> bytes:
-    """The drawing as ``svg`` or ``png`` without dates, with ``dots`` to the inch."""
+def image(drawing: Drawing, kind: str, dots: float | None = None, box: Bbox | None = None) -> bytes:
+    """The drawing, or a ``box`` of it in inches, as ``svg`` or ``png`` without dates, with ``dots`` to the inch."""
     stream = io.BytesIO()
     metadata = {"Date" if kind == "svg" else "Software": None}
-    drawing.savefig(stream, format=kind, metadata=metadata, dpi=dots or _STYLE["savefig.dpi"])
+    drawing.savefig(stream, format=kind, metadata=metadata, dpi=dots or _STYLE["savefig.dpi"], bbox_inches=box)
     return stream.getvalue()
 
 
@@ -164,8 +173,7 @@ def show_lengths(scene: Scene, axis: matplotlib.axis.Axis, name: str = "") -> No
 
 def logarithmic(axes: Axes, x: Sequence[float] = ()) -> None:
     """Give both axes logarithmic scales with a grid, and ticks at the numbers ``x``."""
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log")
     if x:
         axes.set_xticks(x, [f"{each:g}" for each in x])
     axes.minorticks_off()

@@ -183,7 +183,7 @@ def _answer_critical_table(scene: Scene, answer: Answer) -> Table:
         Column("±", lambda one: distance_text(scene, one.uncertainty, units[one.stage])),
         Column("mechanism", lambda one: f"{mechanism(one)}{passed.get(id(one), '')}"),
         Column("smallest curvature", "curvature", number),
-        Column("left", "left", number),
+        Column("curvature left", "left", number),
         Column("releases", lambda one: _release(scene, one)),
     ]
     return table_of(

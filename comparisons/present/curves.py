@@ -82,8 +82,7 @@ def panels_figure(
                 axes.plot(xs, ys, **look)
             for x, colour, _ in marks:
                 axes.axvline(x, color=colour, linewidth=0.7, linestyle=":")
-            axes.set_ylabel(panel.label.replace(" along", "\nalong"))  # a panel is 25 letters high
-            axes.set_title(panel.title, loc="left")
+            axes.set(title=panel.title, ylabel=panel.label.replace(" along", "\nalong"))  # a panel is 25 letters high
             if panel.lines:
                 axes.legend(loc="best")
         for place, (x, _, text) in enumerate(mark for mark in marks if mark[2]):

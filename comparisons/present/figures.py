@@ -88,7 +88,7 @@ def designs_figure(designs: Sequence[Comparison]) -> Figure:
     views = [view_of(each.scene, each.runs.answers["fea"].stations[-1]) for each in designs]
     limits = [bounds_of(each.scene, [view], "moment") for each, view in zip(designs, views, strict=True)]
     low, high = np.min([each.low for each in limits], axis=0), np.max([each.high for each in limits], axis=0)
-    with canvas(*_sides(low, high, _SHAPES, (0.9, 1.1))) as drawing:
+    with canvas(*_sides(low, high, _SHAPES, (0.9, 1.3))) as drawing:
         axes = drawing.add_subplot()
         for each, view, colour in zip(designs, views, cycle(_DESIGNS), strict=False):
             draw_parts(axes, view.of("body", "weld", "pin", "pivot"), colour)
@@ -113,15 +113,14 @@ def shapes(scene: Scene, answers: Mapping[str, Answer], stations: Sequence[tuple
     low, high = extent(scene, views)
     columns = 1 if alone or float(np.ptp((high - low) / max(high - low))) >= 0.6 else 2
     rows, steps = -(-len(views) // columns), {stage.name: stage.steps for stage in scene.stages}
-    width, height = _sides(low, high, _SHAPES, (0.8, 0.5))
+    width, height = _sides(low, high, _SHAPES, (0.8, 0.8))
     with canvas(columns * width, rows * height + 0.6) as drawing:
         for place, (view, pair, (stage, value)) in enumerate(zip(views, found, stations, strict=True)):
             axes = drawing.add_subplot(rows, columns, place + 1)
             _draw_mechanism(axes, scene, view, pair)
             if alone:
                 draw_names(axes, scene)
-            axes.set_title(f"{stage}: {steps[stage]} = {load_text(scene, stage, value)}", loc="left")
-            _set_window(axes, scene, low, high)
+            _set_window(axes, scene, low, high, f"{stage}: {steps[stage]} = {load_text(scene, stage, value)}")
         common_legend(drawing, "lower center", 2)
         where = f"at {at_station(scene, *stations[0])}" if alone else "at several stations"
         apart = " Dotted: the way of an end that is drawn apart from its pin." if scene.assembly is not None else ""
@@ -163,26 +162,24 @@ def _sides(low: Array, high: Array, longest_side: float, room: tuple[float, floa
     return max(_SHORTEST[0], float(x)) + room[0], max(_SHORTEST[1], float(y)) + room[1]
 
 
-def _set_window(axes: Axes, scene: Scene, low: Array, high: Array) -> None:
-    """Equal scales, margins of six hundredths of the longer side, and displayed units."""
+def _set_window(axes: Axes, scene: Scene, low: Array, high: Array, title: str = "") -> None:
+    """Title, equal scales, margins of six hundredths of the longer side, and displayed units."""
     margin = 0.06 * float(np.max(high - low))
-    axes.set_xlim(low[0] - margin, high[0] + margin)
-    axes.set_ylim(low[1] - margin, high[1] + margin)
-    axes.set_aspect("equal", adjustable="box")
+    (left, below), (right, above) = low - margin, high + margin
+    axes.set(title=title, xlim=(left, right), ylim=(below, above), aspect="equal")
     show_lengths(scene, axes.xaxis, "x")
     show_lengths(scene, axes.yaxis, "y")
 
 
 def stress_picture(scene: Scene, view: View, bounds: Bounds, quantity: Coloured, kind: str, dots: float) -> bytes:
     """A view as ``png`` or ``svg``: beams at true thickness with colours of a quantity, over the beams at rest."""
-    with canvas(*_sides(bounds.low, bounds.high, _STRESS, (1.5, 0.75))) as drawing:
+    with canvas(*_sides(bounds.low, bounds.high, _STRESS, (1.6, 1.0))) as drawing:
         axes = drawing.add_subplot()
         draw_parts(axes, view.of("edge", "rest"))
         _draw_colours(drawing, axes, scene, view, bounds, quantity)
         draw_parts(axes, view.of("body", "weld", "pin", "pivot", "stop"))
         _draw_pushes(axes, scene, view, bounds)
-        _set_window(axes, scene, bounds.low, bounds.high)
-        axes.set_title(f"{scene.name}, {view_title(scene, view)}", loc="left", fontsize=10)
+        _set_window(axes, scene, bounds.low, bounds.high, f"{scene.name}, {view_title(scene, view)}")
         return image(drawing, kind, dots)
 
 

@@ -139,8 +139,7 @@ def _errors(compared: OffsetComparison) -> Figure:
             if bounds and min(z.shape) > 1:
                 lines = axes.contour(numbers, offsets, z, levels=bounds, colors="white", linewidths=1.2)
                 axes.clabel(lines, fmt=lambda value: f"{value:g} %")
-            axes.set_title(spacing, loc="left")
-            axes.set_ylabel("offset t, m")
+            axes.set(title=spacing, ylabel="offset t, m")
         plots[-1].set_xlabel("springs N")
         drawing.colorbar(mesh, ax=[*plots], label="largest relative error, %")
         caption = f"Largest error along {question.axis}, relative to the {question.relative_to}"
@@ -159,10 +158,8 @@ def _points(compared: OffsetComparison, shown: Shown) -> Figure:
                 axes.plot(*exact.T, color=RED, linewidth=1.2, label="exact offset")
                 axes.plot(*found.T, "o", color=BLUE, markersize=5, markerfacecolor="none", label="calculated")
                 axes.annotate(f"t = {abs(t):g}", exact[200], textcoords="offset points", xytext=(0, 7), ha="center")
-            axes.set_aspect("equal", adjustable="box")
             axes.margins(0.08)
-            axes.set_title(f"N = {n}", loc="left")
-            axes.set_ylabel("y, m")
+            axes.set(title=f"N = {n}", ylabel="y, m", aspect="equal")
         plots[-1].set_xlabel("x, m")
         common_legend(drawing, "lower center", 3)
         caption = f"Offset points on the exact offset curves, spacing {next(iter(question.spacings))}."

@@ -18,7 +18,7 @@ from urllib.parse import quote
 from comparisons.answer_file import packed
 from comparisons.case import Comparison
 from comparisons.formats import percent
-from comparisons.offset_verdict import OffsetComparison
+from comparisons.offset_verdict import Compared, OffsetComparison
 from comparisons.present import json_document, offset
 from comparisons.present.case_tables import case_sections, claims_table
 from comparisons.present.columns import Figure, Plain, Section, Table
@@ -106,39 +106,34 @@ def report_page(
     )
 
 
-def convergence_page(chapters: Sequence[Chapter]) -> Page:
-    """The page of errors against N."""
-    return Page(
-        "Error against N", "Both solvers at a family of sizes: limits, orders and errors of all numbers.", chapters
+def figures_of(compared: Compared) -> tuple[Figure, ...]:
+    """All figures of a case."""
+    return offset.offset_figures(compared) if isinstance(compared, OffsetComparison) else comparison_figures(compared)
+
+
+def document_of(compared: Compared) -> Plain:
+    """The documented JSON of a case of ``compare``."""
+    return offset.document(compared) if isinstance(compared, OffsetComparison) else json_document.comparison(compared)
+
+
+def sections_of(compared: Compared, figures: Sequence[Figure] = ()) -> tuple[Section, ...]:
+    """All tables of a case with its figures, by sections."""
+    return (
+        offset.offset_sections(compared, figures)
+        if isinstance(compared, OffsetComparison)
+        else case_sections(compared, figures)
     )
 
 
-def figures_of(compared: Comparison | OffsetComparison) -> tuple[Figure, ...]:
-    """All figures of a case."""
-    if isinstance(compared, OffsetComparison):
-        return offset.offset_figures(compared)
-    return comparison_figures(compared)
-
-
-def document_of(compared: Comparison | OffsetComparison) -> Plain:
-    """The documented JSON of a case of ``compare``."""
-    if isinstance(compared, OffsetComparison):
-        return offset.document(compared)
-    return json_document.comparison(compared)
-
-
-def case_chapter(
-    compared: Comparison | OffsetComparison, figures: Sequence[Figure], further: Sequence[Section] = ()
-) -> Chapter:
+def case_chapter(compared: Compared, figures: Sequence[Figure], further: Sequence[Section] = ()) -> Chapter:
     """The chapter of a case with figures and further sections."""
     verdict, chapter = compared.verdict, section_chapter(compared.question, further)
     if isinstance(compared, OffsetComparison):
-        sections, names = offset.offset_sections(compared, figures), ["comparison.json"]
-        claims, steps = offset.claim_rows(compared), None
+        claims, steps, names = offset.claim_rows(compared), None, ["comparison.json"]
         worst = max(compared.rows, key=lambda row: row.difference)
         largest = percent(worst.difference), f"{worst.spacing}, N = {worst.n}"
     else:
-        sections, names = case_sections(compared, figures), ["comparison.json", "answers.json.gz", _CONTACT_FORCES]
+        names = ["comparison.json", "answers.json.gz", _CONTACT_FORCES]
         claims, steps = [(*row[:4], row[-1]) for row in claims_table(compared).rows], stepper(compared)
         known = [row for row in compared.rows if row.bounds is not None and row.scale > 0.0]
         shares = [(row.difference / row.scale, row.probe.name) for row in known]
@@ -147,7 +142,7 @@ def case_chapter(
     met = f"{sum(row[-1] == 'met' for row in claims)} of {len(claims)}" if claims else "–"
     return replace(
         chapter,
-        sections=(*map(light, sections), *chapter.sections),
+        sections=(*map(light, sections_of(compared, figures)), *chapter.sections),
         word=verdict.word.value,
         sentence=verdict.sentence,
         glance=(*largest, met, verdict.because),
@@ -236,9 +231,7 @@ def own_folder(folder: Path, name: str) -> Path:
     return own
 
 
-def put_case(
-    folder: Path, compared: Comparison | OffsetComparison, figures: Sequence[Figure], further: Sequence[Section] = ()
-) -> Chapter:
+def put_case(folder: Path, compared: Compared, figures: Sequence[Figure], further: Sequence[Section] = ()) -> Chapter:
     """The chapter of a case, with numbers, answers, figures and further sections written into a folder of a report.
 
     Raises:

@@ -42,22 +42,19 @@ _OTHERS = ("–", "open", "none", "all", "")
 
 def screen_text(table: Table, *, width: int) -> str:
     """The table with terminal colours, at most ``width`` columns wide."""
-    columns, parts = [*zip(table.headers, *table.rows, strict=True)], []
-    for place, widths in enumerate(found := _split(columns, 2 if table.headers[1:2] == ("unit",) else 1, width)):
-        grid = Grid(
-            title=table.title if place == 0 else None,
-            caption=table.note if table.note and place == len(found) - 1 else None,
-            title_justify="left",
-            caption_justify="left",
-            title_style="bold",
-            box=box.SIMPLE_HEAD,
-        )
+    columns = [*zip(table.headers, *table.rows, strict=True)]
+    parts = [_printed(Text(table.title, style="bold"), width)] if table.title else []
+    for widths in _split(columns, 2 if table.headers[1:2] == ("unit",) else 1, width):
+        grid = Grid(box=box.SIMPLE_HEAD)
         for column, size in widths.items():
+            left = column == 0 or any(cell_len(row[column]) > _LONG for row in table.rows)  # names and sentences
             grid.add_column(
-                Text(table.headers[column]), justify="right" if column else "left", overflow="fold", width=size
+                Text(table.headers[column]), justify="left" if left else "right", overflow="fold", width=size
             )
-        parts.append(_printed(grid, [[row[column] for column in widths] for row in table.rows], width))
-    return "".join(parts)
+        _fill(grid, [[row[column] for column in widths] for row in table.rows])
+        parts.append(_printed(grid, width))
+    note = _printed(Text(table.note, style="dim italic"), width) if table.note else ""
+    return "".join((*parts, note))
 
 
 def brief_lines(table: Table, *, width: int) -> list[str]:
@@ -66,15 +63,19 @@ def brief_lines(table: Table, *, width: int) -> list[str]:
     for place, header in enumerate(table.headers):
         left = place == 0 or header == "word"
         grid.add_column(header, justify="left" if left else "right", overflow="fold", no_wrap=place > 0)
-    return [line.rstrip() for line in _printed(grid, table.rows, width).splitlines()]
+    _fill(grid, table.rows)
+    return [line.rstrip() for line in _printed(grid, width).splitlines()]
 
 
-def _printed(grid: Grid, rows: Iterable[Iterable[str]], width: int) -> str:
+def _fill(grid: Grid, rows: Iterable[Iterable[str]]) -> None:
     for row in rows:
         grid.add_row(*(Text(cell, style=STYLES.get(cell, "")) for cell in row))
+
+
+def _printed(content: Grid | Text, width: int) -> str:
     page = io.StringIO()
     # without a height a "dumb" terminal would have 80 columns whatever the width
-    Console(file=page, width=width, height=25, force_terminal=True, color_system="standard").print(grid)
+    Console(file=page, width=width, height=25, force_terminal=True, color_system="standard").print(content)
     return page.getvalue()
 
 

@@ -129,9 +129,8 @@ def budget_figures(account: Account) -> tuple[Figure, ...]:
         _draw_parts(axes, budgets)
         missed = _draw_missed(axes, budgets)
         axes.axvline(0.0, color="black", linewidth=0.8)
-        axes.set_xlabel("share of all parts, %")
-        axes.set_yticks(range(len(budgets)), [each.row.probe.name for each in budgets])
-        axes.invert_yaxis()
+        names, lowest = [each.row.probe.name for each in budgets], len(budgets) - 0.4
+        axes.set(yticks=range(len(names)), yticklabels=names, ylim=(lowest, -0.6), xlabel="share of all parts, %")
         for place, each in enumerate(budgets):
             text = percent(each.row.fraction(each.row.difference))
             axes.annotate(text, (1.01, place), xycoords=("axes fraction", "data"), va="center", fontsize=9.0)

@@ -224,9 +224,9 @@ def _stated_against_true(found: Calibration) -> Figure:
                 xlim=(low, high),
                 ylim=(low, high),
                 aspect="equal",
+                title=_NAMES[solver],
                 xlabel="true error / scale",
             )
-            axes.set_title(_NAMES[solver], loc="left")
         panels[0].set_ylabel("stated error / scale")
         drawing.legend(loc="outside lower center", ncols=4, markerscale=2.0)
         caption = (

@@ -31,6 +31,9 @@ from comparisons.verdict.uncertainty import Limit
 from cprbm_scene import OffsetQuestion, Question, Scene
 from cprbm_scene.offset import FEWEST, MOST
 
+TITLE = "Error against N", "Both solvers at a family of sizes: limits, orders and errors of all numbers."
+"""Title and lead of the page."""
+
 _LEAST = 1e-13
 """Share of a probe's scale below which errors are round-off and not drawn."""
 
@@ -108,8 +111,7 @@ def convergence_figures(found: Convergence) -> tuple[Figure, ...]:
             for family in last:
                 if family.solver == method:
                     _draw(axes, family, names.index(family.probe))
-            axes.set_title(tables.NAMES[method], loc="left")
-            axes.set_xlabel(f"{count} per beam, N")
+            axes.set(title=tables.NAMES[method], xlabel=f"{count} per beam, N")
         for axes, series in zip(panels, found.series, strict=True):
             _triangle(axes, found.sizes, series.order)
         panels[0].set_ylabel("distance from the limit / the probe's largest value")

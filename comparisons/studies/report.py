@@ -21,9 +21,9 @@ from comparisons import cases, provenance
 from comparisons.bench.measures import benchmark_scene, reference
 from comparisons.bench.running import OURS, Plan, Session, contenders, refusal_text
 from comparisons.bench.section import bench_section
-from comparisons.case import Comparison, compare
+from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.offset_verdict import OffsetComparison, compared_offset
+from comparisons.offset_verdict import Compared, compared_offset
 from comparisons.pairing import Solvers, paired
 from comparisons.present.columns import Plain, Section
 from comparisons.present.page import (
@@ -53,7 +53,7 @@ AT_MOST = 4.0
 
 _CHAPTER, _TABLE = "chapter.json", "table1-section.json"
 
-Content = tuple[Comparison | OffsetComparison, tuple[Section, ...]]
+Content = tuple[Compared, tuple[Section, ...]]
 """The comparison of a question, and further sections: error against N, and run times."""
 
 
@@ -127,7 +127,7 @@ class Report:
                 question, self.sizes, self.choices, run.solvers, run.crew
             )
         if isinstance(question, OffsetQuestion):
-            found: Comparison | OffsetComparison = compared_offset(question, run.solvers.offset)
+            found: Compared = compared_offset(question, run.solvers.offset)
         else:
             runs = paired(question, self.choices, run.solvers, run.crew) if pending is None else pending()
             found = compare(runs)
@@ -135,7 +135,7 @@ class Report:
                 further["Run times"] = lambda: _run_times(question, self.timed, run.solvers)
         return found, tuple(_or_refusal(heading, section) for heading, section in further.items())
 
-    def add(self, question: Question, compared: Comparison | OffsetComparison, further: tuple[Section, ...]) -> None:
+    def add(self, question: Question, compared: Compared, further: tuple[Section, ...]) -> None:
         """Write the chapter of a question, and the page with the chapter.
 
         Raises:

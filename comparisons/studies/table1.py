@@ -192,10 +192,9 @@ def _run_times(cells: tuple[Cell, ...], taken: Mapping[Cell, Timing]) -> Figure:
         theirs = {place: cell.theirs for place, cell in enumerate(cells) if cell.theirs is not None}
         axes.plot(list(theirs.values()), list(theirs), "x", color=RED, markersize=6, label="the paper's")
         axes.plot([], [], "o", color=BLUE, label="ours")
-        axes.set_yticks(range(len(cells)), [cell.name for cell in cells])
-        axes.invert_yaxis()
         axes.grid(visible=True, which="major", axis="x", color="#e4e4e4", linewidth=0.6)
-        axes.set(xscale="log", xlabel="seconds")
+        names, lowest = [cell.name for cell in cells], len(cells) - 0.4
+        axes.set(yticks=range(len(cells)), yticklabels=names, ylim=(lowest, -0.6), xscale="log", xlabel="seconds")
         drawing.legend(loc="outside upper right", ncols=2)
         caption = "Seconds to the last load: ours as medians with the quartiles, and the paper's, on another machine."
         return finished(drawing, "table1", caption)

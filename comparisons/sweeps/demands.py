@@ -24,7 +24,7 @@ from pydantic import ValidationError
 
 from comparisons.formats import file_unit
 from comparisons.quantities import COMPONENTS, unit_of
-from comparisons.sweeps.outcome import Outcome
+from comparisons.sweeps.outcome import NumberRecord, Outcome
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.fields import Reading, Record
 from cprbm_scene.mistakes import first_of, mistakes_of
@@ -94,18 +94,33 @@ class Measure:
     size: float
     unit: str
 
+    @property
+    def name(self) -> str:
+        """Probe and component."""
+        return ".".join(filter(None, (self.probe, self.component)))
+
     def __str__(self) -> str:
-        return f"{self.stage} {'.'.join(filter(None, (self.probe, self.component)))}"
+        return f"{self.stage} {self.name}"
+
+    def numbers(self, outcome: Outcome) -> list[NumberRecord]:
+        """Numbers station by station, SI; of values along a beam the largest magnitude."""
+        found: dict[float, NumberRecord] = {}
+        for each in outcome.numbers:
+            if (each["stage"], each["probe"], each["component"]) == (self.stage, self.probe, self.component):
+                number = each if each["arc_length"] is None else {**each, "value": abs(each["value"])}
+                before = found.get(each["station"], number)
+                found[each["station"]] = number if number["value"] > before["value"] else before
+        return list(found.values())
+
+    def last(self, outcome: Outcome) -> NumberRecord | None:
+        """Number at the last reached station of the stage, SI; None without a number there."""
+        reached = {number["stage"]: number["station"] for number in outcome.numbers}.get(self.stage)
+        return next((number for number in self.numbers(outcome) if number["station"] == reached), None)
 
     def values(self, outcome: Outcome) -> list[float]:
         """Values at the stations in the unit of the file; none where a station of the stage has no value."""
-        found: dict[float, float] = {}
-        for number in outcome.numbers:
-            if (number["stage"], number["probe"], number["component"]) == (self.stage, self.probe, self.component):
-                value, at = number["value"] / self.size, number["station"]
-                found[at] = value if number["arc_length"] is None else max(abs(value), found.get(at, 0.0))
-        values = list(found.values()) if len(found) == self.stations else []
-        return values if self.every else values[-1:]
+        values = [number["value"] / self.size for number in self.numbers(outcome)]
+        return [] if len(values) < self.stations else values if self.every else values[-1:]
 
     def text(self, value: float) -> str:
         """A value with its unit."""

@@ -26,7 +26,7 @@ from threading import Lock
 import numpy as np
 
 from comparisons.formats import number
-from comparisons.present.columns import Plain, Section, Table, plain
+from comparisons.present.columns import Column, Plain, Section, Table, plain, table_of
 from comparisons.sweeps.demands import Bound, Goal, Measure, bounds_of, measure_of, read_demands
 from comparisons.sweeps.outcome import Asked, Outcome
 from comparisons.sweeps.points import SEED, Axis, Point, in_file_units, place_text, ranges_of
@@ -297,20 +297,16 @@ def _near(problem: Problem, one: Point, other: Point) -> bool:
 
 
 def _starts_table(found: Optimum) -> Table:
-    problem = found.problem
-    rows = tuple(
-        (
-            place_text(problem.axes, each.begun),
-            place_text(problem.axes, each.point),
-            number(each.number, 6),
-            "met" if each.feasible else "not met",
-            str(each.solves),
-            each.outcome.ending,
-        )
-        for each in found.ends
-    )
-    headers = ("start", "end", f"{problem.measure}, {problem.measure.unit}", "limits", "solves", "ending")
-    return Table("Starts", headers, rows)
+    problem, place = found.problem, partial(place_text, found.problem.axes)
+    columns = [
+        Column[End]("start", "begun", place),
+        Column("end", "point", place),
+        Column(f"{problem.measure}, {problem.measure.unit}", "number", partial(number, digits=6)),
+        Column("limits", lambda each: "met" if each.feasible else "not met"),
+        Column("solves", "solves"),
+        Column("ending", "outcome.ending"),
+    ]
+    return table_of("Starts", columns, found.ends)
 
 
 def _check_table(found: Optimum) -> Table:

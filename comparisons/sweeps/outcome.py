@@ -23,7 +23,7 @@ Asked = Literal["cprbm", "fea", "compare"]
 ATTEMPTS = 2
 """Number of solves of a point that crashes or takes too long: an other program on the machine may be the reason."""
 
-Record = Mapping[str, Any]
+NumberRecord = Mapping[str, Any]
 """A number of an outcome: stage, station, branch, probe, component, arc length, unit and values, SI."""
 
 
@@ -50,7 +50,7 @@ class Outcome:
     iterations: int = 0
     seconds: float = 0.0
     limit: float = 0.0
-    numbers: tuple[Record, ...] = ()
+    numbers: tuple[NumberRecord, ...] = ()
 
     @property
     def completed(self) -> bool:
@@ -146,7 +146,7 @@ def _compared(scene: Scene, choices: Choices, solvers: Solvers, begun: float) ->
     )
 
 
-def _kept(records: Iterable[Mapping[str, Any]], values: Mapping[str, str]) -> tuple[Record, ...]:
+def _kept(records: Iterable[Mapping[str, Any]], values: Mapping[str, str]) -> tuple[NumberRecord, ...]:
     """Records with the columns of a sweep; ``values`` has new names by old names."""
     common = ("stage", "station", "station_unit", "branch", "probe", "component", "arc_length", "unit")
     return tuple(

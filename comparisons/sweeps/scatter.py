@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -205,9 +205,8 @@ class Scatter:
         """Numbers of the last stations with a value at all standing points that is not constant."""
         table = {measure: values_of(measure, self.standing) for measure in measures(self.sweep.scene)}
         table = {measure: values for measure, values in table.items() if values.size and np.isfinite(values).all()}
-        largest: dict[str, float] = {}
-        for measure, values in table.items():
-            largest[measure.unit] = max(largest.get(measure.unit, 0.0), float(np.max(np.abs(values))))
+        sizes = [(measure.unit, float(np.max(np.abs(values)))) for measure, values in table.items()]
+        largest = dict(sorted(sizes))  # the last of a unit stays
         return [each for each, values in table.items() if np.std(values) > CONSTANT * largest[each.unit]]
 
     def rows(self, measure: Measure) -> Array:
@@ -322,10 +321,9 @@ def _quantile_table(scatter: Scatter, scattering: Sequence[Measure]) -> Table:
 
 
 def _limit_table(scatter: Scatter) -> Table:
-    sample = scatter.sample
-    rows = tuple((str(each), _cell(share(sum(meets(one, (each,)) for one in sample), len(sample)), whole=100.0))
-                 for each in scatter.bounds)  # fmt: skip
-    return Table("Limits", ("limit", "met, %"), rows)
+    met = ((bound, sum(meets(each, (bound,)) for each in scatter.sample)) for bound in scatter.bounds)
+    rows = ((str(bound), _cell(share(count, len(scatter.sample)), whole=100.0)) for bound, count in met)
+    return Table("Limits", ("limit", "met, %"), tuple(rows))
 
 
 def _index_table(scatter: Scatter, found: dict[Measure, Indices]) -> Table:
@@ -339,8 +337,7 @@ def _index_table(scatter: Scatter, found: dict[Measure, Indices]) -> Table:
     return Table("Sobol indices", ("number", "parameter", "first order", "total order"), rows, note)
 
 
-def _plain(value: float) -> str:
-    return number(value, 4)
+_plain = partial(number, digits=4)
 
 
 def _cell(each: Interval, whole: float = 1.0) -> str:
@@ -354,7 +351,7 @@ def _histograms(scatter: Scatter, chosen: Sequence[Measure]) -> Iterator[Figure]
         for axes, measure in zip(panels(figure, len(chosen), 2.6), chosen, strict=True):
             axes.hist(values_of(measure, scatter.standing), bins="auto", color=BLUE)
             axes.axvline(measure.values(scatter.nominal)[0], color=RED, linewidth=1.0)
-            axes.set_xlabel(f"{measure}, {measure.unit}".rstrip(", "), fontsize=8)
+            axes.set(xlabel=f"{measure}, {measure.unit}".rstrip(", "), ylabel="points")
         yield finished(figure, "scatter", "Numbers of points by value at the last stations. Line: nominal value.")
 
 

@@ -20,15 +20,17 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from comparisons.formats import display_unit, file_unit
+from comparisons.formats import display_unit
 from comparisons.present.canvas import BLUE, RED, Axes, canvas, finished, panels
 from comparisons.present.columns import Figure, Section
 from comparisons.present.csv_table import csv_text, in_file_units, in_unit
 from comparisons.present.page import put_section, rendered
-from comparisons.sweeps.outcome import Outcome, Record
+from comparisons.sweeps.demands import Measure, measures
+from comparisons.sweeps.outcome import NumberRecord, Outcome
 from comparisons.sweeps.points import Axis, place_text
 from comparisons.verdict.rows import ROUND_OFF
 from comparisons.writing import write
+from cprbm_scene import Scene, Stage
 from cprbm_scene.answer import Array
 
 if TYPE_CHECKING:
@@ -77,25 +79,13 @@ def write_tables(folder: Path, sweep: Sweep) -> None:
 
 
 def _wide(sweep: Sweep, task: Task, outcome: Outcome) -> dict[str, Any]:
-    """A point with the numbers of the last station of every stage; without the stresses along beams."""
+    """A point with the numbers of the last station of every stage."""
     row = _in_units(sweep, _point(task, outcome))
-    for number in last_numbers(outcome):
-        factor, unit = file_unit(sweep.scene, number["unit"])
-        row[f"{number['stage']} {name_of(number)}, {unit}"] = in_unit(number["value"], factor)
-    return row
+    ends = ((measure, measure.last(outcome)) for measure in measures(sweep.scene))
+    return row | {f"{each}, {each.unit}": in_unit(end["value"], each.size) for each, end in ends if end is not None}
 
 
-def last_numbers(outcome: Outcome) -> list[Record]:
-    """Numbers of the last station of every stage, without values along beams."""
-    last = {number["stage"]: number["station"] for number in outcome.numbers}
-    return [
-        number
-        for number in outcome.numbers
-        if number["station"] == last[number["stage"]] and number["arc_length"] is None
-    ]
-
-
-def name_of(number: Record) -> str:
+def name_of(number: NumberRecord) -> str:
     """Probe and component."""
     return ".".join(filter(None, (number["probe"], number["component"])))
 
@@ -133,7 +123,9 @@ def write_netcdf(path: Path, sweep: Sweep) -> None:
     data.to_netcdf(path, engine="scipy")
 
 
-def _table(rows: Sequence[Sequence[Record]], key: str, whole: Sequence[Sequence[Record]] | None = None) -> Array:
+def _table(
+    rows: Sequence[Sequence[NumberRecord]], key: str, whole: Sequence[Sequence[NumberRecord]] | None = None
+) -> Array:
     """Values (points, stations, places) of a ``key`` of ``rows``; ``whole`` rows state all stations by point."""
     cells = {}
     orders = [list(dict.fromkeys(each["station"] for each in row)) for row in whole or rows]
@@ -165,26 +157,28 @@ def write_page(folder: Path, sweep: Sweep) -> None:
         OSError: a file cannot be written.
     """
     solved = sweep.solved()
-    names = _names_of(_fullest(solved)) if solved else []
-    figures = tuple(_figures(sweep, solved, names)) if solved else ()
+    shown = _shown(sweep.scene, _fullest(solved)) if solved else []
+    figures = tuple(_figures(sweep, solved, shown)) if solved else ()
     put_section(folder, Section("", figures=figures))
     failed = [
         (place_text(sweep.axes, task.point), outcome.ending, outcome.sentence)
         for task, outcome in sweep.points()
         if not outcome.completed
     ]
-    family = json.dumps(_slider(sweep, solved, *names[0]) if names else {"curves": []}).replace("<", "\\u003c")
-    context = {"sweep": sweep, "figures": figures, "failed": failed, "family": family}
-    write(folder / "index.html", rendered("sweep.html", context))
+    family = json.dumps(_slider(sweep, solved, shown[0]) if shown else {"curves": []}).replace("<", "\\u003c")
+    write(
+        folder / "index.html",
+        rendered("sweep.html", {"sweep": sweep, "figures": figures, "failed": failed, "family": family}),
+    )
 
 
-def _figures(sweep: Sweep, solved: Solved, names: Sequence[tuple[str, str]]) -> Iterator[Figure]:
+def _figures(sweep: Sweep, solved: Solved, shown: Sequence[Measure]) -> Iterator[Figure]:
     """All figures of a sweep."""
-    yield _over_parameters(sweep, solved, names[:_PANELS])
+    yield _over_parameters(sweep, solved, shown[:_PANELS])
     for stage in sweep.scene.stages:
-        mine = [name for own, name in names if own == stage.name][:_PANELS]
+        mine = [each for each in shown if each.stage == stage.name][:_PANELS]
         if mine:
-            yield _curves(sweep, solved, stage.name, mine)
+            yield _curves(sweep, solved, stage, mine)
     if any(outcome.solver == "compare" for _, outcome in solved):
         yield _checked(sweep, solved)
 
@@ -194,40 +188,34 @@ def _fullest(solved: Solved) -> Outcome:
     return max((outcome for _, outcome in solved), key=lambda outcome: len(outcome.numbers))
 
 
-def _names_of(outcome: Outcome) -> list[tuple[str, str]]:
-    """Stages and names of the numbers of the last stations, without components that are round-off at all stations."""
-    largest: dict[tuple[str, ...], float] = {}
-    for number, key in ((n, key) for n in outcome.numbers for key in ((n["unit"],), (n["stage"], name_of(n)))):
-        largest[key] = max(largest.get(key, 0.0), abs(number["value"]))
-    names = [((each["stage"], name_of(each)), each["unit"]) for each in last_numbers(outcome)]
-    return [name for name, unit in names if largest[name] > ROUND_OFF * largest[unit,]]
+def _shown(scene: Scene, outcome: Outcome) -> list[Measure]:
+    """Numbers of the last stations of an outcome, without components that are round-off at all stations."""
+    sizes = {each: max((abs(one["value"]) for one in each.numbers(outcome)), default=0.0) for each in measures(scene)}
+    largest = dict(sorted((each.unit, size) for each, size in sizes.items()))  # the last of a unit stays
+    return [each for each, size in sizes.items() if size > ROUND_OFF * largest[each.unit] and each.last(outcome)]
 
 
-def _curve_of(outcome: Outcome, stage: str, name: str) -> list[Record]:
-    """Numbers of a name in a stage, station by station."""
-    mine = (each for each in outcome.numbers if each["stage"] == stage and each["arc_length"] is None)
-    return [each for each in mine if name_of(each) == name]
-
-
-def _unit_of(sweep: Sweep, numbers: Sequence[Record], kind: str = "") -> tuple[float, str]:
+def _unit_of(sweep: Sweep, numbers: Sequence[NumberRecord], kind: str = "") -> tuple[float, str]:
     """Displayed unit of the values, or with ``station`` of the stations, of numbers in one unit."""
     unit, value = (f"{kind}_unit", kind) if kind else ("unit", "value")
     return display_unit(sweep.scene, numbers[0][unit], max(abs(each[value]) for each in numbers))
 
 
-def _over_parameters(sweep: Sweep, solved: Solved, names: Sequence[tuple[str, str]]) -> Figure:
+def _over_parameters(sweep: Sweep, solved: Solved, shown: Sequence[Measure]) -> Figure:
     """Numbers of the last station over the parameters: curves, contours, or points of a sample."""
     grid, first = all(axis.count for axis in sweep.axes), sweep.axes[0]
     mapped = grid and len(sweep.axes) == 2
     failed = [task for task, outcome in sweep.points() if not outcome.completed]
-    ends = [{(each["stage"], name_of(each)): each for each in last_numbers(outcome)} for _, outcome in solved]
     with canvas(6.4, 4.8) as figure:
-        for axes, (stage, name) in zip(panels(figure, len(names), 3.0), names, strict=True):
-            known = [each.get((stage, name)) for each in ends]
+        for axes, measure in zip(panels(figure, len(shown), 3.0), shown, strict=True):
+            known = [measure.last(outcome) for _, outcome in solved]
             size, label = _unit_of(sweep, [each for each in known if each is not None])
             numbers = [np.nan if each is None else each["value"] / size for each in known]
-            axes.set_title(f"{stage}: {name}, {label}".rstrip(", "), fontsize=9)
-            axes.set_xlabel(first.label)
+            axes.set(
+                title=f"{measure.stage}: {measure.name}, {label}".rstrip(", "),
+                xlabel=first.label,
+                ylabel=sweep.axes[-1].label if mapped else "",
+            )
             if mapped:
                 _contours(figure, axes, sweep.axes, solved, numbers)
             else:
@@ -260,7 +248,6 @@ def _contours(figure: Any, axes: Axes, pair: Sequence[Axis], solved: Solved, num
         return
     least, size = np.nanmin(values), np.nanmax(np.abs(values)) or 1.0
     levels = np.linspace(least, max(np.nanmax(values), least + ROUND_OFF * size), 12)
-    axes.set_ylabel(second.label)
     x, y = (np.array(axis.values()) / axis.size for axis in pair)
     for branch in range(len(kinds)):
         own = np.ma.masked_where(branches != branch, values).reshape(first.count, second.count).T
@@ -268,41 +255,40 @@ def _contours(figure: Any, axes: Axes, pair: Sequence[Axis], solved: Solved, num
     figure.colorbar(drawn, ax=axes)
 
 
-def _curves(sweep: Sweep, solved: Solved, stage: str, names: Sequence[str]) -> Figure:
+def _curves(sweep: Sweep, solved: Solved, stage: Stage, shown: Sequence[Measure]) -> Figure:
     """The curves of all points against the load or drive of a stage."""
     first, longest = sweep.axes[0], _fullest(solved)
-    steps = next(each.steps for each in sweep.scene.stages if each.name == stage)
     with canvas(6.4, 4.8) as figure:
-        for axes, name in zip(panels(figure, len(names), 3.0), names, strict=True):
-            whole = _curve_of(longest, stage, name)
+        for axes, measure in zip(panels(figure, len(shown), 3.0), shown, strict=True):
+            whole = measure.numbers(longest)
             (size, label), (step, step_label) = _unit_of(sweep, whole[-1:]), _unit_of(sweep, whole, "station")
-            axes.set_title(f"{name}, {label}".rstrip(", "), fontsize=9)
-            axes.set_xlabel(f"{steps}, {step_label}")
+            axes.set(title=f"{measure.name}, {label}".rstrip(", "), xlabel=f"{stage.steps}, {step_label}")
             for task, outcome in solved:
                 share = (task.point[first.name] - first.low) / (first.high - first.low)
                 colour = 0.1 + 0.5 * share, 0.2 + 0.55 * share, 0.45 + 0.45 * share  # from dark to light blue
-                curve = _curve_of(outcome, stage, name)
+                curve = measure.numbers(outcome)
                 for _, part in groupby(curve, lambda number: number["branch"]):
                     own = np.array([(number["station"] / step, number["value"] / size) for number in part])
                     look = "o" if len(own) == 1 else "-"
                     axes.plot(*own.T, look, color=colour, linewidth=1.0, markersize=2.0)
                 if curve and not outcome.completed:
                     axes.plot(curve[-1]["station"] / step, curve[-1]["value"] / size, "x", color=RED)
-        caption = f"Stage {stage}: curves of all points; colours from {first.text(first.low)} (dark) to "
+        caption = f"Stage {stage.name}: curves of all points; colours from {first.text(first.low)} (dark) to "
         caption += f"{first.text(first.high)} (light). Crosses: the last station of points that failed."
-        return finished(figure, f"curves-{stage}", caption)
+        return finished(figure, f"curves-{stage.name}", caption)
 
 
-def _slider(sweep: Sweep, solved: Solved, stage: str, name: str) -> Mapping[str, Any]:
+def _slider(sweep: Sweep, solved: Solved, measure: Measure) -> Mapping[str, Any]:
     """Curves of a number for the slider."""
-    curves = [_curve_of(outcome, stage, name) for _, outcome in solved]
+    curves = [measure.numbers(outcome) for _, outcome in solved]
     ends = [curve[-1] for curve in curves if curve]
     (size, unit), (step, step_unit) = _unit_of(sweep, ends), _unit_of(sweep, ends, "station")
+    steps = next(each.steps for each in sweep.scene.stages if each.name == measure.stage)
     return {
-        "title": f"Stage {stage}: {name}, {unit}, against the load or drive, {step_unit}",
+        "title": f"Stage {measure.stage}: {measure.name}, {unit}, against {steps}, {step_unit}",
         "curves": [
             {
-                "label": f"{place_text(sweep.axes, task.point)}: {outcome.ending}",
+                "label": f"{place_text(sweep.axes, task.point)}{'' if outcome.completed else f': {outcome.ending}'}",
                 "points": [[n["station"] / step, n["value"] / size, n["branch"]] for n in curve],
             }
             for (task, outcome), curve in zip(solved, curves, strict=True)
@@ -318,13 +304,11 @@ def _checked(sweep: Sweep, solved: Solved) -> Figure:
     ]
     with canvas(6.4, 4.0) as figure:
         axes = figure.add_subplot()
-        axes.set_xlabel(sweep.axes[0].label)
+        axes.set(xlabel=sweep.axes[0].label, ylabel=sweep.axes[1].label if len(sweep.axes) > 1 else _RATIO)
         x, y = ([axis.of(point) for point, _ in checked] for axis in (sweep.axes * 2)[:2])
         if len(sweep.axes) > 1:
-            axes.set_ylabel(sweep.axes[1].label)
             figure.colorbar(axes.scatter(x, y, c=ratios, cmap="viridis"), ax=axes, label=_RATIO)
         else:
             axes.plot(x, ratios, "o", color=BLUE)
             axes.axhline(1.0, color=RED, linewidth=0.8)
-            axes.set_ylabel(_RATIO)
         return finished(figure, "checked", "Largest difference over stated uncertainty at the checked points.")

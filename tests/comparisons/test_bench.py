@@ -308,6 +308,8 @@ def test_a_question_keeps_the_last_loads_and_what_errors_are_told_by():
     assert {probe.name for probe in asked.probes} >= {"A.reaction", "circle.force", "contact.force"}
     assert not {"C.reaction", "contact.closing_load", "beam1.bending_stress"} & {probe.name for probe in asked.probes}
     assert asked.claims == ()
+    in_shear = cases.opened("gripper-driven").model_copy(update={"theory": "shear"})
+    assert measures.benchmark_scene(in_shear) == asked  # all methods answer in the theory of the errors
 
 
 def test_the_document_has_the_documented_keys(bent):

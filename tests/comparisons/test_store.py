@@ -37,8 +37,9 @@ def bits(value):
         [[1.0], [1.0, 2.0], [], [-3.0], [1.0]],
         [[[1.0, -2.0]], np.zeros((0, 2)), [[1.0, -2.0], [0.1, 0.2]]],
         np.random.default_rng(905).integers(0, 2**64, (7, 5), np.uint64).view(float),
+        np.linspace(1.0, 2.0, 40)[:, None] ** np.linspace(0.0, 3.0, 80),
     ],
-    ids=["special", "shapes", "pairs", "any bits"],
+    ids=["special", "shapes", "pairs", "any bits", "smooth"],
 )
 def test_every_bit_of_a_number_survives(hinge, right, rows):
     answer = right.fea(hinge, Choices())
@@ -54,6 +55,22 @@ def test_an_answer_survives(hinge, right):
     assert bits(back) == bits(answer)
     with pytest.raises(ValueError, match="read-only"):
         back.stations[0].values["BD.rotation"][0] = 0.0
+
+
+def test_smooth_numbers_take_a_third_of_their_room(hinge, right):
+    """The orders of the differences follow the numbers: noise takes no more room than its bits."""
+    (station, *_) = right.fea(hinge, Choices()).stations
+
+    def size(rows):
+        stations = tuple(replace(station, values={"q": row}) for row in rows)
+        empty = replace(station, values={"q": np.zeros(0)})
+        found = (replace(right.fea(hinge, Choices()), stations=each) for each in (stations, (empty,) * len(stations)))
+        whole, rest = (len(packed({"run": each})) for each in found)
+        return (whole - rest) / (8 * np.size(rows))
+
+    noise = np.random.default_rng(905).integers(0, 2**64, (40, 200), np.uint64).view(float)
+    assert size(np.linspace(1.0, 2.0, 40)[:, None] ** np.linspace(0.0, 3.0, 200)) < 1 / 3
+    assert size(noise) < 1.03
 
 
 def test_a_verdict_needs_no_second_solve(hinge, right):

@@ -75,6 +75,21 @@ def test_a_table_keeps_to_its_width_and_splits_between_columns(width, monkeypatc
         assert {len(row.rstrip()) for row in lines[place + 2 : place + 4]} == {len(lines[place].rstrip())}
 
 
+def test_title_and_note_take_the_width_of_the_screen():
+    title, note = "A title that is wider than its table", "COMPLETED: every station was reached and certified"
+    lines = lines_of(Table(title, ("stage", "at"), (("press", "1.5 N"),), note), 60)
+    assert lines[0] == title
+    assert note in lines
+
+
+def test_sentences_stand_left_and_numbers_right():
+    rows = (("slsqp", "0.5", "theory: no part of a single minimum"), ("ipopt", "12.25", "short"))
+    lines = lines_of(Table("", ("method", "largest difference over stated", "why"), rows), 120)
+    head, _, first, second = lines[1:5]
+    assert first.index("0.5") + 3 == second.index("12.25") + 5 == head.index("stated") + 6
+    assert first.index("theory") == second.index("short") == head.index("why")
+
+
 def test_sentences_fold_between_words_and_names_fold_anywhere():
     claim, name = "displacement of B within 0.62 % of ANSYS, 80 elements per beam", "x" * 60 + ".displacement"
     lines = lines_of(Table("Claims", ("claim", "theirs", "ours"), ((claim, "0.620 %", "0.718 %"),)), 50)

@@ -53,6 +53,7 @@ WORDS = [
     (["new", "a/b"], "found 'a/b'; allowed: letters"),
     (["new", ""], "found ''; allowed: letters"),
 ]
+UNITS = 'units = { length = "mm", force = "N", angle = "deg", stress = "MPa" }'
 FILES = [
     ("thickness =", "thicknes =", "beams.strip.thicknes: found 'thicknes'", "is 'thickness' meant?"),
     ('material = "steel"', 'material = "stel"', "beams.strip.material", "is 'steel' meant?"),
@@ -71,20 +72,20 @@ FILES = [
         "is 'displacement' meant?",
         "'rotation'",
     ),
-    ('name = "mine"', 'name = "mine"\nunits = { lenght = "mm" }', "units.lenght", "is 'length' meant?"),
-    ('name = "mine"', 'name = "mine"\nunits = { stress = "mpa" }', "units.stress: found 'mpa' (is 'MPa' meant?)"),
-    ('name = "mine"', 'name = "mine"\nunits = { angle = "degree" }', "is 'deg' meant?"),
-    ('name = "mine"', 'name = "mine"\nunits = { force = "mm" }', "units.force: found 'mm'; allowed: one of 'N', 'kN'"),
-    ('name = "mine"', 'name = "mine"\nunits = "mm"', "units: found 'mm'; allowed: a table, as units = {"),
+    (UNITS, 'units = { lenght = "mm" }', "units.lenght", "is 'length' meant?"),
+    (UNITS, 'units = { stress = "mpa" }', "units.stress: found 'mpa' (is 'MPa' meant?)"),
+    (UNITS, 'units = { angle = "degree" }', "is 'deg' meant?"),
+    (UNITS, 'units = { force = "mm" }', "units.force: found 'mm'; allowed: one of 'N', 'kN'"),
+    (UNITS, 'units = "mm"', "units: found 'mm'; allowed: a table, as units = {"),
     (
-        "thickness = 0.0011",
+        "thickness = 1.1",
         'thickness = "1.1 mm"',
         "found '1.1 mm'",
         "a number, or a table",
         "the key 'units', as units",
     ),
-    ("radius = 0.006", 'radius = "6mm"', "found '6mm'; allowed: a number; numbers have no units", "units = { length"),
-    ("radius = 0.006", 'radius = "six"', "found 'six'; allowed: a number, or an expression that begins with '='\n"),
+    ("radius = 6.0", 'radius = "6mm"', "found '6mm'; allowed: a number; numbers have no units", "units = { length"),
+    ("radius = 6.0", 'radius = "six"', "found 'six'; allowed: a number, or an expression that begins with '='\n"),
 ]
 SCENES = {
     "no TOML": (HINGE.replace("[bodies.AC]", "[bodies.AC"), "TOML"),
@@ -181,7 +182,7 @@ def test_between_short_words_nothing_is_guessed(unit, folder, capsys):
     """Any two units are near each other: what was meant could be one or the other."""
     path = Path("mine.toml")
     text = path.read_text(encoding="utf-8")
-    path.write_text(text.replace('name = "mine"', f'name = "mine"\nunits = {{ force = "{unit}" }}'), encoding="utf-8")
+    path.write_text(text.replace(UNITS, f'units = {{ force = "{unit}" }}'), encoding="utf-8")
     said = _said(["solve", "mine.toml"], capsys)
     assert f"units.force: found {unit!r}; allowed: one of 'N'" in said
 

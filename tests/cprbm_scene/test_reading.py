@@ -272,6 +272,15 @@ def test_an_implausible_scene_has_a_note(data, begin, end):
     assert note.endswith(end)
 
 
+@pytest.mark.parametrize(("modulus", "written"), [(2.3e15, "2.3e+15"), (2.3e3, "2.3e+03")])
+def test_an_implausible_modulus_has_a_note_where_no_load_has(modulus, written):
+    """The number of the hinge in gigapascals written as megapascals, and a soft beam under a faint moment."""
+    stages = ("stages/0/stations", [1e-6 * modulus / 2.3e9]), ("claims", []), ("stages/0/shown", [])
+    (note,) = notes(scene_from(edited(("materials/abs/youngs_modulus", modulus), *stages)))
+    assert note.startswith(f"materials.abs: youngs_modulus is {written} Pa, implausible below 1e+06 and above 1.5e+12")
+    assert note.endswith("Is the number in Pa, the file's unit of stress?")
+
+
 def test_a_plausible_scene_has_no_note():
     allowed = {"may_cross": [["lower", "upper"]]}
     apart = (edited(("contacts", {}), base=two_lines(gap)) for gap in (0.01, 0.0019999))

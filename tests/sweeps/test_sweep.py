@@ -16,6 +16,8 @@ import pytest
 import comparisons
 from comparisons.choices import Choices
 from comparisons.cli.main import run
+from comparisons.sweeps.demands import Measure
+from comparisons.sweeps.outcome import Outcome
 from cprbm_scene import read
 from tests.sweeps.elastica import tip
 from tests.sweeps.scenes import CANTILEVER, table
@@ -33,6 +35,18 @@ def scene(tmp_path):
 
 def swept(scene, out, *options):
     return run(["sweep", str(scene), "-n", "6", "--quiet", "--out", str(out), *options])
+
+
+def test_of_values_along_a_beam_the_largest_magnitude_counts():
+    record = {"stage": "load", "station": 1.0, "probe": "b.bending_stress", "component": "", "branch": 0}
+    stresses = [
+        {**record, "arc_length": place, "value": value} for place, value in ((0.0, 2.0), (0.1, -3.0), (0.2, 1.0))
+    ]
+    force = {**record, "probe": "c.force", "arc_length": None, "value": -5.0}
+    outcome = Outcome("cprbm", "COMPLETED", "", numbers=(*stresses, force))
+    stress, pressure = (Measure("load", probe, "", False, 1, 1.0, "") for probe in ("b.bending_stress", "c.force"))
+    assert (stress.last(outcome)["value"], stress.values(outcome)) == (3.0, [3.0])
+    assert (pressure.last(outcome), pressure.values(outcome)) == (force, [-5.0])
 
 
 def test_a_grid_has_a_row_per_number_and_a_larger_grid_takes_the_points_over(scene, tmp_path, capsys):

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from comparisons.choices import Choices
+from comparisons.present.brief import brief
 from cprbm_scene import Ending, Loss
 from tests.verdict.comparing import altered, compared, ending, only, word_of
 from tests.verdict.jumping import Jumping
@@ -53,6 +54,14 @@ def test_a_case_that_agrees_names_the_closest_row(hinge):
     assert compared(hinge, C, F).verdict.because.startswith("All 126 rows agree; the closest is ")
 
 
+def test_a_single_row_has_no_plural(hinge):
+    (stage,) = hinge.stages
+    stage = stage.model_copy(update={"stations": (0.67,), "shown": ()})
+    probes = tuple(probe for probe in hinge.probes if probe.quantity == "rotation")
+    alone = hinge.model_copy(update={"stages": (stage,), "probes": probes, "claims": ()})
+    assert compared(alone, C, F).verdict.because.startswith("The only row agrees, BD.rotation at load 0.67 N·m: ")
+
+
 def test_whose_uncertainty_is_too_large(away):
     assert "most of it of the CPRBM" in compared(away, COARSE[0], F).verdict.because
     assert "most of it of the finite elements" in compared(away, C, COARSE[1]).verdict.because
@@ -89,6 +98,15 @@ def test_a_critical_point_is_told_in_degrees_with_its_mechanism(crank):
         "The branch ends in forward at 1.2288 rad (70.41°) (stopB: fold) in the CPRBM and 1.2287 rad"
     )
     assert "0.0043° apart against a stated 0.0091°, 0.30° allowed; the theories are 0.029° apart: AGREE." in first
+
+
+@pytest.mark.parametrize(("loss", "remedy"), [(Loss.FOLD, 'beyond = "jump"'), (Loss.BIFURCATION, "imperfection")])
+def test_runs_that_end_before_the_first_station_name_the_critical_point_and_a_remedy(crank, loss, remedy):
+    cprbm, fea = Jumping("cprbm", stops=True, loss=loss), Jumping("fea", stops=True, loss=loss)
+    pair = (lambda scene, choices, own=own: replace(own(scene, choices), stations=()) for own in (cprbm, fea))
+    printed = " ".join(brief(compared(crank, *pair), "crank.toml").split())
+    assert ": UNDECIDED (RUN_ENDED). No station has a row that can be compared. The branch ends in forward" in printed
+    assert remedy in printed
 
 
 def test_runs_of_one_solver_that_disagree_on_a_mechanism_are_named(crank):
