@@ -48,7 +48,7 @@ fuzz: $(READY)
 	OMP_NUM_THREADS=1 $(BIN)/python -m tests.cprbm_scene.fuzzing --runs $(RUNS) --seed $(SEED)
 
 mutants: $(READY)
-	$(ENVIRONMENT) OMP_NUM_THREADS=1 $(BIN)/python -m tests.mutants --mutants $(MUTANTS) --seed $(SEED)
+	$(ENVIRONMENT) OMP_NUM_THREADS=1 NUMBA_DISABLE_JIT=1 $(BIN)/python -m tests.mutants --mutants $(MUTANTS) --seed $(SEED)
 
 wheel: $(READY)
 	rm -rf dist

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 from hypothesis import settings
 
@@ -10,6 +12,17 @@ from tests.house.internals import ROOT, Internals, product_names
 # the time for an example depends on the load of the machine
 settings.register_profile("no clock", deadline=None)
 settings.load_profile("no clock")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _one_core():
+    """Commands in the process of a test solve there: a second process loads all modules anew, 2 s of a processor each.
+
+    Tests of workers name their number, and commands in fresh processes see all cores.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "cpu_count", lambda: 1)
+        yield
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

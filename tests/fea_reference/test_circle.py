@@ -277,7 +277,7 @@ def test_a_circle_is_not_stepped_over():
     assert got.stations[0].values["contact.force"][0] > 0.0
 
 
-@pytest.mark.parametrize("elements", [40, 80, 160])
+@pytest.mark.parametrize("elements", [40, 160])
 def test_a_tip_that_would_cut_through_a_circle_in_one_step_comes_to_lie_on_it(elements):
     """Without contact the tip is on the other side at this load; the place and the force are those of other meshes."""
     length = cprbm_circle.BEAM["length"]

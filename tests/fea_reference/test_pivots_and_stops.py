@@ -39,9 +39,18 @@ def test_a_lever_on_its_pivot_pulls_a_bar():
 # ------------------------------------------------------------------------------------------------- a stop
 
 
-@pytest.mark.parametrize("end", ["start", "end"])
-@pytest.mark.parametrize("towards", [0.0, 2.0, np.pi, -1.0])
-@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("end", "towards", "sense"),
+    [
+        ("start", 0.0, 1.0),
+        ("start", 2.0, -1.0),
+        ("start", np.pi, -1.0),
+        ("start", -1.0, 1.0),
+        ("end", 0.0, -1.0),
+        ("end", 2.0, 1.0),
+        ("end", np.pi, 1.0),
+    ],
+)
 def test_a_stop_turns_the_end_by_what_the_wheel_goes_beyond_it(end, towards, sense):
     """The beam leaves the pin along x: β = −towards − φ.  Beyond the limit the pinned end has 4 EI ψ/L of moment."""
     drawn = np.pi if towards == np.pi else -towards  # in (−π, π]

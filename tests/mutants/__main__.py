@@ -75,9 +75,7 @@ def main() -> None:
     asked.add_argument("--seed", type=int, default=905)
     asked.add_argument("--seconds", type=float, default=20.0, help="of the processor, at most, of a mutant's tests")
     asked.add_argument("--minutes", type=float, default=600.0, help="after which no other mutant is tried")
-    asked.add_argument(
-        "--tests", nargs="*", default=["tests/cprbm", "tests/fea_reference", "tests/together/test_derivations.py"]
-    )
+    asked.add_argument("--tests", nargs="*", default=["tests/cprbm", "tests/fea_reference"])
     asked.add_argument("--only", nargs="*", default=[], help="files of the solvers to draw from, all unless given")
     options, begun = asked.parse_args(), time.monotonic()
     warm()
@@ -137,14 +135,10 @@ def sample(number: int, seed: int, only: list[str]) -> list[Mutant]:
 
     A larger number begins with those of a smaller one.
     """
-    files = [
-        f"{room}/{path.name}"
-        for room in ROOMS
-        for path in sorted((ROOT / room).glob("*.py"))
-        if path.name not in NO_MECHANICS and (not only or f"{room}/{path.name}" in only)
-    ]
+    modules = [path for room in ROOMS for path in sorted((ROOT / room).rglob("*.py")) if path.name not in NO_MECHANICS]
+    files = [str(path.relative_to(ROOT)) for path in modules]
     by_kind: dict[str, dict[str, Mutant]] = {kind: {} for kind in KINDS}
-    for file in files:
+    for file in only or files:
         for mutant in mutants_of(file, (ROOT / file).read_bytes()):
             by_kind[mutant.kind].setdefault(sha256(f"{seed} {mutant.kind} {mutant.fault}".encode()).hexdigest(), mutant)
     drawn = [[of[lot] for lot in sorted(of, reverse=True)] for of in by_kind.values()]

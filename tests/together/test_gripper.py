@@ -85,7 +85,7 @@ def test_places_of_contact_converge_however_near_the_clamp_they_are():
             assert error > 4.0**2.5 * errors[160, probe, station], (probe, station)
 
 
-@pytest.mark.parametrize("links", [(30, 40), (60, 80), (120, 160), (300, 400)])
+@pytest.mark.parametrize("links", [(30, 40), (120, 160)])
 def test_cold_starts_lead_straight_to_the_whole_load(links):
     scene = at("gripper", (16.0,))
     probes = tuple(probe for probe in scene.probes if probe.quantity != "closing_load")
