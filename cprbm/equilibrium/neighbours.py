@@ -40,7 +40,7 @@ def joints_of(curves: CurveArrays, places: Places, columns: Ints, pair: int) -> 
     joints, count = np.empty(places.pair.size, np.int64), 0
     for k in range(places.pair.size):
         own = places.pair[k] == pair and places.curve[k] == columns[pair, 0]
-        if own and not places.moves[k] and places.shares[k] == 0 and places.xi[k] < 1.0:
+        if own and not places.moves[k] and places.shares[k] == 0:
             joints[count] = k
             count += 1
     beside = np.zeros(count, np.bool_)
