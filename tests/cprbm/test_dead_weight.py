@@ -103,7 +103,9 @@ def between_leaves(noses, leaves, **stepped):
     }
     contacts = {}
     for name, (body, leaf, place, height) in noses.items():
-        bodies.setdefault(body, {"motion": "slides", "along": [0.0, 1.0], "points": {body: [1e-3 * place, 0.07]}})
+        bodies.setdefault(
+            body, {"motion": "slides", "along": [0.0, 1.0], "points": {f"on {body}": [1e-3 * place, 0.07]}}
+        )
         circle = {"kind": "beam-circle", "beam": leaf, "body": body, "radius": 6e-3}
         contacts[name] = {**circle, "center": [1e-3 * place, 1e-3 * height]}
     return scene_from(
@@ -117,7 +119,7 @@ def between_leaves(noses, leaves, **stepped):
             **stepped,
             "probes": [
                 *({"of": name, "quantity": "force"} for name in noses),
-                *({"of": name, "quantity": "displacement"} for name in bodies if name not in ends),
+                *({"of": f"on {name}", "quantity": "displacement"} for name in bodies if name not in ends),
                 *({"of": f"on {name}", "quantity": "reaction"} for name in ends["ground"]),
             ],
         }
@@ -135,7 +137,7 @@ def test_a_disk_gripped_by_like_leaves_moves_half_as_far_as_the_jaw():
     answer = cprbm.answer(scene, cprbm.Settings(links=20))
     assert answer.completed, answer.sentence
     for station in answer.stations:
-        assert station.values["disk.displacement"] == pytest.approx([0.0, -0.5 * station.value], abs=1e-12)
+        assert station.values["on disk.displacement"] == pytest.approx([0.0, -0.5 * station.value], abs=1e-12)
         assert station.values["low.force"] == pytest.approx(station.values["high.force"], rel=1e-9)
 
 
@@ -144,7 +146,7 @@ def test_a_force_goes_through_a_body_between_two_leaves():
     scene = between_leaves(
         {"k1": ("low", "a", 60.0, 6.5), "k2": ("low", "b", 60.0, 33.5), "k3": ("high", "b", 70.0, 46.5)},
         {"a": (0.0, "ground"), "b": (40.0, "ground")},
-        loads={"F": {"kind": "force", "point": "high", "direction": [0.0, -1.0]}},
+        loads={"F": {"kind": "force", "point": "on high", "direction": [0.0, -1.0]}},
         stages=[{"name": "on", "steps": "F", "stations": [0.5, 4.0]}, {"name": "off", "steps": "F", "stations": [0.5]}],
     )
     answer = cprbm.answer(scene, cprbm.Settings(links=20))
@@ -154,4 +156,4 @@ def test_a_force_goes_through_a_body_between_two_leaves():
         assert borne[1] == pytest.approx(station.value, rel=1e-9)
         assert station.values["k1.force"][0] > 0.5 * station.value
     first, _, last = answer.stations
-    assert last.values["high.displacement"] == pytest.approx(first.values["high.displacement"], rel=1e-9)
+    assert last.values["on high.displacement"] == pytest.approx(first.values["on high.displacement"], rel=1e-9)
