@@ -40,7 +40,8 @@ def joints_of(curves: CurveArrays, places: Places, columns: Ints, pair: int) -> 
     joints, count = np.empty(places.pair.size, np.int64), 0
     for k in range(places.pair.size):
         own = places.pair[k] == pair and places.curve[k] == columns[pair, 0]
-        if own and not places.moves[k] and places.shares[k] == 0:
+        rolled_end = places.curve[k] == places.other[k] and places.xi[k] == 1.0
+        if own and not places.moves[k] and places.shares[k] == 0 and not rolled_end:
             joints[count] = k
             count += 1
     beside = np.zeros(count, np.bool_)
