@@ -137,7 +137,10 @@ def short_runs(
         for i in range(joints.size):
             if i < joints.size - 1 and beside[i] and closed[joints[i]] and closed[joints[i + 1]]:
                 continue
-            if closed[joints[i]] and i - begin < LONGEST_RUN:
+            # beside another closed place an end keeps the contact: a point moves on a single curvature of the gap
+            k = joints[i]
+            crowded = places.xi[k] == 1.0 and _is_crowded(curves, places, closed, k)
+            if closed[k] and i - begin < LONGEST_RUN and not crowded:
                 runs[count, 0], runs[count, 1] = joints[begin], joints[i]
                 count += 1
             begin = i + 1
