@@ -172,6 +172,20 @@ class BeamChain:
         """Integrals (k,) of weight(s)/EI between ``borders`` (k + 1,)."""
         return _integrals(lambda s: weight(s) / self.section.rigidity(s), borders, self.knots)
 
+    def layer(self, end: int) -> float:
+        """Length √(EI/GA_s) at the start (0) or the end (1), within which a section at a weld warps little."""
+        at, section = self.arcs[[-end]], self.section
+        return float(np.sqrt(section.rigidity(at) / (section.area(at) * section.shearing)).item())
+
+    def with_upright_section(self, end: int) -> BeamChain:
+        """The chain with the angle of shear tanh²(s/ℓ) Q/GA_s at the distance s from an end, ℓ = √2 times the layer.
+
+        A link between s and s + L lacks ℓ [tanh((s + L)/ℓ) − tanh(s/ℓ)]/L of the shear compliance (docs/contact.md).
+        """
+        length = np.sqrt(2.0) * self.layer(end)
+        grown = length * np.tanh(np.abs(self.arcs - self.arcs[-end]) / length)
+        return replace(self, shear=self.shear * (1.0 - np.abs(np.diff(grown)) / np.diff(self.arcs)))
+
     def leaving_angle(self, end: Literal["start", "end"]) -> float:
         """Angle at rest at which the neutral line leaves an end."""
         return self.end_angles[0] if end == "start" else self.end_angles[1] + np.pi

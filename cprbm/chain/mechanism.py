@@ -131,7 +131,7 @@ class Mechanism:
 
     scene: Scene
     units: ChainUnits
-    chains: Mapping[str, BeamChain]
+    chains: dict[str, BeamChain]
     starts: dict[str, int] = field(default_factory=dict)
     bodies: dict[str, int] = field(default_factory=dict)
     rows: list[Row] = field(default_factory=list)

@@ -3,7 +3,7 @@
 Fixed places are the joints and ends of the first curve, and the ends of a second beam.  Corners of a second curve are
 point contacts that stay at the corners, with the feet on the beam.
 
-* An end of a beam is no place on the body to which a joint holds the end.
+* An end of a beam is no place on the body to which a joint holds the end, nor on an edge along which this body slides.
 * The first joint behind a weld on the body of the foot has the force of the second joint.  The share of clamp and
   contact is not unique there; a row for the sum of both gaps keeps the pressure even.
 * A place may move everywhere but in an end link held by the body of the foot.  In such a link a corner is no place.
@@ -23,14 +23,20 @@ from functools import cached_property
 import numpy as np
 
 from cprbm.chain import Mechanism
+from cprbm.chain.mechanism import Direction
+from cprbm.chain.rows import unit_direction
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
-from cprbm.contact.fixed import FREE, Ends, Sites, places_at_feet
+from cprbm.contact.fixed import FREE, Ends, Sites, is_straight, on_end_body, places_at_feet
 from cprbm.contact.gap import Law, Places, gap_frame
 from cprbm.contact.pairs import Pair, contact_pairs
 from cprbm.contact.settling import new_counters, settle
 from cprbm_scene import FreeEnd, Scene, WeldedEnd
 from cprbm_scene.answer import Array, Flags, Ints
 from cprbm_scene.freedoms import FREEDOMS, Freedoms
+from cprbm_scene.statement import Body, SlidingBody
+
+LEANING = 0.1
+"""Gap beside a weld, over the layers of the sections there, that a lean could close: no material bears such a shear."""
 
 TOUCHING = 1e-9
 """Gap, over the longest beam, below which curves touch: round-off of a scene's coordinates."""
@@ -102,6 +108,30 @@ def contact_geometry(m: Mechanism) -> Geometry:
     ends = _ends(m, curves)
     columns = np.array([(pair.first, pair.second) for pair in pairs], dtype=np.int64).reshape(-1, 2)
     return Geometry(curves, pairs, arrays, ends, _possible(arrays, ends, pairs), columns)
+
+
+def hold_sections_upright(m: Mechanism, geometry: Geometry) -> None:
+    """Keep the sections upright at welds beside touching beams, and on touching curved bodies: a theory of shear."""
+    arrays, ends, found, z = geometry.arrays, geometry.ends, set[tuple[str, int]](), np.array(m.rest)
+    contacts = open_contacts(geometry, z)
+    pairs, curves = np.ones(len(geometry.pairs), dtype=bool), np.ones(len(geometry.curves), dtype=bool)
+    places = places_at_feet(z, arrays, geometry.sites, contacts.sides, pairs, curves, contacts.counters)
+    contacts = replace(contacts, places=places, closed=np.zeros(len(places.pair), dtype=bool))
+    for k, gap in enumerate(contacts.gaps(geometry, z)):
+        curve, other = places.curve[k], places.other[k]
+        for end, node in enumerate((arrays.first[curve], arrays.last[curve] + 1)):
+            at_weld = ends.welded[curve, end] and places.piece[k] + places.xi[k] == node
+            if not at_weld or is_straight(arrays, places.foot[k]) or not on_end_body(arrays, ends, places, k, end):
+                continue
+            chains = [(m.chains[geometry.curves[curve].beam], end)]
+            if not ends.rigid[other]:
+                chains.append(
+                    (m.chains[geometry.curves[other].beam], int(ends.body[other, 0] != ends.body[curve, end]))
+                )
+            if abs(gap) < LEANING * sum(chain.layer(side) for chain, side in chains):
+                found.add((chains[0][0].name, end))
+    for beam, end in found:
+        m.chains[beam] = m.chains[beam].with_upright_section(end)
 
 
 def taken(places: Places, which: Flags | Ints) -> Places:
@@ -229,18 +259,28 @@ def _ends(m: Mechanism, curves: list[Curve]) -> Ends:
     still = _bodies_at_rest(m.scene)
     order = list(m.scene.bodies)
     number = {name: order.index(still[0] if name in still else name) for name in order}
+    slides = {name: _slide(body, at_rest=name in still) for name, body in m.scene.bodies.items()}
+    slide = np.full((len(curves), 2, 2), np.nan)
     body = np.full((len(curves), 2), FREE, dtype=np.int64)
     welded = np.zeros((len(curves), 2), dtype=bool)
     for k, curve in enumerate(curves):
         if not curve.beam:
-            body[k] = number[curve.body]
+            body[k], slide[k] = number[curve.body], slides[curve.body]
             continue
         beam = m.scene.beams[curve.beam]
         for side, joint in enumerate((beam.start, beam.end)):
             if not isinstance(joint, FreeEnd):
-                body[k, side] = number[m.scene.body_of(joint.point)]
+                name = m.scene.body_of(joint.point)
+                body[k, side], slide[k, side] = number[name], slides[name]
                 welded[k, side] = isinstance(joint, WeldedEnd)
-    return Ends(body, welded, np.array([not curve.beam for curve in curves], dtype=bool))
+    return Ends(body, welded, np.array([not curve.beam for curve in curves], dtype=bool), slide)
+
+
+def _slide(body: Body, *, at_rest: bool) -> Direction:
+    """Direction in which a body slides; zero at rest, NaN for every other motion."""
+    if at_rest:
+        return 0.0, 0.0
+    return unit_direction(body.along) if isinstance(body, SlidingBody) and body.pin is None else (np.nan, np.nan)
 
 
 def _bodies_at_rest(scene: Scene) -> list[str]:

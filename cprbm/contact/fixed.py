@@ -6,6 +6,7 @@ Both groups have the order of all possible places, so that the search for the sa
 
 from __future__ import annotations
 
+from math import hypot
 from typing import NamedTuple
 
 import numpy as np
@@ -26,16 +27,27 @@ BESIDE = 1
 REACH = 0.1
 """Distance of two boxes, over the longest beam, for places of a pair: farther boxes cannot meet in a step."""
 
+PARALLEL = 1e-9
+"""Sine of an angle between a guide and an edge, and share of a bend in an edge, that counts as round-off."""
+
 ROUNDS = 5
 """Rounds from chord to chord for the place of a bend."""
 
 
 class Ends(NamedTuple):
-    """Bodies of curves: numbers ``body`` (curves, 2) at start and end, ``welded`` (curves, 2), ``rigid`` (curves,)."""
+    """Bodies of curves.
+
+    Attributes:
+        body: numbers (curves, 2) of the bodies at start and end.
+        welded: welds (curves, 2) of beams.
+        rigid: curves of bodies (curves,).
+        slide: directions (curves, 2, 2) in which the bodies slide; zero at rest, NaN for every other motion.
+    """
 
     body: Ints
     welded: Flags
     rigid: Flags
+    slide: Array
 
 
 class Sites(NamedTuple):
@@ -74,9 +86,25 @@ def picked(places: Places, which: Ints) -> Places:  # pragma: no cover
 
 
 @compiled
+def is_straight(curves: CurveArrays, piece: int) -> bool:  # pragma: no cover
+    """Whether a piece is a straight piece of a body's edge."""
+    bends = np.abs(curves.real[piece, 1, 2:]).sum() + np.abs(curves.imaginary[piece, 1, 2:]).sum()
+    speed = hypot(curves.real[piece, 1, 1], curves.imaginary[piece, 1, 1])
+    return bool(curves.angle[piece] < 0 and bends < PARALLEL * speed)
+
+
+@compiled
 def on_end_body(curves: CurveArrays, ends: Ends, places: Places, k: int, end: int) -> bool:  # pragma: no cover
-    """Whether the foot lies on, or beside a joint with, the body of the start (0) or end (1) of the place's curve."""
-    other, own = places.other[k], ends.body[places.curve[k], end]
+    """Whether the foot lies on, or beside a joint with, the body of the start (0) or end (1) of the place's curve.
+
+    A body that slides along a straight edge keeps the gap of a welded end, as if the edge were on the body.
+    """
+    other, foot, own = places.other[k], places.foot[k], ends.body[places.curve[k], end]
+    if ends.welded[places.curve[k], end] and is_straight(curves, foot):
+        x, y = curves.real[foot, 1, 1], curves.imaginary[foot, 1, 1]
+        edge, beam = ends.slide[other, 0], ends.slide[places.curve[k], end]
+        if abs(x * edge[1] - y * edge[0]) + abs(x * beam[1] - y * beam[0]) < PARALLEL * hypot(x, y):
+            return True
     at_start = ends.rigid[other] or places.foot[k] <= curves.first[other] + BESIDE
     at_end = ends.rigid[other] or places.foot[k] >= curves.last[other] - BESIDE
     same = (at_start and own == ends.body[other, 0]) or (at_end and own == ends.body[other, 1])

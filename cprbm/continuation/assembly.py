@@ -4,7 +4,7 @@
 symbol   meaning
 =======  ====================================================================================
 s        displacement or rotation of a body with a single motion, zero as drawn
-μ, f     force and value of the row of the load that the first stage steps
+μ        multiplier of the row that prescribes s: the push of loads and contacts along s
 g        least gap
 =======  ====================================================================================
 
@@ -12,21 +12,23 @@ The assembly has three parts: moments grow on the free ends; the ends go straigh
 The rows of the ends have a prescribed force in the first part and a prescribed value in the others.  Stops act in the
 last part.
 
-No force resists s of a body that contacts alone hold: the motion is neutral as drawn.  The load moves the body in the
-sense in which μ f falls, until a contact closes at g = 0.  From there on the contact holds the body.  A row prescribes
-s on the way, and is then free.
+No force resists s of a body that contacts alone hold: the motion is neutral as drawn.  A small part of the first load
+or drive acts, with a row that prescribes s of every such body.  The body with the largest push μ moves in the sense of
+μ until a contact closes at g = 0.  From there on the contact holds the body, and the row is free.  The push goes on
+to the next body.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
 from cprbm.chain import Mechanism, Row, apart_ends, stop_angle
 from cprbm.chain.rows import unit_direction
-from cprbm.continuation.closing import CLOSED, drawn_names, kept_open, least_gap, located, pressing_names
+from cprbm.continuation.closing import CLOSED, drawn_names, kept_open, least_gap, located, pressing, pressing_names
 from cprbm.continuation.driver import Driver, StepError
 from cprbm.continuation.path import Way
 from cprbm.equilibrium.contact_set import NotConvergedError
@@ -46,6 +48,9 @@ SHORTEST = 1e-3
 
 DOUBLINGS = 11
 """Ways of a search: the last leads two lengths of the longest beam far."""
+
+NEUTRAL = 1e-9
+"""Push on a body, over the largest force of a row, that counts as none: round-off."""
 
 FIRST_LOAD = 1e-3
 """Part of the first station's load under which the contact takes over the body."""
@@ -151,37 +156,43 @@ def landed(system: System, first: Solved, iterations: int) -> Solved:
     Raises:
         NotConvergedError: a motion stays neutral, or a state on the way was not found.
     """
-    for number, row in enumerate(system.mechanism.rows):
-        if row.name.startswith("landing."):
-            first = _landed(system, first, number, iterations)
+    rows, stage = system.mechanism.rows, system.mechanism.scene.stages[0]
+    loose = [number for number, row in enumerate(rows) if row.name.startswith("landing.")]
+    if loose:
+        load, target = system.mechanism.row(stage.steps), first.state.target.copy()
+        target[load] = FIRST_LOAD * rows[load].unit * stage.stations[0]
+        first = equilibrium(system, replace(first.state, target=target), iterations)
+    while loose:
+        pushes = first.state.multipliers(system)
+        row = max(loose, key=lambda number: abs(pushes[number]))
+        if abs(pushes[row]) <= NEUTRAL * np.abs(pushes).max():
+            name = rows[row].name.removeprefix("landing.")
+            raise NotConvergedError(f"body '{name}' is neutral: no contact and no load holds the body")
+        first = _landed(system, first, row, iterations)
+        loose.remove(row)
     return first
 
 
 def _landed(system: System, first: Solved, row: int, iterations: int) -> Solved:
-    m, name = system.mechanism, system.mechanism.rows[row].name.removeprefix("landing.")
-    stage = m.scene.stages[0]
-    load = m.row(stage.steps)
-    every = frozenset(range(len(system.geometry.pairs)))
+    """The state in which a contact holds a pushed body; the row of the body prescribes s until then."""
+    sense, apart = np.sign(first.state.multipliers(system)[row]), frozenset(range(len(system.geometry.pairs)))
+    apart -= pressing(first)
 
-    def moved(s: float, pairs: frozenset[int]) -> Solved:
-        target = first.state.target.copy()
-        target[row] = s
-        return equilibrium(system, kept_open(replace(first.state, target=target), pairs), iterations)
-
-    pushed = m.rows[load].unit * stage.stations[0] if not first.state.driven[load] else 0.0
-    work = pushed * float((moved(SHORTEST, every).values - moved(-SHORTEST, every).values)[load])
-    if work == 0.0:
-        raise NotConvergedError(f"body '{name}' is neutral: no contact and no load holds the body")
-    sense = -np.sign(work)
+    def moved(s: float, pairs: frozenset[int], *, free: bool = False) -> Solved:
+        target, driven = first.state.target.copy(), first.state.driven.copy()
+        target[row], driven[row] = 0.0 if free else sense * s, not free
+        return equilibrium(system, kept_open(replace(first.state, target=target, driven=driven), pairs), iterations)
 
     def gap(s: float) -> float:
-        solved = moved(sense * s, every)
-        return min(least_gap(system.geometry, solved.state.z, solved.state.contacts, pair) for pair in every) + CLOSED
+        solved = moved(s, apart)
+        return min(least_gap(system.geometry, solved.state.z, solved.state.contacts, pair) for pair in apart) + CLOSED
 
+    with suppress(NotConvergedError):  # contacts that press may hold the body
+        if pressing(first):
+            return moved(0.0, frozenset(), free=True)
     far = next((way for way in SHORTEST * 2.0 ** np.arange(DOUBLINGS) if gap(way) < 0.0), None)
     if far is None:
-        raise NotConvergedError(f"body '{name}' is neutral: '{stage.steps}' moves the body into no contact")
-    touching = moved(sense * far * located(lambda share: gap(share * far)), frozenset())
-    target, driven = touching.state.target.copy(), touching.state.driven.copy()
-    target[row], driven[row], target[load] = 0.0, False, FIRST_LOAD * pushed
-    return equilibrium(system, replace(touching.state, target=target, driven=driven), iterations)
+        name = system.mechanism.rows[row].name.removeprefix("landing.")
+        raise NotConvergedError(f"body '{name}' is neutral: the load moves the body into no contact")
+    first = moved(far * located(lambda share: gap(share * far)), frozenset())
+    return moved(0.0, frozenset(), free=True)

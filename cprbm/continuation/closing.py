@@ -153,12 +153,16 @@ def with_stops(system: System, state: State, acting: Flags, iterations: int, spr
 
 
 class ContactChange(NamedTuple):
-    """Pairs that close or open at a fraction ``share`` of a step, the pair ``first`` exactly there."""
+    """Pairs that close or open at a fraction ``share`` of a step, the pair ``first`` exactly there.
+
+    A closing pair overlaps at the ``share`` of the state, and touches earlier by the part ``early`` of the step.
+    """
 
     share: float
     pairs: frozenset[int]
     closes: bool
     first: int
+    early: float = 0.0
 
 
 def least_gap(geometry: Geometry, z: Array, contacts: Contacts, pair: int) -> float:
@@ -252,7 +256,7 @@ def _closing(
     if not apart:
         return []
 
-    change, first = after.state.target - before.state.target, dict[float, int]()
+    change, first, slopes = after.state.target - before.state.target, dict[float, int](), dict[float, float]()
 
     def gap(share: float) -> tuple[float, float]:
         solved = solve(share, apart) if share else before
@@ -260,14 +264,15 @@ def _closing(
         gaps = {pair: _gap(solved, pair) for pair in apart}
         first[share] = min(gaps, key=lambda pair: gaps[pair])
         found = gaps[first[share]]
-        overlap, slope = found + CLOSED, (_gap(solved, first[share], moved) - found) / ALONG
-        return overlap if abs(overlap) > LOCATED * CLOSED else 0.0, slope
+        overlap, slopes[share] = found + CLOSED, (_gap(solved, first[share], moved) - found) / ALONG
+        return overlap if abs(overlap) > LOCATED * CLOSED else 0.0, slopes[share]
 
     end = gap(1.0)
     if end[0] >= 0.0:
         return []
     share = located_by_slopes(gap, end)
-    return [ContactChange(share, apart, closes=True, first=first[share])]
+    early = CLOSED / max(-slopes[share], CLOSED)
+    return [ContactChange(share, apart, closes=True, first=first[share], early=min(early, share))]
 
 
 def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[ContactChange]:

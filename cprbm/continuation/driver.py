@@ -182,8 +182,9 @@ class Driver:
             self._check_turn(solved, largest)
             change, at = self._first_event(solved, solve), t
             if change is not None:
-                at = begin + change.share * (t - begin)
-                opened = change.pairs if isinstance(change, ContactChange) and change.closes else frozenset()
+                at, opened = begin + change.share * (t - begin), frozenset[int]()
+                if isinstance(change, ContactChange) and change.closes:
+                    change, opened = change._replace(early=change.early * (t - begin)), change.pairs
                 solved = solve(change.share, opened) if change.share else self.solved
             self._check_turn(solved, largest)
         except StepError as refused:
@@ -225,18 +226,19 @@ class Driver:
         return np.where(self.system.limits, 0.0, target)
 
     def _accept(self, way: Way, t: float, solved: Solved, trail: list[Reached]) -> None:
-        self._note(way, t, pressing_names(solved))
+        # a contact that closes without an event has touched at the begin of the step
+        self._note(way, pressing_names(solved), self.reached, t)
         self.reached, self.solved = t, solved
         trail.append(Reached(t, solved))
         del trail[:-TRAIL]
 
-    def _note(self, way: Way, t: float, names: frozenset[str], *, opens: bool = True) -> None:
-        """Add the contacts that have closed or opened since the last state to the events."""
+    def _note(self, way: Way, names: frozenset[str], closed: float, opened: float | None = None) -> None:
+        """Add the contacts ``closed`` or ``opened`` at fractions of the way since the last state to the events."""
         before, self.touching = self.touching, names | self.drawn
         names = self.touching
-        self.events += [ContactEvent(name, way.value(t), closes=True) for name in sorted(names - before)]
-        if opens:
-            self.events += [ContactEvent(name, way.value(t), closes=False) for name in sorted(before - names)]
+        self.events += [ContactEvent(name, way.value(closed), closes=True) for name in sorted(names - before)]
+        if opened is not None:
+            self.events += [ContactEvent(name, way.value(opened), closes=False) for name in sorted(before - names)]
 
     def _changed(self, way: Way, t: float, change: StopChange | ContactChange, beyond: Beyond) -> list[Reached]:
         """Close or open a stop or contacts at the present state; the trail from there on.
@@ -260,7 +262,10 @@ class Driver:
             loss = Loss.CONTACT if name in self.system.mechanism.scene.contacts else Loss.STOP
             return self._leave(way, opened(before, after, t, loss, name), beyond)
         names = pressing_names(after)
-        self._note(way, t, names | {name} if isinstance(change, ContactChange) and change.closes else names)
+        if isinstance(change, ContactChange) and change.closes:
+            self._note(way, names | {name}, t - change.early, t)
+        else:
+            self._note(way, names, t, t)
         self.solved = after
         return [Reached(t, after)]
 
@@ -318,7 +323,7 @@ class Driver:
             landed = self._landed(descent, point, beside=beyond is None)
             if landed is not None:
                 self.passed.append(passed(landed, energy_before(landed, self._held(way.change), t - point.t)))
-                self._note(way, t, pressing_names(landed), opens=False)
+                self._note(way, pressing_names(landed), t)
                 self.solved, self.reached = landed, t
                 return [Reached(t, landed)]
         self.passed.append(passed())

@@ -15,7 +15,7 @@ f*, μ*   targets of the rows, linear in t
 
 **Jumps.**  On a single branch Δθ is near the mean of both tangents, and the change of Π near Hermite's quadrature
 (Π₀′ + Π₁′)/2 + (Π₀″ − Π₁″)/12.  Steps on a single branch reached 0.43 and 0.18 in all
-built-in cases, steps to another branch 0.69 and 0.23 at least: either test is enough for an alarm.
+built-in cases, steps to another branch 0.28 and 0.05 at least, with turns beyond 0.1 rad: there 0.25 is an alarm.
 """
 
 from __future__ import annotations
@@ -32,6 +32,9 @@ from cprbm_scene.answer import Array
 
 BENT = 0.5
 """Largest distance of the turns from the mean of both tangents, over the largest turn."""
+
+FAR = 0.1
+"""Turn in a step, rad, beyond which half the distance is an alarm: the step need not be so long."""
 
 MISSED = 0.25
 """Largest error of the quadrature, over half the change of the power in the step."""
@@ -160,7 +163,7 @@ def jumped(before: Solved, after: Solved, change: Array) -> bool:
     if (
         not one_sided
         and max(largest, float(np.abs(mean).max())) > SMALLEST_TURN
-        and float(np.abs(turn - mean).max()) > BENT * largest
+        and float(np.abs(turn - mean).max()) > (0.5 if largest > FAR else 1.0) * BENT * largest
     ):
         return True
     powers = power(before, change), power(after, change)

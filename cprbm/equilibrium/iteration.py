@@ -91,10 +91,11 @@ def closable(
         at_corner = curves.corner[places.foot[k]] == CORNER and places.at_point[k]
         on_bend = curves.corner[places.foot[k]] == BEND and not places.moves[k]
         beside[k] = beside[k] or ((at_corner or on_bend) and not end)
-        # a foot on an end of the first curve is the foot of that end's own place
+        # a foot on a beam's end is the foot of that end's own place; of two ends the first curve has the place
         second = places.curve[k] != pairs[places.pair[k], 0]
-        last = places.curve[k] == places.other[k] and places.xi[k] == 1.0
-        doubled = places.at_point[k] and (second or last)
+        rolled = places.curve[k] == places.other[k]
+        on_beam = not rolled and not end and curves.angle[places.foot[k]] >= 0
+        doubled = places.at_point[k] and (second or on_beam or (rolled and places.xi[k] == 1.0))
         left = end and curves.angle[places.piece[k]] < 0 and not curves.is_point[places.curve[k]]
         allowed[k] = not beside[k] and (thick or not places.at_point[k]) and not doubled and not left
     return allowed, beside, depth

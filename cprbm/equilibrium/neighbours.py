@@ -40,7 +40,8 @@ def joints_of(curves: CurveArrays, places: Places, columns: Ints, pair: int) -> 
     joints, count = np.empty(places.pair.size, np.int64), 0
     for k in range(places.pair.size):
         own = places.pair[k] == pair and places.curve[k] == columns[pair, 0]
-        if own and not places.moves[k] and places.shares[k] == 0 and places.xi[k] < 1.0:
+        rolled_end = places.curve[k] == places.other[k] and places.xi[k] == 1.0
+        if own and not places.moves[k] and places.shares[k] == 0 and not rolled_end:
             joints[count] = k
             count += 1
     beside = np.zeros(count, np.bool_)
@@ -136,7 +137,10 @@ def short_runs(
         for i in range(joints.size):
             if i < joints.size - 1 and beside[i] and closed[joints[i]] and closed[joints[i + 1]]:
                 continue
-            if closed[joints[i]] and i - begin < LONGEST_RUN:
+            # beside another closed place an end keeps the contact: a point moves on a single curvature of the gap
+            k = joints[i]
+            crowded = places.xi[k] == 1.0 and _is_crowded(curves, places, closed, k)
+            if closed[k] and i - begin < LONGEST_RUN and not crowded:
                 runs[count, 0], runs[count, 1] = joints[begin], joints[i]
                 count += 1
             begin = i + 1

@@ -7,7 +7,7 @@ import time
 from dataclasses import dataclass, field, replace
 
 from cprbm.chain import add_rows, mechanism_of
-from cprbm.contact import contact_geometry
+from cprbm.contact import contact_geometry, hold_sections_upright
 from cprbm.continuation.assembly import assembled, landing_rows, without_repeated
 from cprbm.continuation.driver import ContactEvent, Driver, Passed, StepError
 from cprbm.continuation.path import Way, potential, turned
@@ -73,6 +73,8 @@ class Run:
         add_rows(mechanism)
         mechanism.rows.extend(landing_rows(mechanism))
         geometry = contact_geometry(mechanism)
+        if self.scene.theory == "shear":
+            hold_sections_upright(mechanism, geometry)
         if self.settings.formulation == "paper" and geometry.pairs:
             refuse_contacts(self.scene)
             every, geometry = geometry, paper_geometry(mechanism, geometry, self.settings.degree)

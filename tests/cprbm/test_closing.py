@@ -83,3 +83,70 @@ def test_what_is_closed_at_a_station_has_a_closing_load_that_is_not_beyond():
         assert found.size == pressed
         assert not pressed or 0.0 < found[0] <= station.value
     assert len(answer.events) == 1
+
+
+def under_a_leaf(*, gap=1.8, nose=(80.0, 4.0), along=(0.0, 1.0), stations=(1.8, 2.5), backwards=False):
+    """A leaf of 60 mm and a round nose (place along the leaf, radius) on a slider below, driven; lengths in mm."""
+    ends = [([0.0, 0.0], {"joint": "weld", "point": "A"}), ([0.06, 0.0], {"joint": "free"})]
+    (start, first), (end, last) = ends[::-1] if backwards else ends
+    place, radius = 1e-3 * nose[0], 1e-3 * nose[1]
+    below = -5e-4 - 1e-3 * gap - radius
+    return scene_from(
+        {
+            "name": "leaf",
+            "theory": "bending",
+            "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
+            "bodies": {
+                "ground": {"motion": "fixed", "points": {"A": [0.0, 0.0]}},
+                "slider": {"motion": "slides", "along": list(along), "points": {"Q": [0.08, -0.05]}},
+            },
+            "beams": {
+                "leaf": {
+                    "curve": {"kind": "line", "start": start, "end": end},
+                    "thickness": 1e-3,
+                    "width": 8e-3,
+                    "material": "steel",
+                    "start": first,
+                    "end": last,
+                }
+            },
+            "contacts": {
+                "nose": {
+                    "kind": "beam-circle",
+                    "beam": "leaf",
+                    "body": "slider",
+                    "center": [place, below],
+                    "radius": radius,
+                }
+            },
+            "drives": {"d": {"kind": "displacement", "point": "Q", "direction": list(along)}},
+            "stages": [{"name": "on", "steps": "d", "stations": [1e-3 * value for value in stations]}],
+            "probes": [
+                {"of": "nose", "quantity": "closing_load"},
+                {"of": "nose", "quantity": "force"},
+                {"of": "Q", "quantity": "reaction"},
+            ],
+        }
+    )
+
+
+@pytest.mark.parametrize("stations", [(1.8, 2.5), (1.0, 1.8, 4.0), (3.0,)])
+def test_a_driven_nose_closes_where_the_gap_ends(stations):
+    # reference: geometry, the leaf is at rest until the nose has gone through the gap; at a station, or between two
+    answer = cprbm.answer(under_a_leaf(nose=(40.0, 4.0), stations=stations), cprbm.Settings(links=20))
+    assert answer.completed, answer.sentence
+    assert answer.stations[-1].values["nose.closing_load"] == pytest.approx([1.8e-3], rel=1e-12)
+
+
+@pytest.mark.parametrize("links", [20, 40])
+def test_a_contact_leaves_the_tip_of_a_leaf_drawn_either_way(links):
+    """The nose comes under the round tip and moves inwards; the direction of the leaf's curve is no matter."""
+    reactions = []
+    for backwards in (False, True):
+        scene = under_a_leaf(
+            gap=-1.7, nose=(66.0, 4.0), along=(-1.0, 0.0), stations=(5.0, 6.0, 8.0), backwards=backwards
+        )
+        answer = cprbm.answer(scene, cprbm.Settings(links=links))
+        assert answer.completed, answer.sentence
+        reactions.append([station.values["Q.reaction"] for station in answer.stations])
+    assert np.array(reactions[0]) == pytest.approx(np.array(reactions[1]), rel=1e-9, abs=1e-9)

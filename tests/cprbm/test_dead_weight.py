@@ -82,3 +82,78 @@ def test_a_pull_ends_the_branch_where_the_contact_opens():
     assert answer.ending is Ending.BRANCH_ENDS
     assert (end.loss, end.what) == (Loss.CONTACT, "nose")
     assert abs(end.value) < 1e-4
+
+
+def between_leaves(noses, leaves, **stepped):
+    """Leaves (height) of 80 mm on the ground, or on a jaw, and noses (name, body, leaf, place, height); mm."""
+    ends = {"ground": [], "jaw": []}
+    beams = {}
+    for name, (height, body) in leaves.items():
+        ends[body].append(name)
+        line = {"kind": "line", "start": [0.0, 1e-3 * height], "end": [0.08, 1e-3 * height]}
+        beams[name] = {"curve": line, "thickness": 1e-3, "width": 8e-3, "material": "steel"}
+        beams[name] |= {"start": {"joint": "weld", "point": f"on {name}"}, "end": {"joint": "free"}}
+    bodies = {
+        body: {
+            **({"motion": "fixed"} if body == "ground" else {"motion": "slides", "along": [0.0, 1.0]}),
+            "points": {f"on {name}": beams[name]["curve"]["start"] for name in names},
+        }
+        for body, names in ends.items()
+        if names
+    }
+    contacts = {}
+    for name, (body, leaf, place, height) in noses.items():
+        bodies.setdefault(
+            body, {"motion": "slides", "along": [0.0, 1.0], "points": {f"on {body}": [1e-3 * place, 0.07]}}
+        )
+        circle = {"kind": "beam-circle", "beam": leaf, "body": body, "radius": 6e-3}
+        contacts[name] = {**circle, "center": [1e-3 * place, 1e-3 * height]}
+    return scene_from(
+        {
+            "name": "noses",
+            "theory": "bending",
+            "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
+            "bodies": bodies,
+            "beams": beams,
+            "contacts": contacts,
+            **stepped,
+            "probes": [
+                *({"of": name, "quantity": "force"} for name in noses),
+                *({"of": f"on {name}", "quantity": "displacement"} for name in bodies if name not in ends),
+                *({"of": f"on {name}", "quantity": "reaction"} for name in ends["ground"]),
+            ],
+        }
+    )
+
+
+def test_a_disk_gripped_by_like_leaves_moves_half_as_far_as_the_jaw():
+    # reference: symmetry about the disk
+    scene = between_leaves(
+        {"low": ("disk", "a", 60.0, 6.5), "high": ("disk", "b", 60.0, 6.5)},
+        {"a": (0.0, "ground"), "b": (13.0, "jaw")},
+        drives={"d": {"kind": "displacement", "point": "on b", "direction": [0.0, -1.0]}},
+        stages=[{"name": "grip", "steps": "d", "stations": [0.5e-3, 2e-3]}],
+    )
+    answer = cprbm.answer(scene, cprbm.Settings(links=20))
+    assert answer.completed, answer.sentence
+    for station in answer.stations:
+        assert station.values["on disk.displacement"] == pytest.approx([0.0, -0.5 * station.value], abs=1e-12)
+        assert station.values["low.force"] == pytest.approx(station.values["high.force"], rel=1e-9)
+
+
+def test_a_force_goes_through_a_body_between_two_leaves():
+    # reference: statics, both leaves together bear the force on the upper body
+    scene = between_leaves(
+        {"k1": ("low", "a", 60.0, 6.5), "k2": ("low", "b", 60.0, 33.5), "k3": ("high", "b", 70.0, 46.5)},
+        {"a": (0.0, "ground"), "b": (40.0, "ground")},
+        loads={"F": {"kind": "force", "point": "on high", "direction": [0.0, -1.0]}},
+        stages=[{"name": "on", "steps": "F", "stations": [0.5, 4.0]}, {"name": "off", "steps": "F", "stations": [0.5]}],
+    )
+    answer = cprbm.answer(scene, cprbm.Settings(links=20))
+    assert answer.completed, answer.sentence
+    for station in answer.stations:
+        borne = station.values["on a.reaction"] + station.values["on b.reaction"]
+        assert borne[1] == pytest.approx(station.value, rel=1e-9)
+        assert station.values["k1.force"][0] > 0.5 * station.value
+    first, _, last = answer.stations
+    assert last.values["on high.displacement"] == pytest.approx(first.values["on high.displacement"], rel=1e-9)
