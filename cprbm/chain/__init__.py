@@ -2,15 +2,22 @@
 
 from cprbm.chain.arrays import RowArrays, add_row_gradient, link_arrays, row_arrays, row_values
 from cprbm.chain.beam import BeamChain, ChainUnits, Theory
+from cprbm.chain.compiled import compiled
 from cprbm.chain.kernel import Blocks, Joints, Links, empty_blocks, evaluate_chains, strain_energy
 from cprbm.chain.loads import hidden_angles, hidden_flexibility
-from cprbm.chain.mechanism import Form, Mechanism, Row, mechanism_of
-from cprbm.chain.rows import add_rows, apart_ends, stop_angle
+from cprbm.chain.mechanism import AXES, PER_LINK, Direction, Form, Mechanism, Row, mechanism_of
+from cprbm.chain.rows import END, add_rows, apart_ends, ends_of, stop_angle, unit_direction
+from cprbm.chain.spline import POWERS, lost_compliance
 
 __all__ = [
+    "AXES",
+    "END",
+    "PER_LINK",
+    "POWERS",
     "BeamChain",
     "Blocks",
     "ChainUnits",
+    "Direction",
     "Form",
     "Joints",
     "Links",
@@ -21,14 +28,18 @@ __all__ = [
     "add_row_gradient",
     "add_rows",
     "apart_ends",
+    "compiled",
     "empty_blocks",
+    "ends_of",
     "evaluate_chains",
     "hidden_angles",
     "hidden_flexibility",
     "link_arrays",
+    "lost_compliance",
     "mechanism_of",
     "row_arrays",
     "row_values",
     "stop_angle",
     "strain_energy",
+    "unit_direction",
 ]

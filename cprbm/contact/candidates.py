@@ -22,9 +22,7 @@ from functools import cached_property
 
 import numpy as np
 
-from cprbm.chain import Mechanism
-from cprbm.chain.mechanism import Direction
-from cprbm.chain.rows import unit_direction
+from cprbm.chain import Direction, Mechanism, unit_direction
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
 from cprbm.contact.fixed import FREE, Ends, Sites, is_straight, on_end_body, places_at_feet
 from cprbm.contact.gap import Law, Places, gap_frame

@@ -24,7 +24,7 @@ from math import copysign, hypot, sqrt
 
 import numpy as np
 
-from cprbm.chain.compiled import compiled
+from cprbm.chain import compiled
 from cprbm.contact.curve import STENCIL, CurveArrays
 from cprbm_scene.answer import Array
 

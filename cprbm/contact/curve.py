@@ -29,8 +29,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.chain import BeamChain, Mechanism
-from cprbm.chain.spline import POWERS, lost_compliance
+from cprbm.chain import POWERS, BeamChain, Mechanism, lost_compliance
 from cprbm_scene import FreeEnd
 from cprbm_scene.answer import Array, Flags, Ints
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.chain.compiled import compiled
+from cprbm.chain import compiled
 from cprbm.contact.closest import depth_beyond, thickness_between
 from cprbm.contact.curve import STENCIL, CurveArrays
 from cprbm.contact.gap import Places

@@ -47,7 +47,7 @@ from __future__ import annotations
 from math import hypot, sqrt
 from typing import NamedTuple, Protocol
 
-from cprbm.chain.compiled import compiled
+from cprbm.chain import compiled
 from cprbm.contact.closest import curve_jet, lost_at, thickness_between
 from cprbm.contact.curve import STENCIL, CurveArrays
 from cprbm_scene.answer import Array, Flags, Ints

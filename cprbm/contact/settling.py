@@ -10,7 +10,7 @@ from math import hypot
 
 import numpy as np
 
-from cprbm.chain.compiled import compiled
+from cprbm.chain import compiled
 from cprbm.contact.closest import (
     ARRIVED,
     TURNED_BACK,

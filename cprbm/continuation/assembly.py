@@ -26,15 +26,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from cprbm.chain import Mechanism, Row, apart_ends, stop_angle
-from cprbm.chain.rows import unit_direction
+from cprbm.chain import Mechanism, Row, apart_ends, stop_angle, unit_direction
 from cprbm.continuation.closing import CLOSED, drawn_names, kept_open, least_gap, located, pressing, pressing_names
 from cprbm.continuation.driver import Driver, StepError
 from cprbm.continuation.path import Way
-from cprbm.equilibrium.contact_set import NotConvergedError
-from cprbm.equilibrium.rank import repeated_rows
-from cprbm.equilibrium.solving import Solved, equilibrium
-from cprbm.equilibrium.system import State, System, rest_state
+from cprbm.equilibrium import NotConvergedError, Solved, State, System, equilibrium, repeated_rows, rest_state
 from cprbm.settings import Settings, loose_bodies
 from cprbm_scene import Ending, Mistake, SceneError
 from cprbm_scene.answer import Array, Flags

@@ -28,11 +28,16 @@ import numpy as np
 
 from cprbm.contact import TOUCHING, Contacts, Geometry, taken, touching_as_drawn
 from cprbm.continuation.path import tangent
-from cprbm.equilibrium.contact_set import NotConvergedError, with_fixed_places
-from cprbm.equilibrium.factors import Springs
-from cprbm.equilibrium.neighbours import least_between
-from cprbm.equilibrium.solving import Solved, equilibrium
-from cprbm.equilibrium.system import State, System
+from cprbm.equilibrium import (
+    NotConvergedError,
+    Solved,
+    Springs,
+    State,
+    System,
+    equilibrium,
+    least_between,
+    with_fixed_places,
+)
 from cprbm_scene.answer import Array, Flags
 
 HAPPENED = 1e-10

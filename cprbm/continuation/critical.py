@@ -34,10 +34,7 @@ import numpy as np
 from cprbm.contact import taken
 from cprbm.continuation.closing import Pressed, pressing
 from cprbm.continuation.path import Reached, Way, tangent
-from cprbm.equilibrium.contact_set import NotConvergedError
-from cprbm.equilibrium.sharing import balanced_forces
-from cprbm.equilibrium.solving import Solved, at_state
-from cprbm.equilibrium.stability import Mode, softest
+from cprbm.equilibrium import Mode, NotConvergedError, Solved, at_state, balanced_forces, softest
 from cprbm_scene import BeamContact, Loss, SelfContact
 from cprbm_scene.answer import Array
 

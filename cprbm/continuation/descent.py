@@ -26,11 +26,7 @@ import numpy as np
 
 from cprbm.continuation.closing import with_stops
 from cprbm.continuation.path import potential
-from cprbm.equilibrium.contact_set import NotConvergedError
-from cprbm.equilibrium.factors import Springs
-from cprbm.equilibrium.solving import Solved, at_state
-from cprbm.equilibrium.stability import softest
-from cprbm.equilibrium.system import State, System
+from cprbm.equilibrium import NotConvergedError, Solved, Springs, State, System, at_state, softest
 from cprbm_scene.answer import Array, Flags
 
 STEPS = 300

@@ -47,11 +47,7 @@ from cprbm.continuation.critical import (
 )
 from cprbm.continuation.descent import descend
 from cprbm.continuation.path import Reached, Way, energy_before, jumped, turned
-from cprbm.equilibrium.certificate import certify
-from cprbm.equilibrium.contact_set import NotConvergedError
-from cprbm.equilibrium.solving import Solved, equilibrium
-from cprbm.equilibrium.stability import softest
-from cprbm.equilibrium.system import State, System
+from cprbm.equilibrium import NotConvergedError, Solved, State, System, certify, equilibrium, softest
 from cprbm.settings import Settings
 from cprbm_scene import Ending, Loss
 from cprbm_scene.answer import Array, Flags

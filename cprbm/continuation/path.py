@@ -26,8 +26,7 @@ import numpy as np
 
 from cprbm.chain import add_row_gradient, row_values, strain_energy
 from cprbm.contact import TOUCHING, lost_at
-from cprbm.equilibrium.solving import Solved
-from cprbm.equilibrium.system import State, System, hidden_forces
+from cprbm.equilibrium import Solved, State, System, hidden_forces
 from cprbm_scene.answer import Array
 
 BENT = 0.5

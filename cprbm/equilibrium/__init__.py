@@ -1,1 +1,35 @@
 """Equilibria of a mechanism: Newton's method, exact elimination with inertia, certificate, stability."""
+
+from cprbm.equilibrium.certificate import certify
+from cprbm.equilibrium.columns import contact_columns, contact_terms
+from cprbm.equilibrium.contact_set import NotConvergedError, with_fixed_places
+from cprbm.equilibrium.factors import Springs
+from cprbm.equilibrium.neighbours import least_between
+from cprbm.equilibrium.rank import repeated_rows
+from cprbm.equilibrium.sharing import balanced_forces, shared_multipliers
+from cprbm.equilibrium.solving import Solved, at_state, equilibrium
+from cprbm.equilibrium.stability import Mode, softest
+from cprbm.equilibrium.system import State, System, hidden_forces, rest_state, system_of
+
+__all__ = [
+    "Mode",
+    "NotConvergedError",
+    "Solved",
+    "Springs",
+    "State",
+    "System",
+    "at_state",
+    "balanced_forces",
+    "certify",
+    "contact_columns",
+    "contact_terms",
+    "equilibrium",
+    "hidden_forces",
+    "least_between",
+    "repeated_rows",
+    "rest_state",
+    "shared_multipliers",
+    "softest",
+    "system_of",
+    "with_fixed_places",
+]

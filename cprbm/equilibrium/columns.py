@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm.chain.compiled import compiled
+from cprbm.chain import compiled
 from cprbm.contact import (
     COUPLING,
     GRADIENT,

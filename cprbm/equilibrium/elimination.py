@@ -31,9 +31,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.chain import Blocks, RowArrays
-from cprbm.chain.compiled import compiled
-from cprbm.chain.mechanism import PER_LINK
+from cprbm.chain import PER_LINK, Blocks, RowArrays, compiled
 from cprbm.contact import Columns
 from cprbm_scene.answer import Array, Flags, Ints
 

@@ -6,7 +6,7 @@ from math import isfinite
 
 import numpy as np
 
-from cprbm.chain.compiled import compiled
+from cprbm.chain import compiled
 from cprbm.contact import BEND, CORNER, Columns, CurveArrays, Places, move_places, settle_near
 from cprbm.equilibrium.columns import contact_columns
 from cprbm.equilibrium.linear import Numbers, Work, correction, reduced_system, restored

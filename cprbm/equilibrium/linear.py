@@ -12,9 +12,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.chain import Blocks, Joints, Links, RowArrays, add_row_gradient, evaluate_chains, row_values
-from cprbm.chain.compiled import compiled
-from cprbm.chain.mechanism import PER_LINK
+from cprbm.chain import (
+    PER_LINK,
+    Blocks,
+    Joints,
+    Links,
+    RowArrays,
+    add_row_gradient,
+    compiled,
+    evaluate_chains,
+    row_values,
+)
 from cprbm.contact import Columns
 from cprbm.equilibrium.elimination import Beams, Border, Reached, border_block, eliminate, solve_columns
 from cprbm_scene.answer import Array, Flags, Ints

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm.chain.compiled import compiled
+from cprbm.chain import compiled
 from cprbm.contact import CORNER, FINDING, CurveArrays, Places, Sites, movable, picked, settle
 from cprbm.equilibrium.iteration import OVERLAP, beside_points, place_on_beam
 from cprbm_scene.answer import Array, Flags, Ints

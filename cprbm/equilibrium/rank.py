@@ -18,8 +18,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg.lapack import dpstrf
 
-from cprbm.chain import add_row_gradient
-from cprbm.chain.mechanism import PER_LINK
+from cprbm.chain import PER_LINK, add_row_gradient
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
 

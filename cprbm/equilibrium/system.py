@@ -12,8 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from cprbm.chain import Joints, Links, Mechanism, RowArrays, hidden_flexibility, link_arrays, row_arrays
-from cprbm.chain.mechanism import PER_LINK
+from cprbm.chain import PER_LINK, Joints, Links, Mechanism, RowArrays, hidden_flexibility, link_arrays, row_arrays
 from cprbm.contact import Contacts, Geometry, open_contacts
 from cprbm.equilibrium.elimination import Beams, Border
 from cprbm.equilibrium.linear import Numbers

@@ -20,7 +20,7 @@ import numpy as np
 
 from cprbm.chain import Mechanism
 from cprbm.contact import Columns, Geometry, Places, places_at
-from cprbm.equilibrium.columns import contact_columns
+from cprbm.equilibrium import contact_columns
 from cprbm.paper.fit import Boundary, fitted, fitted_columns, write_basis, write_fitted_gaps
 from cprbm_scene import BeamContact, LineContact, Mistake, Scene, SceneError, SelfContact
 from cprbm_scene.answer import Array, Flags, Ints

@@ -41,7 +41,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.chain.compiled import compiled
+from cprbm.chain import compiled
 from cprbm.contact import Columns
 from cprbm_scene.answer import Array, Flags, Ints
 

@@ -16,11 +16,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm.chain import Mechanism
-from cprbm.chain.rows import ends_of
+from cprbm.chain import Mechanism, ends_of
 from cprbm.contact import Geometry, fixed_places, near_pairs, new_counters, settle, sides_at_rest
-from cprbm.equilibrium.columns import contact_terms
-from cprbm.equilibrium.solving import Solved
+from cprbm.equilibrium import Solved, contact_terms
 from cprbm.paper.contacts import FittedLaw, beyond_ends
 from cprbm.paper.fit import Boundary, fitted
 from cprbm_scene.answer import Array

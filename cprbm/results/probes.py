@@ -24,8 +24,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cprbm.chain import stop_angle
-from cprbm.chain.rows import END, ends_of
+from cprbm.chain import END, ends_of, stop_angle
 from cprbm.contact import Geometry
 from cprbm.continuation.path import potential
 from cprbm.results.statics import NO_FORCE, Statics, cross, pin_moments, stop_moment

@@ -28,10 +28,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.chain.mechanism import AXES
-from cprbm.chain.rows import END, ends_of, unit_direction
+from cprbm.chain import AXES, END, ends_of, unit_direction
 from cprbm.contact import Geometry
-from cprbm.equilibrium.columns import contact_terms
+from cprbm.equilibrium import contact_terms
 from cprbm.results.view import View
 from cprbm_scene import BeamContact, FreeEnd
 from cprbm_scene.answer import Array, BeamState, PointForce, frozen_array

@@ -11,10 +11,7 @@ from cprbm.contact import contact_geometry, hold_sections_upright
 from cprbm.continuation.assembly import assembled, landing_rows, without_repeated
 from cprbm.continuation.driver import ContactEvent, Driver, Passed, StepError
 from cprbm.continuation.path import Way, potential, turned
-from cprbm.equilibrium.certificate import certify
-from cprbm.equilibrium.contact_set import NotConvergedError
-from cprbm.equilibrium.solving import equilibrium
-from cprbm.equilibrium.system import System, system_of
+from cprbm.equilibrium import NotConvergedError, System, certify, equilibrium, system_of
 from cprbm.paper.contacts import paper_geometry, refuse_contacts
 from cprbm.paper.inspection import Inspection
 from cprbm.results.probes import probe_values, states_of_contacts, touching_places

@@ -20,9 +20,7 @@ import numpy as np
 
 from cprbm.chain import Mechanism, hidden_angles
 from cprbm.contact import STENCIL, gap_frame
-from cprbm.equilibrium.sharing import shared_multipliers
-from cprbm.equilibrium.solving import Solved
-from cprbm.equilibrium.system import hidden_forces
+from cprbm.equilibrium import Solved, hidden_forces, shared_multipliers
 from cprbm_scene import Scene
 from cprbm_scene.answer import Array
 
