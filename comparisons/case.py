@@ -128,7 +128,7 @@ def _verdict(
     completed: bool,
 ) -> Verdict:
     """All findings with their sentences; the worst decides, and its sentence comes first."""
-    scene, of_rows = runs.scene, judge_case(rows)
+    scene, of_rows = runs.scene, judge_case(runs.scene, rows)
     crossings = next((found.crossings for found in audits.values() if found.crossings), ())
     findings: list[Finding] = [
         *((Word.DIFFER, Reason.EVENTS, said.closing_sentence(scene, closing)) for closing in far_closings(runs)),

@@ -30,20 +30,25 @@ difference of the stated M, which is linear between the stated places.  Elements
 *Path.*  Between two stations of one branch the trapezoidal rule gives ΔΠ = h (g₀ + g₁)/2.  The allowance is the
 difference of both products, and twice the error term h Δδ/12, with the mean change δ of g per step at both stations.
 Of two stations alone only a loss of energy counts: a reaction may rise and fall.  A silent jump to another state loses
-energy that no work accounts for.
+energy that no work accounts for.  Under a load u rises with P on a path of minima, whatever contacts close.  The
+reaction of a drive may rise and fall between two stations: an interval of a drive is not judged if a contact closes or
+opens there.  A silent jump in such an interval is not seen.
+
+*Critical points.*  The energy beyond a critical point belongs to a value up to the next station: the work up to that
+station is allowed.  Without a next station the energy is not judged.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import groupby
+from itertools import groupby, pairwise
 
 import numpy as np
 
 from comparisons.audit.state import BESIDE, Finding, StationState, about, gauss, unit
 from comparisons.formats import at_station, load_text
 from comparisons.quantities import arc_lengths
-from cprbm_scene.answer import Answer, Array
+from cprbm_scene.answer import Answer, Array, Flags
 from cprbm_scene.statement import (
     DisplacementDrive,
     FreeEnd,
@@ -307,18 +312,32 @@ def path(scene: Scene, answer: Answer, states: Sequence[StationState]) -> Iterat
         lost = np.diff(strain - work) - 0.5 * h * (g[1:] + g[:-1])
         error = 2.0 * even + FITTED * (strain + np.abs(work)) + ENERGY_ROUND_OFF * of[0].natural
         allowed = np.abs(h * np.diff(g)) + np.abs(h * np.diff(slope)) / 6.0 + error[1:] + error[:-1]
-        for i, off in enumerate(np.abs(lost) if len(x) > 2 else -lost):
+        for i in np.flatnonzero(_judged(answer, of)):
+            off = abs(lost[i]) if len(x) > 2 else -lost[i]
             yield (
                 off - allowed[i],
                 f"from {at_station(scene, stage, x[i])} to {load_text(scene, stage, x[i + 1])} the energy changes by "
                 f"{lost[i]:.3g} J more than the work",
             )
-    for critical in answer.critical:
-        gained = 0.0 if critical.after is None else critical.after - critical.energy
-        yield (
-            gained - CONTINUOUS * abs(critical.energy) - (ENERGY_ROUND_OFF * states[0].natural if states else 0.0),
-            f"beyond {at_station(scene, critical.stage, critical.value)} the energy is {gained:.3g} J larger",
-        )
+    for branch, critical in enumerate(answer.critical, start=1):
+        beyond = [state for state in states if (state.station.stage, state.station.branch) == (critical.stage, branch)]
+        if critical.after is not None and beyond:
+            gained, allowed = critical.after - critical.energy, CONTINUOUS * abs(critical.energy)
+            allowed += abs(_driving(beyond[0]) * (beyond[0].station.value - critical.value))
+            yield (
+                gained - allowed - ENERGY_ROUND_OFF * beyond[0].natural,
+                f"beyond {at_station(scene, critical.stage, critical.value)} the energy is {gained:.3g} J larger",
+            )
+
+
+def _judged(answer: Answer, states: Sequence[StationState]) -> Flags:
+    """Intervals (k-1,) between k states in which the energy is judged: under a drive no contact closes or opens."""
+    first, x = states[0], np.array([state.station.value for state in states])
+    events = [event.value for event in answer.events if event.stage == first.stage.name]
+    between = ((x[:-1, None] < events) & (x[1:, None] > events)) | ((x[:-1, None] > events) & (x[1:, None] < events))
+    pressing = [{name for name, of in state.station.contacts.items() if of.active} for state in states]
+    same = np.array([before == after for before, after in pairwise(pressing)], dtype=bool)
+    return np.asarray((same & ~between.any(axis=1)) | (first.stage.steps in first.scene.loads))
 
 
 def _driving(state: StationState) -> float:

@@ -15,7 +15,8 @@ A contradiction is no evidence against a solver, and the row is undecided, in fo
 * A contact presses in one solver only, and neither its force nor another probe differs notably (EVENT).
 
 Rows with the reason NOT_UNIQUE take no case down.  Rows with the reasons COARSE and EVENT take no case down if the
-probe agrees at most of its stations.  The sentence of the verdict counts such rows.
+probe agrees at most of its stations.  A COARSE row takes the case down if its solvers differ by more than the row's
+limit.  The sentence of the verdict counts such rows.
 
 *Calibration*: true errors beside the exact answer against stated uncertainties.
 
@@ -88,12 +89,12 @@ def _judge(runs: Runs, row: Row, *, faint: bool) -> Judged:
     return Word.UNDECIDED, Reason.COARSE if bounds.total > limit else Reason.THEORY
 
 
-def judge_case(rows: Sequence[Row]) -> tuple[Word, Reason | None]:
+def judge_case(scene: Scene, rows: Sequence[Row]) -> tuple[Word, Reason | None]:
     """Word and reason of all rows together."""
     for word in (Word.DIFFER, Word.UNDECIDED):
         reasons = {row.reason for row in rows if row.word is word}
         for reason in (each for each in Reason if each in reasons):
-            if word is Word.DIFFER or _decides(rows, reason):
+            if word is Word.DIFFER or _decides(scene, rows, reason):
                 return word, reason
     if not any(row.word is Word.AGREE for row in rows):
         return Word.UNDECIDED, next((row.reason for row in rows if row.reason is not None), Reason.RUN_ENDED)
@@ -144,12 +145,15 @@ def _same_resultant(runs: Runs, row: Row) -> bool:
     return bounds is not None and float(np.linalg.norm(v_c - v_f)) <= bounds.total
 
 
-def _decides(rows: Sequence[Row], reason: Reason) -> bool:
+def _decides(scene: Scene, rows: Sequence[Row], reason: Reason) -> bool:
     """Whether undecided rows of a reason make the case undecided."""
     agreeing = Counter(row.probe.name for row in rows if row.word is Word.AGREE)
     if reason is Reason.NOT_UNIQUE:
         return not agreeing
     if reason not in RESOLVABLE:
+        return True
+    coarse = (row for row in rows if reason is Reason.COARSE and row.reason is reason)
+    if any(row.difference > scene.limit(row.probe) * row.scale for row in coarse):
         return True
     unresolved = Counter(row.probe.name for row in rows if row.reason in RESOLVABLE)
     return any(count >= agreeing[name] for name, count in unresolved.items())

@@ -4,8 +4,6 @@ The gradient of the Lagrangian by z is the chains' gradient plus Σ μ ∂f/∂z
 with prescribed value the gradient is f(z) − f*.
 """
 
-from __future__ import annotations
-
 from math import cos, sin
 from typing import NamedTuple
 

@@ -8,8 +8,6 @@ variable ``NUMBA_DISABLE_JIT=1`` the same functions are interpreted.  An install
 compiles at the first solve, and says so once.
 """
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable
 from pathlib import Path

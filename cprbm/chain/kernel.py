@@ -41,8 +41,6 @@ then turns them to the unknowns by dN = e·dn + Q dθ and dQ = e′·dn − N d�
 equations; quadratic terms change sign: +L/2 (c N² + s Q²), k D (d − D/2), +w Q̂²/2.
 """
 
-from __future__ import annotations
-
 from math import cos, sin
 from typing import NamedTuple
 

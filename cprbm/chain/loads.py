@@ -5,8 +5,6 @@ flexibility is missing, of order h³ for forces and h for moments.  The potentia
 equilibrium of the rest of the beam is independent of the part.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.sparse import csr_matrix
 

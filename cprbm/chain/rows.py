@@ -16,8 +16,6 @@ A stop has the rows β − β_least ≥ 0 and β_most − β ≥ 0.  The names o
 ``.turn``; a stop's rows are ``stop.least`` and ``stop.most``; the row of a load or a drive has the same name.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import hypot, pi, remainder, tau
 from typing import Literal

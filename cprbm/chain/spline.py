@@ -38,8 +38,6 @@ on all pieces but the half links at the ends.  A half link beyond a clamp or a p
 own, a half link at a free end more; both follow from a cantilever loaded near its two ends.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal

@@ -15,8 +15,6 @@ The formulation ``paper`` measures the gap of two beams by a fitted boundary (:m
 The places of such a contact are places like others; the law writes their gaps and the border columns.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 

@@ -18,8 +18,6 @@ open curve, and at a convex corner of a polyline or of the thickness.  There the
 corner, and the closest point does not move along the curve.
 """
 
-from __future__ import annotations
-
 from math import copysign, hypot, sqrt
 
 import numpy as np

@@ -18,8 +18,6 @@ corners are places.  A circle smaller than a link is a corner too.  A bend of a 
 is a curve of its own, on which a point of contact moves.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple

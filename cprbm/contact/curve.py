@@ -20,8 +20,6 @@ Complex weights add up to 1, and C follows rigid motions exactly; C has no secon
    polyline has straight pieces, a smooth edge has the pieces of a cubic spline.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import comb

@@ -17,8 +17,6 @@ minimum of the gap between beam and face.  The same holds for the face before th
 contact on a bend is the same point of the beam, which moves on with the beam.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm.contact.candidates import Geometry, on_edge, taken

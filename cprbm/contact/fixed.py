@@ -4,8 +4,6 @@ A place is the same in two groups if pair, curve, piece and parameter are equal;
 Both groups have the order of all possible places, so that the search for the same place goes on behind the last.
 """
 
-from __future__ import annotations
-
 from math import hypot
 from typing import NamedTuple
 

@@ -42,8 +42,6 @@ dξ = −(λ_ξ + λ_ξu + λ_ξF dF)/λ_ξξ.  At a corner C_A' = 0 and all der
 :class:`Row` below and vectors over the nodes; λ_uu less λ_ξu²/λ_ξξ is a form of rank three in q, e and λ_ξu.
 """
 
-from __future__ import annotations
-
 from math import hypot, sqrt
 from typing import NamedTuple, Protocol
 

@@ -17,8 +17,6 @@ on the left, β ≥ 0.  Where the edge runs on behind the pin, the angle from th
 in the same way.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise

@@ -4,8 +4,6 @@ A foot is the closest point near the last foot.  A moving place makes λ station
 unknowns follows from the linear equation of :mod:`cprbm.contact.gap`.
 """
 
-from __future__ import annotations
-
 from math import hypot
 
 import numpy as np

@@ -18,8 +18,6 @@ or drive acts, with a row that prescribes s of every such body.  The body with t
 to the next body.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace

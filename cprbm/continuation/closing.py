@@ -17,8 +17,6 @@ g = −CLOSED there, so that the active set closes the pair in the least gap.  A
 −g where the pair is open.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial

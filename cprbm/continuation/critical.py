@@ -23,8 +23,6 @@ bifurcation at once.  A bent beam may be drawn taut.  There F grows like (v_t âˆ
 evenly to zero.  No force with a limit has this law.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial

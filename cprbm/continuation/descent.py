@@ -18,8 +18,6 @@ Where both senses lead equally low, as at a symmetric bifurcation, the sense of 
 a single load: u has all of them in fixed parts.  Neither the mesh nor the order of assembly decides.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

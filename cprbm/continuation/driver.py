@@ -17,8 +17,6 @@ bifurcation.  The stage chooses the end of the solve or a descent to a minimum. 
 choice of the stage a branch with two ways on ends, and others are passed only to a state near by.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cache, partial

@@ -18,8 +18,6 @@ f*, μ*   targets of the rows, linear in t
 built-in cases, steps to another branch 0.28 and 0.05 at least, with turns beyond 0.1 rad: there 0.25 is an alarm.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -13,8 +13,6 @@ longest beam; over a link that is an angle of some ε/h, in two neighbouring joi
 over h.  Four times the sum is the floor.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

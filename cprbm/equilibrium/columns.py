@@ -22,8 +22,6 @@ of −R⁻¹ = S⁻¹/F.  Two places with a shared force have a common column, t
 A column has entries at the nodes of two pieces, at most six nodes each: it reaches one chain or two.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm.chain import compiled

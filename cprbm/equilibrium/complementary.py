@@ -20,8 +20,6 @@ is the method of Josephy (1979) for F ≥ 0, g ≥ 0.  An exchange of all places
 same sets: the forces of a zone that is too long alternate in sign from joint to joint.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
 

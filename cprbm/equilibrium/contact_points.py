@@ -11,8 +11,6 @@ The equilibrium is solved again until the rule changes nothing.  Where moving pl
 and made points anew; then the moving place with the flattest gap is given up.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 

@@ -7,8 +7,6 @@ along the path's tangent.  A moving place is an unknown; a closed moving place s
 piece.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

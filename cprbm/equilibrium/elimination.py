@@ -24,8 +24,6 @@ So the Hessian has neg(A) + neg(G) negative eigenvalues.  The equalities account
 rest is the number of independent directions with falling energy.
 """
 
-from __future__ import annotations
-
 from math import cos, sin
 from typing import NamedTuple
 

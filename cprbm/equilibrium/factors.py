@@ -4,8 +4,6 @@ The chains are eliminated by :mod:`cprbm.equilibrium.linear`; LAPACK factors the
 a block of two has a single negative eigenvalue.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

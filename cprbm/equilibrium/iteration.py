@@ -1,7 +1,5 @@
 """An iteration with a closed set, compiled: changes of the set, linear system, changes of forces and places."""
 
-from __future__ import annotations
-
 from math import isfinite
 
 import numpy as np

@@ -5,8 +5,6 @@ A Newton step solves the border by LU factors, :mod:`cprbm.equilibrium.iteration
 has symmetric factors of the border with the inertia, :mod:`cprbm.equilibrium.factors`.
 """
 
-from __future__ import annotations
-
 from math import isfinite
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 The joints of a pair's first curve are in the order of the curve; places of a shared force are no joints here.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm.chain import compiled

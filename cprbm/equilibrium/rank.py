@@ -13,8 +13,6 @@ level, as the other two do.  Such rows are left out and checked afterwards.  Onc
 Cholesky's factorisation of G with pivots gives the rank.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.linalg.lapack import dpstrf
 

@@ -4,8 +4,6 @@ A repeated row's unit force is balanced by the other rows and the chains' forces
 compliance chooses the amounts with the least energy of stretching, Σ L N²/EA, with the same EA of all links.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.linalg import lstsq
 

@@ -4,8 +4,6 @@ The active set decides about contacts (:mod:`cprbm.equilibrium.contact_points`).
 and the gradient of the final state, the closed places included.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 

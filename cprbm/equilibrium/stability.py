@@ -12,8 +12,6 @@ S vanishes on infeasible directions.  The largest eigenvalue belongs to the smal
 states the most negative eigenvalue belongs to the negative curvature nearest to zero.  κ is in EI/ℓ².
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

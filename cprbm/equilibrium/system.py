@@ -5,8 +5,6 @@ multiplier μ* of a row with prescribed force.  Repeated rows are left out
 (:mod:`cprbm.equilibrium.rank`).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -11,8 +11,6 @@ with an offset towards the other beam.  The nearest related joints at rest show 
 the boundary on which the joints stay.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

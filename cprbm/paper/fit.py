@@ -34,8 +34,6 @@ The offset points turn, dA_i = dx_i + A_τ dτ_i, and with them goes Σ t_i dτ_
 beside the diagonal; a point's block has its two eigenvectors (:mod:`cprbm.equilibrium.columns`).
 """
 
-from __future__ import annotations
-
 from math import atan2, cos, hypot, sin
 from typing import NamedTuple
 

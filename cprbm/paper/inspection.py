@@ -12,8 +12,6 @@ The notes name errors that the form itself leaves:
 * The boundary is continued beyond the ends.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm.chain import Mechanism, ends_of

@@ -20,8 +20,6 @@ off the normal has moved t sin ε along the exact offset curve, whose curvature 
 the tangent.  The distance from the curve is t ε²/(2 |1 − tκ|) + …, of fourth order in 1/N.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -15,8 +15,6 @@ Clamp and contact share the force of a zone beside a weld, and a moment at an ow
 zone begins at the beam's end.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Literal

@@ -19,8 +19,6 @@ q (c − a) and q ∫ x ds from the load's begin a to c, the nearer of the load'
 With shear α differs from θ by the angle of (1 + N/EA, Q/GA_s); in the other theories α = θ.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cache
 from math import nan

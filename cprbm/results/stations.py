@@ -1,7 +1,5 @@
 """The run through all stages and stations, and the answer sheet."""
 
-from __future__ import annotations
-
 import logging
 import time
 from dataclasses import dataclass, field, replace

@@ -10,8 +10,6 @@ C_A, C_B place on the first curve of a row, foot on the second; F N acts at C_A,
 The :class:`Samples` are the same at all stations.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple

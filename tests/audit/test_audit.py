@@ -100,6 +100,44 @@ def test_energy_that_a_silent_jump_loses_is_a_complaint(solver):
     assert any("more than the work" in sentence for sentence in audit(scene, silent).complaints)
 
 
+@cache
+def cam():
+    """A leaf on an eccentric disc that turns: the contact closes at 30 degrees and opens at 150 degrees."""
+    data = cantilever_data(force(0.0, -1.0), [1.0])
+    eccentric, down = [(0.62 + shift) * LENGTH for shift in (0.0, 0.04)], -0.15 * LENGTH
+    data["bodies"]["cam"] = {"motion": "turns", "points": {"O": [eccentric[0], down]}, "about": "O"}
+    disc = {"kind": "beam-circle", "beam": "beam", "body": "cam", "center": [eccentric[1], down]}
+    disc["radius"] = 0.13 * LENGTH - 0.5 * THICKNESS
+    data["contacts"] = {"disc": disc}
+    data["loads"] = {}
+    data["drives"] = {"turn": {"kind": "rotation", "body": "cam"}}
+    stages = {"round": [90.0, 360.0], "back": [180.0, 90.0, 0.0]}
+    data["stages"] = [
+        {"name": name, "steps": "turn", "stations": np.radians(degrees).tolist()} for name, degrees in stages.items()
+    ]
+    data["probes"] = [{"of": "disc", "quantity": "force"}, {"of": "cam", "quantity": "reaction_moment"}]
+    return scene_from(data)
+
+
+@EACH
+def test_a_contact_that_closes_between_two_stations_of_a_drive_is_no_silent_jump(solver):
+    answer = SOLVERS[solver](cam())
+    assert answer.completed, answer.sentence
+    assert audit(cam(), answer).complaints == ()
+
+
+def test_the_energy_beyond_a_critical_point_may_gain_the_work_up_to_the_next_station():
+    scene = scene_from(branches.snap([[0.0, 0.61, 0.69]]))
+    answer = SOLVERS["bending"](scene)
+    (critical,) = answer.critical
+    station = next(station for station in answer.stations if station.branch == 1)
+    moment = station.forces.moment[station.forces.source.index("turn")]
+    work = abs(station.value - critical.value) * abs(moment) + 0.01 * abs(critical.energy)
+    for gained, quiet in ((0.99 * work, True), (1.01 * work, False)):
+        altered = replace(answer, critical=(replace(critical, after=critical.energy + gained),))
+        assert (audit(scene, altered).complaints == ()) is quiet
+
+
 @pytest.mark.parametrize(
     "edge",
     [

@@ -264,13 +264,19 @@ WORDS = {
 )
 def test_words_of_rows_of_one_probe_make_the_word_of_the_case(rows, case):
     """A contradiction decides; a minority of unresolved rows, and rows that are not unique, decide nothing."""
-    assert judge_case([judged(*WORDS[each]) for each in rows]) == WORDS[case]
+    assert judge_case(RUNS.scene, [judged(*WORDS[each]) for each in rows]) == WORDS[case]
+
+
+@pytest.mark.parametrize(("difference", "word"), [(0.99 * LIMIT, "A"), (1.01 * LIMIT, "C")])
+def test_a_coarse_row_whose_solvers_differ_by_more_than_the_limit_decides(difference, word):
+    coarse = replace(judged(*WORDS["C"]), difference=difference)
+    assert judge_case(RUNS.scene, [coarse, *[judged(*WORDS["A"])] * 6]) == WORDS[word]
 
 
 def test_a_minority_of_all_rows_decides_where_it_is_the_majority_of_a_probe():
     rows = [("a", "A")] * 10 + [("b", "C"), ("b", "C"), ("b", "A")]
     found = [replace(judged(*WORDS[word]), probe=Probe(of=of, quantity="rotation")) for of, word in rows]
-    assert judge_case(found) == WORDS["C"]
+    assert judge_case(RUNS.scene, found) == WORDS["C"]
 
 
 def test_the_worst_of_words():
