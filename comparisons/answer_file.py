@@ -11,8 +11,6 @@ of fixed size add and subtract without rounding: the sums of the differences are
 the orders, then the first bytes of all z, the second bytes, and so on, compressed.  Equal arrays stand once.
 """
 
-from __future__ import annotations
-
 import gzip
 import json
 import math

@@ -1,7 +1,5 @@
 """The verdict on a case: two answers, their rows and events, the audits, and the sentences."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 

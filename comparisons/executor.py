@@ -8,8 +8,6 @@ Every child ends with the process that asked for the work, also where that proce
 semaphores, which on Linux are files in ``/dev/shm``; in a container this folder may be absent or read-only.
 """
 
-from __future__ import annotations
-
 import gc
 import logging
 import os

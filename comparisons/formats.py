@@ -5,8 +5,6 @@ unit everywhere: in a scene in mm and N a moment has N·mm.  A quantity without 
 prefix for the largest value, one prefix in a table.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -16,8 +16,6 @@ bracket, gains the relative change of the slope in the bracket (about the table'
 The solvers derive their own geometry and hand over none of it.
 """
 
-from __future__ import annotations
-
 from typing import TypeAlias, assert_never
 
 import numpy as np

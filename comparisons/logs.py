@@ -1,7 +1,5 @@
 """Log records of solvers and harness: printed on standard error on request, and counted for progress bars."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

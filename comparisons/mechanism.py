@@ -1,7 +1,5 @@
 """Mechanisms and comparisons from Python: tables, files and drawings in one call."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path

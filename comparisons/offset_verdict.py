@@ -12,8 +12,6 @@ A row (a spacing, N and t) differs where at some point d_i > u_i + r_i, is undec
 more than the verdict limit (or a point lies beyond the exact curve's ends), and agrees otherwise.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -22,8 +22,6 @@ Mech. 19 (1952) 526).  Three meshes show the order.  Two meshes do not, and thei
 order 1.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -23,8 +23,6 @@ of the drive (:mod:`comparisons.reactions`).  The work–energy reaction follows
 use the reaction.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Origin of a number besides its question: sources, libraries, Python and machine."""
 
-from __future__ import annotations
-
 import os
 import platform
 import sys

@@ -40,8 +40,6 @@ therefore the largest moment of the balance: of supports, of drives and of the l
 E·I/ℓ per radian of the softest beam, whether or not its reaction is a probe.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

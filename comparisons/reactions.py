@@ -37,8 +37,6 @@ F₁ − 2F + F₂ = Jh(1 − ξ). A quarter of |F₁ − 2F + F₂| bounds both
 **Multiplier.** All drives of a point together exert the force Σ F_j n_j on the point; the F_j follow by least squares.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum

@@ -1,7 +1,5 @@
 """Sentences of a verdict: the finding, its place, the solver with the uncertainty, and the next command."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -4,8 +4,6 @@ An answer is complete if it says so, has every station of every stage and no oth
 number is finite and has the shape of its probe, and branches end at critical points only.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace

@@ -5,8 +5,6 @@ writes, at once, into ``.unfinished`` of the folder of a run.  A run that comes 
 damaged file is ignored with a note.
 """
 
-from __future__ import annotations
-
 import logging
 import shutil
 from collections.abc import Callable, Collection, Iterator, Mapping

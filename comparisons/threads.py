@@ -1,7 +1,5 @@
 """Environment for linear algebra on one thread; a module of its own, because the program sets it before all imports."""
 
-from __future__ import annotations
-
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
 )

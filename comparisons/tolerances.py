@@ -23,8 +23,6 @@ solvers' f; where a solver is asked alone, its own values are.  The solid has an
 20 along.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace

@@ -3,8 +3,6 @@
 A file stays whole after a kill or a loss of power.
 """
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Iterable, Mapping

@@ -8,8 +8,6 @@ A table has a header of names and units, ``x [mm], y [mm]``, and may have furthe
 comment that begin with ``#``.  Columns are separated by commas, semicolons or tabs; numbers have a decimal point.
 """
 
-from __future__ import annotations
-
 import ast
 import csv
 import math

@@ -1,7 +1,5 @@
 """The audit of an answer: complaints, remarks, and the largest unbalance."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 
 import numpy as np

@@ -22,8 +22,6 @@ crossing is a pair with a contact, with a touch or an overlap at rest, such as a
 All distances carry the errors of fine polylines and of the solvers' penalties.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import cache
 

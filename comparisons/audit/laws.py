@@ -38,8 +38,6 @@ opens there.  A silent jump in such an interval is not seen.
 station is allowed.  Without a next station the energy is not judged.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from itertools import groupby, pairwise
 

@@ -27,8 +27,6 @@ extrapolation of the CPRBM in ``auto`` from N = 160, 320 and 640, with the uncer
 :mod:`comparisons.verdict.uncertainty`.  An error that is not clearly larger than U says nothing.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass

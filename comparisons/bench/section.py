@@ -5,8 +5,6 @@ if the errors at this size and at all larger sizes are no larger.  Its time lies
 and the size before, in the logarithms of error and time; without a size before, the time is the time of the size.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """``cprbm solve`` and ``view``: the answer of a single solver, as tables, files and pictures."""
 
-from __future__ import annotations
-
 import math
 from contextlib import suppress
 from dataclasses import replace

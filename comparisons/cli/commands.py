@@ -4,8 +4,6 @@ A list of commands, and the help of a command, load no command's module: the mod
 tools stand in ``tests`` and ``benchmarks`` of a checkout, and the wheel has none of them.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields

@@ -3,8 +3,6 @@
 Every library is imported in a separate process: without a library of the system the import may end the process.
 """
 
-from __future__ import annotations
-
 import platform
 import shlex
 import subprocess

@@ -1,7 +1,5 @@
 """``cprbm new``, ``import`` and ``schema``: scene files to start from."""
 
-from __future__ import annotations
-
 import json
 import re
 from importlib.resources import files

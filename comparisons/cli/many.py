@@ -1,7 +1,5 @@
 """``cprbm sweep``, ``tolerance`` and ``optimise``: a scene at many values of its parameters."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Options of the commands as data: readers of their values, and groups of options that commands share."""
 
-from __future__ import annotations
-
 import logging
 import math
 import os

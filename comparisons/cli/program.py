@@ -1,7 +1,5 @@
 """Entry point of ``cprbm``: every end, also during the import of modules, has a sentence and an exit code."""
 
-from __future__ import annotations
-
 import os
 import sys
 

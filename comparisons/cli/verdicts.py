@@ -3,8 +3,6 @@
 After every result the page and the JSON file are whole: an interrupted command leaves all finished work.
 """
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager

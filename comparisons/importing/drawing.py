@@ -5,8 +5,6 @@ for gmsh therefore needs the ending of its format, and only the ending ``.geo`` 
 process, and a wrong file may end the process: gmsh reads in a process of its own.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -19,8 +19,6 @@ A line or an arc is exact to round-off: δ is at most EXACT·L.  A spline goes t
 many each time until δ is at most the allowed distance.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """Brief report of a comparison: the verdict, the rows nearest their limits, and the next command."""
 
-from __future__ import annotations
-
 import re
 import textwrap
 from collections import Counter

@@ -1,7 +1,5 @@
 """Tables of answers and comparisons: stations, critical points, branches, claims, reactions, certificates, seconds."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 from itertools import groupby

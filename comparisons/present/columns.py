@@ -1,7 +1,5 @@
 """Records of a presentation: columns and tables of texts, plain data of JSON, figures, and sections of a page."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace

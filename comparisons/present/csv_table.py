@@ -1,7 +1,5 @@
 """Answers and comparisons as tables with a number on every line: records in SI, files in the units of the scene."""
 
-from __future__ import annotations
-
 import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Figures of curves, panels of lines: against loads and drives, reactions, stresses and contact forces."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import cycle, groupby, pairwise
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Figures of a mechanism: shapes of both answers, designs side by side, and colours of stress."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import cycle
 

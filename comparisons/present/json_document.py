@@ -1,7 +1,5 @@
 """The documented JSON: plain data with stable keys, SI units, and null for a missing value."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from comparisons.audit import Audit

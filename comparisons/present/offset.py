@@ -1,7 +1,5 @@
 """Tables, figures and documented JSON of an offset comparison."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@ In the folder: ``index.html``, complete without a network; per case ``comparison
 files of further sections, and all figures as SVG and PNG.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace

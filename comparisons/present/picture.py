@@ -1,7 +1,5 @@
 """The drawing list: all drawable parts of a mechanism at a station, for figures, pages, animations, VTU and PyVista."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from math import atan2, cos, sin
 from typing import Literal, NamedTuple

@@ -1,7 +1,5 @@
 """Tables of judged rows: columns of values and of shares, by the paths of the sizes in a row."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any

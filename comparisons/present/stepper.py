@@ -11,8 +11,6 @@ X, Y    place in the picture, whose longer side is ``WIDE``; Y grows downwards
 ======  ===========================================================================
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

@@ -15,8 +15,6 @@ M       bending moment, σ·w·t²/6, N·m
 At a height η the bending stress is −η·σ: a moment that turns the tangent counter-clockwise presses the left edge.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

@@ -4,8 +4,6 @@ A table wider than the screen splits between columns into several tables; the fi
 in all of them.  Sentences fold between words, names fold anywhere, and numbers never fold.
 """
 
-from __future__ import annotations
-
 import io
 import re
 from collections.abc import Iterable

@@ -9,8 +9,6 @@ the thickness.  The plane of the mechanism is in the middle.  The time of a stat
 its load or drive where a single stage goes up; otherwise the stations count from 0.
 """
 
-from __future__ import annotations
-
 import io
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -45,8 +45,6 @@ The formula speaks of the moment.  That the moment is E A e R times the change o
 order.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise

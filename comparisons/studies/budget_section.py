@@ -1,7 +1,5 @@
 """Table, figure, sentences and documented JSON of an error budget."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from comparisons.choices import Count

@@ -3,8 +3,6 @@
 The exact answer is an answer in the theory ``bending``: the finite elements run in this theory, too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 

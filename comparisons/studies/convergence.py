@@ -4,8 +4,6 @@ Of an offset question the exact curve is known: the limit of every error is zero
 logarithm of their errors' ratio over the logarithm of the ratio of sizes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Tables, sentences and documented JSON of values at a family of sizes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from statistics import median
 from typing import NamedTuple

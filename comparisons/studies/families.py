@@ -9,8 +9,6 @@ point, and has the critical point by the mechanism of the finest size.  Sizes co
 not count either: a contact that closes between two sizes is no matter of convergence.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal

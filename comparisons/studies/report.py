@@ -5,8 +5,6 @@ taken with its measured run times.  An interrupted report goes on with the unfin
 added without solving the others again.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress

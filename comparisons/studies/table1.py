@@ -5,8 +5,6 @@ benchmark session (:mod:`comparisons.bench.running`): the session goes through a
 work on the machine falls on all cells alike.  Only the first cell of a method is warmed up.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

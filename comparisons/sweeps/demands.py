@@ -12,8 +12,6 @@
 All numbers have the units of the scene's file.  Of a stress along a beam the largest magnitude counts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import inf, isfinite

@@ -13,8 +13,6 @@ method of its own; the starts share workers and solved points.  A point without 
 start: the trust region shrinks, and the start goes on elsewhere.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """The outcome at a point of a sweep: an ending, a verdict and numbers, as plain records that a line of JSON holds."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields

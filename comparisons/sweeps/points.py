@@ -1,7 +1,5 @@
 """Points of a sweep: values of parameters in SI, from grids, samples and files."""
 
-from __future__ import annotations
-
 import csv
 import math
 import re

@@ -16,8 +16,6 @@ Shares have Wilson's interval.  The design and the estimates of the indices are 
 Physics Communications 181 (2010) 259-270, in SciPy; their intervals of 95 % confidence come from resampled rows.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial

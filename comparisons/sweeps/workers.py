@@ -5,8 +5,6 @@ modules and compiled kernels from point to point, and computes with one thread. 
 worker.  The client releases every result at once: the loss of a worker repeats only the points of the worker.
 """
 
-from __future__ import annotations
-
 import os
 import platform
 import re

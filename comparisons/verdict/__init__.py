@@ -1,7 +1,5 @@
 """The verdict on two independent answers: AGREE, DIFFER or UNDECIDED, with a reason and a stated uncertainty."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from enum import Enum
 

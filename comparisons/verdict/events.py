@@ -30,8 +30,6 @@ A station within T of a critical point also lies between events: beside a fold t
 of the distance.  Runs on mirror images behind a bifurcation are unsettled.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping

@@ -34,8 +34,6 @@ probe, stage and branch.  This u covers the largest e of its rows, and u/e count
 e ≤ q tells nothing about u.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace

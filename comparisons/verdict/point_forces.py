@@ -8,8 +8,6 @@ A clamp and a contact within an element of the clamp share one force: the sum co
 the shares do not.  Two contacts at one place of a beam also share a force: mechanics determines the sum alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np

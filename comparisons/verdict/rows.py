@@ -15,8 +15,6 @@ along a stage, and the change between two grids vanishes there by accident.  Cri
 stations at which a clamp or another contact shares the force: the shares of a force do not converge.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -33,8 +33,6 @@ Where the answers at N and n have nothing in common, no further run of the theor
 part of the verdict, except that the exact answer contradicts, and the other theory leaves rows undecided.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
