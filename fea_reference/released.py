@@ -33,6 +33,7 @@ _OFF = 0.1  # of h times what F changes by: the most by which the rule is off on
 _DROPPED = 0.6  # of what F changes by: by how much it may be less than its rates say
 _NOTICED = 0.01  # of F: less than that is a bend
 _ROUNDED = 1e-11  # of the energies themselves
+_NOTHING = 1e-13  # energy, in units, of a mechanism at rest: no branch ends there
 
 
 def released(
@@ -46,17 +47,19 @@ def released(
     energies = [penalised_energy(model, system, values) for system, values, _ in ends]
     forces = [_force(model, load, system, values, h) for system, values, _ in ends]
     bends = [_bend(model, load, system, rate, acting) for system, _, rate in ends]
+    size = max(map(abs, energies)) + abs(h) * max(map(abs, forces))
+    if size < _NOTHING:
+        return False
     rule = 0.5 * h * (forces[0] + forces[1]) + h**2 * (bends[0] - bends[1]) / 12.0
     missing = rule - (energies[1] - energies[0])
     off = abs(h) * (abs(forces[1] - forces[0]) + 0.5 * abs(h) * abs(bends[1] - bends[0]))
-    rounded = _ROUNDED * (max(map(abs, energies)) + abs(h) * max(map(abs, forces)))
-    if missing > _OFF * off + rounded:
+    if missing > _OFF * off + _ROUNDED * size:
         return True
     changes = (forces[1] - forces[0], h * bends[0], h * bends[1])
-    size, least = max(map(abs, changes)), _NOTICED * max(map(abs, forces))
+    largest, least = max(map(abs, changes)), _NOTICED * max(map(abs, forces))
     dropped = float(np.sign(h)) * (0.5 * (changes[1] + changes[2]) - changes[0])
     turned = changes[1] * h > 0.0 > changes[2] * h and min(abs(changes[1]), abs(changes[2])) > least
-    return bool(turned or dropped > max(_DROPPED * size, least))
+    return bool(turned or dropped > max(_DROPPED * largest, least))
 
 
 def _force(model: Model, load: int, system: System, values: Array, h: float) -> float:

@@ -5,7 +5,7 @@ import re
 import pytest
 
 import cprbm
-from cprbm_scene import Ending, Loss
+from cprbm_scene import Ending, Loss, scene_from
 from fea_reference import Settings, answer
 from tests.fea_reference.pressed_arc import pressed_arc
 
@@ -48,3 +48,32 @@ def test_where_nothing_is_asked_the_march_goes_on_beside_it_and_says_so():
     assert chain.completed, chain.sentence
     for probe in ("scene.potential_energy", "plane.force"):
         assert found.stations[-1].values[probe] == pytest.approx(chain.stations[-1].values[probe], rel=0.015)
+
+
+def test_an_unloaded_leaf_on_a_driven_slider_goes_where_the_slider_goes():
+    # reference: a rigid motion; energies and forces are round-off, and no branch ends
+    scene = scene_from(
+        {
+            "name": "carried",
+            "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
+            "bodies": {"slider": {"motion": "slides", "along": [1.0, 0.0], "points": {"A": [0.0, 0.0]}}},
+            "beams": {
+                "leaf": {
+                    "curve": {"kind": "line", "start": [0.0, 0.0], "end": [0.0, -0.036]},
+                    "thickness": 6e-4,
+                    "width": 8e-3,
+                    "material": "steel",
+                    "start": {"joint": "weld", "point": "A"},
+                    "end": {"joint": "free"},
+                }
+            },
+            "drives": {"d": {"kind": "displacement", "point": "A", "direction": [1.0, 0.0]}},
+            "stages": [
+                {"name": "on", "steps": "d", "stations": [0.004, 0.008, 0.02], "beyond": "jump"},
+                {"name": "back", "steps": "d", "stations": [0.012, 0.0], "beyond": "jump"},
+            ],
+            "probes": [{"of": "A", "quantity": "displacement"}],
+        }
+    )
+    answered = answer(scene, Settings(elements=80))
+    assert answered.completed, answered.sentence
