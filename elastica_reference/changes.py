@@ -1,7 +1,5 @@
 """Closed contacts that open, slide onto an end, or touch a circle along a length instead of at a place."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

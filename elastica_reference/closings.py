@@ -1,7 +1,5 @@
 """Contacts that close, where two lines are found to overlap."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

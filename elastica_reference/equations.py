@@ -16,8 +16,6 @@ Derivatives are taken by the complex step, all columns at once: unknowns have th
 in all columns.  A piece's end follows from its start by its own exact derivatives.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property

@@ -11,8 +11,6 @@ g        gap: distance of the lines (signed by the side on which one lay before)
 Every line is sampled, and each least gap between samples refined.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

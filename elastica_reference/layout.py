@@ -1,7 +1,5 @@
 """Where the unknowns of a structure stand."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

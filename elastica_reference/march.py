@@ -10,8 +10,6 @@ passed since the one before (:mod:`elastica_reference.passing`).  The march ends
 where two beams would lie along each other or one contact be closed at two places at once.
 """
 
-from __future__ import annotations
-
 import logging
 import math
 import time

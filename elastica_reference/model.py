@@ -10,8 +10,6 @@ T        half the thickness where beams touch by their edges, else 0
 =======  ==================================================================
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

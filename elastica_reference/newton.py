@@ -8,8 +8,6 @@ C        one condition more, for which λ is an unknown too
 =======  ===================================================================
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -11,8 +11,6 @@ Two states that overlap nowhere may have a circle or another beam's end between 
 straight come deep into a circle, or an end goes through a line, is too long to say.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene import BeamContact, CircleContact

@@ -1,7 +1,5 @@
 """The numbers a scene asks for, read off a state; meanings in :mod:`cprbm_scene.answer`."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene import Certificate, CircleContact, Probe, Scene, Shape, StationAnswer

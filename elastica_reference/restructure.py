@@ -1,7 +1,5 @@
 """From one structure to the next: contacts that close, open, or touch in another way."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

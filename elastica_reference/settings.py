@@ -1,7 +1,5 @@
 """Numerical choices of the exact solution."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field

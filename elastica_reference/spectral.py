@@ -23,8 +23,6 @@ and e = (x + h w·cos θ, y + h w·sin θ, θ + h w·g, m + h w·f).  With p poi
 superconvergence of Gauss's rule; Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.7).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache

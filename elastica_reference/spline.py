@@ -11,8 +11,6 @@ c        P' × P'', so that κ = c/v³;  c' = P' × P''',  c'' = P'' × P'''
 κ is smooth between the points and has a kink at each; there a beam is cut into pieces.
 """
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np

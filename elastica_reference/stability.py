@@ -21,8 +21,6 @@ Haynsworth, Determination of the inertia of a partitioned Hermitian matrix, Line
 Contacts that are closed count as held along their normals, which asks that they press.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import ceil, hypot, pi, sqrt
 

@@ -1,7 +1,5 @@
 """A solved state, and what it is along the beams."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache

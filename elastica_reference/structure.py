@@ -1,7 +1,5 @@
 """Which contacts are closed, and how: what decides the equations' form."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from cprbm_scene.frozendict import frozendict

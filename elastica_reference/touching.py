@@ -21,8 +21,6 @@ Internal forces jump, F(s+) = F(s−) − P e; at an end the force acts on what 
 force there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

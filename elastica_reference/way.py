@@ -1,7 +1,5 @@
 """The way through a scene: where it stands, what acts there, and how it goes from one structure to the next."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -18,8 +18,6 @@ from m' = −F·n, F' = −p e.  At an end that is not held the beam goes on wit
 F·e may jump there, by a force of the circle, and N not.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene import CircleContact

@@ -13,8 +13,6 @@ instead, and joining the chords from the beam's start, agrees to first order, so
 second order; what is left unbalanced is smooth.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array, Ints

@@ -4,8 +4,6 @@ Contacts act at the Gauss points of their zones; internal forces are those of th
 uses nothing from here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 
 import numpy as np

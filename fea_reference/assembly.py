@@ -4,8 +4,6 @@ Auxiliary moments grow on the ends while they are free; the ends are caught wher
 points; the moments go away.  Stops act as soon as the ends have arrived.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array

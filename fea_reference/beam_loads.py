@@ -49,8 +49,6 @@ As a force has, it has a give of its place in an element whose ends are held, c'
 constant ½ c' M².  Two in one element, at u ≤ u', turn each other's places by (u v'/L)(1 − 3 σ v u'/L²)/EI.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

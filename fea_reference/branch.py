@@ -17,8 +17,6 @@ which is regular where K is not because λ turns back (Riks, Int. J. Solids Stru
 Applications of Bifurcation Theory, 1977, p. 359).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ So such a zone is left to the second, and all the others stay with the first.  O
 one to an end of the other something is left out either way.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array, Flags, Ints

@@ -1,7 +1,5 @@
 """What makes a station's answer believable."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array, Certificate

@@ -1,7 +1,5 @@
 """All of a scene's contacts, of whichever kind."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Do neutral lines cross?"""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.spatial import KDTree
 

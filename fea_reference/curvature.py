@@ -22,8 +22,6 @@ that leaves no negative pivot.  Round-off moves a pivot by the unit round-off ti
 u 12 EI/h⁴.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

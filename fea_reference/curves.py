@@ -9,8 +9,6 @@ x, y    position, m
 ======  =============================================
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

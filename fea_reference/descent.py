@@ -21,8 +21,6 @@ inequalities.  σ falls as long as the steps are short, until none is needed.
 Of both senses of φ the lower counts.  Where both lead equally low, the sense of the moments counts.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -16,8 +16,6 @@ v_t and p:
 of which the right side grows with v_t from zero at v₃ to (v₂ − v₁)/(v₃ − v₂) far away.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -8,8 +8,6 @@ T       half of the thickness, zero for a line: it goes straight between the sec
 ======  =====================================================================================
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -37,8 +37,6 @@ Corotational kinematics: Crisfield, Non-linear Finite Element Analysis of Solids
 ch. 7.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

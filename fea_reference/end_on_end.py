@@ -16,8 +16,6 @@ A long way may pass the other end on the one side and come to lie on the other s
 end sees it, it then crosses the line as it lies afterwards.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from fea_reference.hermite import NeutralLine

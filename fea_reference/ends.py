@@ -22,8 +22,6 @@ that the zone would begin behind its end, or beside its pressure; or χ falls on
 Then it is the pressure's centre.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array

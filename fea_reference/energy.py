@@ -1,7 +1,5 @@
 """The potential energy of a state, without units."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 from cprbm_scene.answer import Array

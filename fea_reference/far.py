@@ -9,8 +9,6 @@ g       least gap: g ≥ |c − o| − R − T − r, d(c) − T − r or |c −
 ======  =====================================================================================
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array

@@ -23,8 +23,6 @@ within next to nothing.
 A stop's moment is an unknown; it is zero to the last digits where it lets go.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """What has been found in a state is found once: pure functions of states, remembered as long as the state is."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Hashable
 from typing import Generic, TypeVar
 from weakref import WeakKeyDictionary

@@ -20,8 +20,6 @@ with a moment that is the clamp's, and handed on to the shear of one element it 
 contact, of first order in the element.  The same holds of an end that is pinned to what it may lie on.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -13,8 +13,6 @@ zones for ever.  Along p the energy of a penalty is convex: where full length ov
 root of φ' lies within it (Matthies and Strang, Int. J. Numer. Meth. Engng 14 (1979) 1613).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from fea_reference.system import System

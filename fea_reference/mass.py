@@ -1,7 +1,5 @@
 """What motions are measured by: a lumped mass, arc length for the nodes and one for the bodies."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array

@@ -9,8 +9,6 @@ hinge between bodies (two), of a guide (a sliding body has two: no motion across
 first alone; a turning one two: its pivot stays), of a drive and of a stop.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

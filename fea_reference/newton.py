@@ -15,8 +15,6 @@ residual as it is, with −k g, and the tangent k ∂g ∂gᵀ − λ ∂²g: th
 convergence (Magisano, Leonetti and Garcea, Comput. Methods Appl. Mech. Engrg. 313 (2017) 986).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

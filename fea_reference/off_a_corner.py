@@ -15,8 +15,6 @@ which goes to zero as the penalty grows.  As long as the zone is whole it knows 
 at which it is, the branch is continued to ℓ = 0.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

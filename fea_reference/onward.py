@@ -12,8 +12,6 @@ At the end of a gap the contact has neither a zone nor a force, and the rate r l
 held it is r + K⁻¹ C p, with Cᵀ K⁻¹ C p = −Cᵀ r, where every p presses; what would pull is free to go.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

@@ -18,8 +18,6 @@ At a corner that juts in it is the other way round.
 So of a graph, with b = κ/(1 + κ d) where κ is its curvature, positive where it juts out.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -18,8 +18,6 @@ presses.  Then it lies along the edge: a flat part that is held at an angle δ t
 beside the pin, which is of no size as drawn and of any on short elements.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Literal
 

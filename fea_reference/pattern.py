@@ -3,8 +3,6 @@
 Where they stand changes with the elements in which contacts press, and seldom else.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass

@@ -13,8 +13,6 @@ S' is Σ c_k T_k(t) on pieces, which are cut in two until the last of the coeffi
 such sum.  The place at a length is the root of S in its piece, by Newton's method kept within the piece.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

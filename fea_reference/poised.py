@@ -12,8 +12,6 @@ state.  Taken once for what they are, pushes that go on as λ − k ∂g δz wit
 λ = −k g holds as well as gaps are known, and forces balance as well as elements tell.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array

@@ -8,8 +8,6 @@ S(v)     arc length, m, S' = √(1 + f'²), :mod:`fea_reference.pieces`
 =======  =============================================================================
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

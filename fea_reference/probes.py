@@ -1,7 +1,5 @@
 """What is asked at a station, in SI units, as :mod:`cprbm_scene.answer` defines it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array, Shape, frozen_array

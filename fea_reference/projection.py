@@ -1,7 +1,5 @@
 """Closest points on a smooth neutral line."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

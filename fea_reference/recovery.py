@@ -8,8 +8,6 @@ where it is.  The contact's share of the nodal forces is taken out of the end fo
 the element; what it has in the elements beside, by their shear, is balanced in each.  So are loads on the beam.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array

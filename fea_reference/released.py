@@ -19,8 +19,6 @@ begins and falls where it ends: before a fold F falls ever faster, and the branc
 contact lets go within a step, or F has a smooth top, either seems so, but the less the shorter the step.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array

@@ -21,8 +21,6 @@ thickness or width have a kink within it (Przemieniecki, Theory of Matrix Struct
 one).  The integrals run over pieces without a kink in which neither size more than doubles.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

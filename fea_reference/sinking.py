@@ -16,8 +16,6 @@ not touch at all, is moved by that along v, which changes the forces of all else
 and with them the equilibria, are the same.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

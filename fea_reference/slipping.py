@@ -13,8 +13,6 @@ with just before.  What is left is no equilibrium, and there is none near by.  O
 from its end towards the second, the other's end has come to lie on the first by then, and goes on pressing.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array

@@ -1,7 +1,5 @@
 """A scene in, an answer out."""
 
-from __future__ import annotations
-
 import logging
 import time
 from dataclasses import dataclass

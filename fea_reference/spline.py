@@ -21,8 +21,6 @@ At an end with a direction m is its unit vector.  At one without, the third deri
 Of three points without directions both ends say the same; there the only cubic is a parabola.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

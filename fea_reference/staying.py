@@ -12,8 +12,6 @@ C x = 0 has x = 0 alone where its rank is three.  What is on such a body cannot 
 a beam that is held on the one lies on the other as if both were one, whichever of two names a scene gives them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

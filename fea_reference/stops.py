@@ -15,8 +15,6 @@ is m = 0.  With shear the neutral line leans from the section by the angle of sh
 section, and it is the section that is limited.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

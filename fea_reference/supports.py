@@ -1,7 +1,5 @@
 """What the ground, guides and drives do to what they hold."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array

@@ -13,8 +13,6 @@ it on its other side: d has changed its sign.  That is exact however narrow what
 round an end has none on its way, if that was short enough; one of which another part is closer has gone farther.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ The residual is the derivative of the Lagrangian Π(z) − Σ loads + λᵀ c(z)
 included, and the tangent its second derivative: symmetric and indefinite.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -17,8 +17,6 @@ its force grows from nothing, and it begins there: f has no part along φ, and K
 forces.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

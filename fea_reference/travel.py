@@ -18,8 +18,6 @@ changes in between by something between both; one that does not is on another br
 energy (:mod:`fea_reference.released`): where nothing was asked of the end of the branch, that is why it is looked for.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Literal
 

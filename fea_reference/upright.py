@@ -32,8 +32,6 @@ What lies at rest farther from the joint than a tenth of a is reached by no lean
 edge the joint takes over what presses within a (:mod:`fea_reference.face`): axial forces do not press there.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import Literal

@@ -15,8 +15,6 @@ beside that motion, and pushes of contacts near each other say so first.  What i
 push to be foreseen, too: its overlap over the compliance cᵀ K⁻¹ c.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 
 import numpy as np

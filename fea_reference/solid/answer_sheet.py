@@ -3,8 +3,6 @@
 Contacts act at the Gauss points of their zones, or in a corner.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 
 import numpy as np

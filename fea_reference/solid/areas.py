@@ -13,8 +13,6 @@ d, σ    distance from a held face, and what grows evenly from element to elemen
 ======  =====================================================================
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array

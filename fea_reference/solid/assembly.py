@@ -5,8 +5,6 @@ straight to their points; the moments go away.  Stops act as soon as the ends ha
 mechanism is one without their rows, which are the last ones.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

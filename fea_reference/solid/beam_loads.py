@@ -12,8 +12,6 @@ A beam is loaded on its line.  A force at a point of a solid would sink into it 
 it has the same resultant on the line, and what differs dies out within a thickness.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -16,8 +16,6 @@ The work is M θ.  Its forces f_j = M w_j S d/|d|² are the traction M η across
     ∂²θ/∂d² = −(n τᵀ + τ nᵀ)/|d|²,    n = d/|d|,  τ = S n.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

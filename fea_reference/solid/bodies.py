@@ -17,8 +17,6 @@ built into the unknowns: no node of a face has one of its own, and nothing of a 
 that is drawn apart from its point is a body of its own, which rows pin to that point once it is there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

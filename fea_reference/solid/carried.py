@@ -1,7 +1,5 @@
 """The door to meshio: what gmsh has written, as arrays."""
 
-from __future__ import annotations
-
 from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path

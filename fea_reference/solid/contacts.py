@@ -18,8 +18,6 @@ edge has gone too deep the pressure of that state, which is far too large, has n
 was foreseen to press is held on its edge for one iteration even where it is off it by then, or it would come and go.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -13,8 +13,6 @@ The λ nearest to zero are found, of which one is the first that changes its sig
 the sign of K's determinant says whether, beside one per row, an odd number of negative ones has been missed.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.sparse import coo_matrix, diags_array
 from scipy.sparse.csgraph import connected_components

@@ -15,8 +15,6 @@ the edge from behind.  In front of a corner that juts out no side has the point:
 is held against the smooth edge of the beam, see :mod:`fea_reference.solid.pricking`.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -18,8 +18,6 @@ the stress of a state that is none (the mixed integration points of Magisano, Le
 Meth. Engng 109 (2017) 1237).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

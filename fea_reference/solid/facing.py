@@ -19,8 +19,6 @@ A       J² − g k: positive at a nearest place
 (Wriggers, Computational Contact Mechanics, 2nd ed., section 4.1, brought to one parameter).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The door to gmsh: a rectangle cut by its transfinite mesher."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 MISSING = "gmsh cannot be imported (the extra 'solid' brings it): a plain mapped mesh, whose nodes are the same"

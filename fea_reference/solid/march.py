@@ -20,8 +20,6 @@ beside it.  A step that fails therefore leaves the march with looser penalties, 
 than asked; at a station they are brought back to what they were.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 
 import numpy as np

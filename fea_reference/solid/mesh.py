@@ -12,8 +12,6 @@ The rectangle of beam b is [2b, 2b + 1] × [−1, 1], n elements along and m acr
 moved to where the area has its u and η, and scikit-fem gives ∂N_a/∂X and the weights at 3 × 3 Gauss points.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

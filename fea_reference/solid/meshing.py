@@ -1,7 +1,5 @@
 """Who cuts the rectangles: gmsh where it is there, else NumPy; both give the same nodes."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 

@@ -5,8 +5,6 @@ over L.  The mesh has displacements q (2N,), node by node.  The unknowns z are, 
 no tie holds; ψ of every pinned face; (X, Y, φ) of every body that moves; a multiplier per row.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

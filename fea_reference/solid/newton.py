@@ -1,7 +1,5 @@
 """Newton's iterations to an equilibrium at given loads and drives."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -8,8 +8,6 @@ end or on a straight way there, for a beam that goes through another's end lies 
 edge of a half-plane everything is within it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

@@ -16,8 +16,6 @@ As of two edges (:mod:`fea_reference.solid.facing`), with what the corner's way 
     δ²g = −[k (a·τ)² + 2 J (a·τ)(n·δy') + g (n·δy')²]/A − n·R r δφ²
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from cprbm_scene.answer import Array

@@ -1,7 +1,5 @@
 """What a scene may ask of the solid: the rest is refused before anything is solved."""
 
-from __future__ import annotations
-
 from cprbm_scene.mistakes import Mistake, SceneError
 from cprbm_scene.solving import refuse as refuse_requirements
 from cprbm_scene.statement import Scene

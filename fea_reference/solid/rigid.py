@@ -13,8 +13,6 @@ S       rotation by a right angle
     ∂²ξ/∂φ² = −ξ,   ∂²ξ/∂φ∂x = −S Rᵀ,   ∂²ξ/∂φ∂X = S Rᵀ.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

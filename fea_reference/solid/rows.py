@@ -9,8 +9,6 @@ c       Σ d·(X + (R(φ) − I) r) − value, or Σ φ − value; of an end tha
 ======  ===================================================================
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

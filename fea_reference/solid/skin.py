@@ -17,8 +17,6 @@ over the element: an even pressure, or one that goes straight, is passed on to t
 bodies pressed flat on each other hold it exactly.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

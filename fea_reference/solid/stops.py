@@ -13,8 +13,6 @@ The energy is m²/(2 K).  K is small beside what the mesh has for its nodes and 
 end, so that a limit yields by a millionth of an angle.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -13,8 +13,6 @@ An element's strain is best at two Gauss points along it (Barlow, Int. J. Numer.
 a cubic spline goes through these.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.interpolate import CubicSpline
 

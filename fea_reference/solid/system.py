@@ -5,8 +5,6 @@ its second derivative.  Forces are summed up over the mesh's displacements q, an
 ∂q/∂z.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property

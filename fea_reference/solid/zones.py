@@ -11,8 +11,6 @@ The gap is sampled; where its sign changes the end of a zone is found, and a min
 points move with the zone's ends, and since the pressure vanishes there the energy's derivatives do not feel it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
