@@ -311,9 +311,8 @@ def path(scene: Scene, answer: Answer, states: Sequence[StationState]) -> Iterat
         error = 2.0 * even + FITTED * (strain + np.abs(work)) + ENERGY_ROUND_OFF * of[0].natural
         allowed = np.abs(h * np.diff(g)) + np.abs(h * np.diff(slope)) / 6.0 + error[1:] + error[:-1]
         for i in np.flatnonzero(_judged(answer, of)):
-            off = abs(lost[i]) if len(x) > 2 else -lost[i]
             yield (
-                off - allowed[i],
+                (abs(lost[i]) if len(x) > 2 else -lost[i]) - allowed[i],
                 f"from {at_station(scene, stage, x[i])} to {load_text(scene, stage, x[i + 1])} the energy changes by "
                 f"{lost[i]:.3g} J more than the work",
             )
@@ -331,8 +330,8 @@ def path(scene: Scene, answer: Answer, states: Sequence[StationState]) -> Iterat
 def _judged(answer: Answer, states: Sequence[StationState]) -> Flags:
     """Intervals (k-1,) between k states in which the energy is judged: under a drive no contact closes or opens."""
     first, x = states[0], np.array([state.station.value for state in states])
-    events = [event.value for event in answer.events if event.stage == first.stage.name]
-    between = ((x[:-1, None] < events) & (x[1:, None] > events)) | ((x[:-1, None] > events) & (x[1:, None] < events))
+    events = np.array([event.value for event in answer.events if event.stage == first.stage.name])
+    between = np.sign(events - x[:-1, None]) * np.sign(events - x[1:, None]) < 0.0
     pressing = [{name for name, of in state.station.contacts.items() if of.active} for state in states]
     same = np.array([before == after for before, after in pairwise(pressing)], dtype=bool)
     return np.asarray((same & ~between.any(axis=1)) | (first.stage.steps in first.scene.loads))

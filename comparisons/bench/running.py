@@ -21,14 +21,12 @@ answer (of a peer: up to its end).  A size is not repeated after runs with a sum
 single run of that length no larger size of the method begins; a peer's solve ends after as many processor seconds.
 """
 
-from __future__ import annotations
-
 import gc
 import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 import numpy as np
 
@@ -284,13 +282,13 @@ class Session:
         """All runs: by repetition, by size, and at each size every method with this size."""
         return sorted(self.timings, key=lambda timing: timing.n) * self.plan.repeat
 
-    def after_all(self) -> Session:
+    def after_all(self) -> Self:
         """This session after all runs."""
         for job in self.jobs():
             self.do(job)
         return self
 
-    def do(self, job: Timing) -> Session:
+    def do(self, job: Timing) -> Self:
         """This session after a run; no run where the question is refused or takes too long."""
         name, most = job.contender.name, self.plan.at_most
         if job.refusal or self._is_late(job) or sum(map(sum, job.seconds)) > most:

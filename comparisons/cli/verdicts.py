@@ -131,8 +131,9 @@ def _show(request: output.Request, compared: Compared) -> None:
 
 def _failed_searches(compared: Compared) -> list[str]:
     """Sentences on searches for N without success."""
-    scenes = [compared] if isinstance(compared, Comparison) else []
-    return [search.sentence(each.scene) for each in scenes for search in each.tolerances if not search.met]
+    if not isinstance(compared, Comparison):
+        return []
+    return [search.sentence(compared.scene) for search in compared.tolerances if not search.met]
 
 
 def _export(request: output.Request, compared: Sequence[Comparison]) -> None:

@@ -180,6 +180,11 @@ def logarithmic(axes: Axes, x: Sequence[float] = ()) -> None:
     axes.grid(visible=True, which="major", color=RULE, linewidth=0.6)
 
 
+def name_rows(axes: Axes, names: Sequence[str]) -> None:
+    """Give the vertical axis a row for every name, from the top down."""
+    axes.set(yticks=range(len(names)), yticklabels=names, ylim=(len(names) - 0.4, -0.6))
+
+
 def common_legend(drawing: Drawing, place: str, columns: int, size: float = 10.0) -> None:
     """One legend outside all axes of a drawing, with every label once."""
     pairs = [pair for axes in drawing.axes for pair in zip(*axes.get_legend_handles_labels(), strict=True)]

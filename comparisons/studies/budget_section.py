@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from comparisons.choices import Count
 from comparisons.formats import at_station, number, percent
 from comparisons.opinions import claim_of
-from comparisons.present.canvas import Axes, canvas, finished
+from comparisons.present.canvas import Axes, canvas, finished, name_rows
 from comparisons.present.columns import NOTHING, Column, Figure, Plain, Table, plain, table_of
 from comparisons.stations import last_station
 from comparisons.studies.budget import PARTS, Account, Budget
@@ -127,8 +127,8 @@ def budget_figures(account: Account) -> tuple[Figure, ...]:
         _draw_parts(axes, budgets)
         missed = _draw_missed(axes, budgets)
         axes.axvline(0.0, color="black", linewidth=0.8)
-        names, lowest = [each.row.probe.name for each in budgets], len(budgets) - 0.4
-        axes.set(yticks=range(len(names)), yticklabels=names, ylim=(lowest, -0.6), xlabel="share of all parts, %")
+        name_rows(axes, [each.row.probe.name for each in budgets])
+        axes.set_xlabel("share of all parts, %")
         for place, each in enumerate(budgets):
             text = percent(each.row.fraction(each.row.difference))
             axes.annotate(text, (1.01, place), xycoords=("axes fraction", "data"), va="center", fontsize=9.0)

@@ -17,7 +17,7 @@ from comparisons.bench.running import Contender, Plan, Run, Session, Timing, out
 from comparisons.choices import Choices, Count
 from comparisons.formats import number
 from comparisons.pairing import Solvers
-from comparisons.present.canvas import BLUE, RED, canvas, finished
+from comparisons.present.canvas import BLUE, RED, canvas, finished, name_rows
 from comparisons.present.columns import Column, Figure, Section, plain, records_of, table_of
 from cprbm_scene import Scene
 from cprbm_scene.frozendict import frozendict
@@ -191,8 +191,8 @@ def _run_times(cells: tuple[Cell, ...], taken: Mapping[Cell, Timing]) -> Figure:
         axes.plot(list(theirs.values()), list(theirs), "x", color=RED, markersize=6, label="the paper's")
         axes.plot([], [], "o", color=BLUE, label="ours")
         axes.grid(visible=True, which="major", axis="x", color="#e4e4e4", linewidth=0.6)
-        names, lowest = [cell.name for cell in cells], len(cells) - 0.4
-        axes.set(yticks=range(len(cells)), yticklabels=names, ylim=(lowest, -0.6), xscale="log", xlabel="seconds")
+        name_rows(axes, [cell.name for cell in cells])
+        axes.set(xscale="log", xlabel="seconds")
         drawing.legend(loc="outside upper right", ncols=2)
         caption = "Seconds to the last load: ours as medians with the quartiles, and the paper's, on another machine."
         return finished(drawing, "table1", caption)

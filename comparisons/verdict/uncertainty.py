@@ -54,12 +54,10 @@ is therefore the largest over the stations of a stage on one branch.
 order 1, since an order below 2 leaves L short of the limit.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Self, TypeVar
 
 import numpy as np
 
@@ -100,9 +98,9 @@ class Error:
     even: Array
     uneven: Array
 
-    def of(self, counts: Flags) -> Error:
+    def of(self, counts: Flags) -> Self:
         """The part of the components (k,) that count."""
-        return Error(self.even[counts], self.uneven[counts])
+        return type(self)(self.even[counts], self.uneven[counts])
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,11 +20,9 @@ The plain chain has P_j on the neutral line.  The corrected chain has the nodes 
 All numbers are in the units of the mechanism.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 
@@ -177,7 +175,7 @@ class BeamChain:
         at, section = self.arcs[[-end]], self.section
         return float(np.sqrt(section.rigidity(at) / (section.area(at) * section.shearing)).item())
 
-    def with_upright_section(self, end: int) -> BeamChain:
+    def with_upright_section(self, end: int) -> Self:
         """The chain with the angle of shear tanh²(s/ℓ) Q/GA_s at the distance s from an end, ℓ = √2 times the layer.
 
         A link between s and s + L lacks ℓ [tanh((s + L)/ℓ) − tanh(s/ℓ)]/L of the shear compliance (docs/contact.md).

@@ -112,20 +112,17 @@ def hold_sections_upright(m: Mechanism, geometry: Geometry) -> None:
     contacts = open_contacts(geometry, z)
     pairs, curves = np.ones(len(geometry.pairs), dtype=bool), np.ones(len(geometry.curves), dtype=bool)
     places = places_at_feet(z, arrays, geometry.sites, contacts.sides, pairs, curves, contacts.counters)
-    contacts = replace(contacts, places=places, closed=np.zeros(len(places.pair), dtype=bool))
-    for k, gap in enumerate(contacts.gaps(geometry, z)):
+    for k, gap in enumerate(_gaps_at(geometry, z, contacts, places)):
         curve, other = places.curve[k], places.other[k]
         for end, node in enumerate((arrays.first[curve], arrays.last[curve] + 1)):
             at_weld = ends.welded[curve, end] and places.piece[k] + places.xi[k] == node
             if not at_weld or is_straight(arrays, places.foot[k]) or not on_end_body(arrays, ends, places, k, end):
                 continue
-            chains = [(m.chains[geometry.curves[curve].beam], end)]
+            beam, layer = geometry.curves[curve].beam, m.chains[geometry.curves[curve].beam].layer(end)
             if not ends.rigid[other]:
-                chains.append(
-                    (m.chains[geometry.curves[other].beam], int(ends.body[other, 0] != ends.body[curve, end]))
-                )
-            if abs(gap) < LEANING * sum(chain.layer(side) for chain, side in chains):
-                found.add((chains[0][0].name, end))
+                layer += m.chains[geometry.curves[other].beam].layer(int(ends.body[other, 0] != ends.body[curve, end]))
+            if abs(gap) < LEANING * layer:
+                found.add((beam, end))
     for beam, end in found:
         m.chains[beam] = m.chains[beam].with_upright_section(end)
 
@@ -236,10 +233,15 @@ def touching_as_drawn(geometry: Geometry, z: Array, contacts: Contacts) -> froze
     places = fixed_places(
         geometry, z, contacts.sides, np.ones(len(geometry.pairs), dtype=bool), contacts.counters, welds=True
     )
-    gaps = replace(contacts, places=places, closed=np.zeros(len(places.pair), dtype=bool)).gaps(geometry, z)
+    gaps = _gaps_at(geometry, z, contacts, places)
     # a weld behind the end of the other beam is on neither side of the beam
     deepest = -TOUCHING - half_thicknesses(geometry.arrays, places)
     return frozenset(places.pair[(gaps > deepest) & (gaps < TOUCHING)].tolist())
+
+
+def _gaps_at(geometry: Geometry, z: Array, contacts: Contacts, places: Places) -> Array:
+    """Gaps of places in a state, all open."""
+    return replace(contacts, places=places, closed=np.zeros(len(places.pair), dtype=bool)).gaps(geometry, z)
 
 
 def open_contacts(geometry: Geometry, z: Array) -> Contacts:

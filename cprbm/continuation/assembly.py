@@ -160,8 +160,7 @@ def landed(system: System, first: Solved, iterations: int) -> Solved:
         pushes = first.state.multipliers(system)
         row = max(loose, key=lambda number: abs(pushes[number]))
         if abs(pushes[row]) <= NEUTRAL * np.abs(pushes).max():
-            name = rows[row].name.removeprefix("landing.")
-            raise NotConvergedError(f"body '{name}' is neutral: no contact and no load holds the body")
+            raise _neutral(rows[row], "no contact and no load holds the body")
         first = _landed(system, first, row, iterations)
         loose.remove(row)
     return first
@@ -186,7 +185,11 @@ def _landed(system: System, first: Solved, row: int, iterations: int) -> Solved:
             return moved(0.0, frozenset(), free=True)
     far = next((way for way in SHORTEST * 2.0 ** np.arange(DOUBLINGS) if gap(way) < 0.0), None)
     if far is None:
-        name = system.mechanism.rows[row].name.removeprefix("landing.")
-        raise NotConvergedError(f"body '{name}' is neutral: the load moves the body into no contact")
+        raise _neutral(system.mechanism.rows[row], "the load moves the body into no contact")
     first = moved(far * located(lambda share: gap(share * far)), frozenset())
     return moved(0.0, frozenset(), free=True)
+
+
+def _neutral(row: Row, why: str) -> NotConvergedError:
+    """The error for a body without resistance to motion."""
+    return NotConvergedError(f"body '{row.name.removeprefix('landing.')}' is neutral: {why}")

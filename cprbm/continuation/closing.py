@@ -274,8 +274,8 @@ def _closing(
     if end[0] >= 0.0:
         return []
     share = located_by_slopes(gap, end)
-    early = CLOSED / max(-slopes[share], CLOSED)
-    return [ContactChange(share, apart, closes=True, first=first[share], early=min(early, share))]
+    early = min(share, CLOSED / max(-slopes[share], CLOSED))
+    return [ContactChange(share, apart, closes=True, first=first[share], early=early)]
 
 
 def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[ContactChange]:
