@@ -53,7 +53,7 @@ _FEW = 60  # of them, where it is not to lead far
 _ASTRAY = 2.0  # times as far as what it is to lead to: what goes farther on the way is followed no further
 _CHANGES = 8  # of contacts and stops in one step
 _ROUNDED = 1e-9  # of the energy
-_SAME = 1e-6  # of the larger fall: two senses lead equally low
+_SAME = 1e-3  # of the larger fall: two senses lead equally low, the rest of Newton's residual is 3e-5 of the fall
 _STRONGEST = 1e12
 
 

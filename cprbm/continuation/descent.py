@@ -11,8 +11,9 @@ u        leaning: response to m against the springs
 
 Each step minimises Π plus the energy of the springs, so that Π falls from step to step.  The descent begins with u, in
 either sense, and follows the lower of both.  With α = 2|κ| the softest mode has the largest part in u, and the distance
-from the saddle doubles in a step.  The springs soften while steps are short, stiffen where a step fails, and vanish
-near the minimum.
+from the saddle doubles in a step.  The springs of the first step are so stiff that no link turns farther than by the
+kick: a softer step may pass the saddle and end on the other side.  The springs soften while steps are short, stiffen
+where a step fails, and vanish near the minimum.
 
 Where both senses lead equally low, as at a symmetric bifurcation, the sense of m counts.  Several modes may soften at
 a single load: u has all of them in fixed parts.  Neither the mesh nor the order of assembly decides.
@@ -50,8 +51,8 @@ STILL = 1e-9
 KICKS = 5
 """Saddles that a descent may come to."""
 
-SAME = 1e-6
-"""Relative difference of two energies' decreases that counts as none."""
+SAME = 1e-3
+"""Relative difference of two energies' decreases that counts as none: a mirror image differs by the residual."""
 
 
 def descend(system: System, saddle: Solved, curvature: float, target: Array, acting: Flags, iterations: int) -> Solved:
@@ -107,7 +108,7 @@ def _kicked(system: System, start: State, curvature: float, acting: Flags, itera
         for sense in (1.0, -1.0) if not held.lost else ():
             kicked = replace(start, z=start.z + sense * change)
             step = _step(system, kicked, strength, acting, iterations)
-            if step is not None and _moved(system, kicked, step.state) <= LONGEST:
+            if step is not None and _moved(system, kicked, step.state) <= KICK:
                 steps.append(step.state)
         if steps:
             energies = [potential(system, state) for state in steps]

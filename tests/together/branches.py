@@ -8,7 +8,10 @@ from __future__ import annotations
 from math import cos, pi, sin, sqrt
 from typing import Any
 
+import numpy as np
+
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH
+from tests.references import columns
 from tests.references.arch import Arch
 from tests.references.let_go import Held
 from tests.references.snap import Snap
@@ -122,6 +125,30 @@ def pinned_column(loads: list[float], *, beyond: str = "jump") -> dict[str, Any]
         loads={"P": {"kind": "force", "point": "E", "direction": [-1.0, 0.0]}},
         stages=[_stage("press", "P", [load * FORCE for load in loads], beyond)],
         probes=[{"of": "M", "quantity": "displacement"}, {"of": "E", "quantity": "displacement"}],
+    )
+
+
+def column_between_pegs(angle: float) -> dict[str, Any]:
+    """Pinned at the origin and at a slide at the ``angle``, with a peg on either side of its middle."""
+    along, across = np.array([cos(angle), sin(angle)]), np.array([-sin(angle), cos(angle)])
+    end, away = (LENGTH * along).tolist(), 0.05 * LENGTH
+
+    def peg(side: float) -> dict[str, Any]:
+        center = 0.5 * LENGTH * along + side * (away + 0.5 * THICKNESS + 2e-3 * LENGTH) * across
+        return {"kind": "beam-circle", "beam": "beam", "body": "wall", "center": center.tolist(), "radius": away}
+
+    euler = columns.critical("pinned") * FORCE
+    return _scene(
+        "column-between-pegs",
+        bodies={
+            "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
+            "slide": {"motion": "slides", "along": along.tolist(), "points": {"E": end}},
+        },
+        beams={"beam": {**_STRIP, "curve": _line([0.0, 0.0], end), "start": _pin("R"), "end": _pin("E")}},
+        loads={"P": {"kind": "force", "point": "E", "direction": (-along).tolist()}},
+        contacts={"left": peg(1.0), "right": peg(-1.0)},
+        stages=[_stage("press", "P", [0.9 * euler, 1.2 * euler], "jump")],
+        probes=[{"of": name, "quantity": "force"} for name in ("left", "right")],
     )
 
 

@@ -157,6 +157,25 @@ def test_pinned_column(solve, within):
     assert -found["E.displacement"][0] == pytest.approx(exact.shortening * LENGTH, rel=6.0 * within)
 
 
+@pytest.mark.parametrize("angle", [0.0, 2.39])
+@pytest.mark.parametrize(
+    ("solver", "settings"),
+    [
+        (cprbm.answer, [cprbm.Settings(links=n) for n in (20, 40, 60, 80)]),
+        (fea_reference.answer, [fea_reference.Settings(elements=n) for n in (40, 80, 160)]),
+    ],
+    ids=["cprbm", "fea"],
+)
+def test_a_column_between_pegs_leans_to_one_side_on_every_mesh(solver, settings, angle):
+    # Faint moments 1 + s/l per length do the work ∫ (1 + s/l) w′ ds = −∫ w ds/l on a deflection w to the left that
+    # vanishes at both ends.  The work is positive to the right.
+    scene = scene_from(branches.column_between_pegs(angle))
+    for chosen in settings:
+        values = solver(scene, chosen).stations[-1].values
+        assert values["left.force"][0] == 0.0
+        assert values["right.force"][0] > 0.0
+
+
 @pytest.mark.parametrize("elements", [80, 91, 160])
 def test_a_frame_that_sways_bifurcates(elements):
     """Both guided columns of a frame carry π² EI/L² (Euler); round-off near the load makes no fold of it.
