@@ -19,7 +19,7 @@ the zone ends there itself.
 
 Of a contact in a point, χ is positive on either side: continued through the point, both sides reach zero beyond it, so
 that the zone would begin behind its end, or beside its pressure; or χ falls on the way out and has no zero inwards.
-Then it is the pressure's centre.
+Then it is the pressure's centre.  A contact in several points begins and ends in points of their own.
 """
 
 import numpy as np
@@ -41,15 +41,20 @@ _READ = np.array([0.0, 1.0, 2.0])  # elements beyond s_e
 
 def ends(model: Model, system: System, touch: Touch) -> Array:
     """Places ζ (2,) on the first beam where the contact's first zone begins and its last one ends."""
-    weight = np.hypot(*touch.force)
-    middle = float(weight @ touch.zeta / weight.sum())
+    zones, weight = touch.zones, np.hypot(*touch.force).reshape(len(touch.zones.intervals), -1)
     # a clamped end that just touches overlaps by round-off, and presses by no more
-    each = weight.reshape(len(touch.zones.intervals), -1).sum(axis=1)
-    pressed = np.flatnonzero(each > _NOTHING * each.sum())
-    begins, stops = touch.zones.intervals[pressed].T
-    first = _continued(model, system, touch, int(pressed[np.argmin(begins)]), -1.0)
-    last = _continued(model, system, touch, int(pressed[np.argmax(stops)]), 1.0)
-    return np.array([first, last]) if first <= middle <= last else np.array([middle, middle])
+    force = weight.sum(axis=1)
+    pressed = np.flatnonzero(force > _NOTHING * force.sum())
+    begins, stops = zones.intervals[pressed].T
+    outer = int(pressed[np.argmin(begins)]), int(pressed[np.argmax(stops)])
+    found = np.array([_continued(model, system, touch, at, way) for at, way in zip(outer, (-1.0, 1.0), strict=True)])
+    moment = (weight * touch.zeta.reshape(weight.shape)).sum(axis=1)
+    own = [zones.numbers == zones.numbers[at] for at in outer]
+    middle = np.array([moment[each].sum() / force[each].sum() for each in own])
+    points = np.array([1.0, -1.0]) * (found - middle) > 0.0
+    if zones.numbers[outer[0]] == zones.numbers[outer[1]]:
+        points |= points[::-1]
+    return np.where(points, middle, found)
 
 
 def _continued(model: Model, system: System, touch: Touch, at: int, outwards: float) -> float:

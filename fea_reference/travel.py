@@ -15,7 +15,7 @@ branch is followed by :mod:`fea_reference.following`.
 
 A step that stays on its branch moves by the mean of r at both ends, but for its third power, or where a contact
 changes in between by something between both; one that does not is on another branch, however near.  Nor does it release
-energy (:mod:`fea_reference.released`): where nothing was asked of the end of the branch, that is why it is looked for.
+energy (:mod:`fea_reference.released`).
 """
 
 from dataclasses import dataclass, replace
@@ -57,8 +57,8 @@ _WARY = 3  # cuts in all after which the curvature is looked at where steps look
 class Course:
     """What is stepped: number ``load``, over a ``span`` without units, in a ``stage``; what to do ``beyond`` its end.
 
-    The assembly is no stage, and has no name.  Where nothing is asked of the end of the branch, steps look for none; if
-    one must be, they go on over it to a state ``beside`` it.
+    The assembly is no stage, and has no name.  Where nothing is asked of the end of the branch, steps go on over it to a
+    state ``beside`` it.
     """
 
     load: int
@@ -70,9 +70,9 @@ class Course:
 def reach(march: March, course: Course, target: float) -> None:
     """March to the value ``target`` and land on it exactly.
 
-    Where steps look for no end of the branch and one leads nowhere or releases energy, they may have passed it: they
-    are gone again from where they began, looking.  An end beside which another branch is is gone on over; where that
-    does not lead to the target, what is told is the first that was met.
+    Where nothing is asked of the end of the branch, steps look for ends first, and go on over an end with another
+    branch beside.  Where this does not lead to the target, the march ends with the first end that was met.  Where no
+    end was met, steps go again from their begin, and look for none.
 
     Raises:
         StoppedError: it cannot be reached.
@@ -80,36 +80,21 @@ def reach(march: March, course: Course, target: float) -> None:
     if course.beyond is not None:
         _reach(march, course, target)
         return
-    origin, failed, passed = march.saved(), None, True
-    try:
-        passed = _reach(march, course, target)
-    except StoppedError as stopped:
-        failed = stopped
-    met = march.left[len(origin.left) :]
-    if met and (failed is not None or not march.minimum):
-        raise _first_met(march, origin, met)
-    if failed is not None and failed.ending is Ending.BRANCH_ENDS:
-        raise failed
-    if not passed:
-        return
-    there = march.saved()
-    march.restore(origin)
-    march.critical, march.left, march.behind = list(origin.critical), list(origin.left), None
+    origin = march.saved()
     try:
         _reach(march, replace(course, beyond="beside"), target)
-        if len(march.left) > len(origin.left) and not march.minimum:
-            raise StoppedError(Ending.NOT_A_MINIMUM, "")
-    except StoppedError as looking:
-        # steps that look meet the first end, others may have gone over it
-        met = march.left[len(origin.left) :] or met
-        if met:
-            raise _first_met(march, origin, met) from None
-        if looking.ending is Ending.BRANCH_ENDS:
-            raise
-        if failed is not None:
-            raise failed from None
-        march.restore(there)
-        march.critical, march.left = list(there.critical), list(there.left)
+        if len(march.left) == len(origin.left) or march.minimum:
+            return
+        stopped = StoppedError(Ending.NOT_A_MINIMUM, "")
+    except StoppedError as error:
+        stopped = error
+    if met := march.left[len(origin.left) :]:
+        raise _first_met(march, origin, met) from None
+    if stopped.ending is Ending.BRANCH_ENDS:
+        raise stopped
+    march.restore(origin)
+    march.critical, march.left, march.behind = list(origin.critical), list(origin.left), None
+    _reach(march, course, target)
 
 
 def _first_met(march: March, origin: March, met: list[Left]) -> StoppedError:

@@ -4,8 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
+from scipy.integrate import quad
 
-from cprbm_scene import Ending
+from cprbm_scene import Ending, scene_from
 from fea_reference import Settings, answer
 from tests.fea_reference.test_circle import on_circle
 from tests.references.wrapped import Wrapped
@@ -49,3 +51,46 @@ def test_a_circle_that_props_in_a_point_has_both_ends_there(kinematics):
 def test_an_open_contact_has_no_ends():
     (found,) = ends(on_circle((1e-3,), center=(0.4, -0.3), circle=0.1))
     assert found.size == 0
+
+
+def test_a_wave_on_a_table_begins_and_ends_in_its_bottoms():
+    """A table touches y = h ((16 x² − 1)² − 1) at x = ±1/4: in two points, not in a zone from the first to the last."""
+    wave = Polynomial([0.0, 0.0, -32.0, 0.0, 256.0]) * 0.005
+    table = wave(0.25) - 0.5 * T
+    ends_of_wave = {"A": [-0.5, wave(-0.5)], "B": [0.5, wave(0.5)]}
+    scene = scene_from(
+        {
+            "name": "wave",
+            "materials": {"m": {"youngs_modulus": EXACT.youngs_modulus, "poisson_ratio": 0.3}},
+            "bodies": {
+                "wall": {"motion": "fixed", "points": ends_of_wave},
+                "table": {"motion": "slides", "along": [0.0, 1.0], "points": {"O": [0.0, table]}},
+            },
+            "beams": {
+                "wave": {
+                    "curve": {"kind": "polynomial", "axis": "x", "coefficients": [*wave.coef], "range": [-0.5, 0.5]},
+                    "thickness": T,
+                    "width": WIDTH,
+                    "material": "m",
+                    "start": {"joint": "weld", "point": "A"},
+                    "end": {"joint": "weld", "point": "B"},
+                }
+            },
+            "contacts": {
+                "edge": {
+                    "kind": "beam-line",
+                    "beam": "wave",
+                    "body": "table",
+                    "points": [[-0.6, table], [0.6, table]],
+                    "side": "left",
+                }
+            },
+            "drives": {"d": {"kind": "displacement", "point": "O", "direction": [0.0, 1.0]}},
+            "stages": [{"name": "press", "steps": "d", "stations": [1e-4]}],
+            "probes": [{"of": "edge", "quantity": "ends"}],
+        }
+    )
+    got = answer(scene, Settings(kinematics="stretch", elements=80))
+    assert got.completed, got.sentence
+    bottoms = [quad(lambda x: np.hypot(1.0, wave.deriv()(x)), -0.5, x)[0] for x in (-0.25, 0.25)]
+    assert got.stations[-1].values["edge.ends"] == pytest.approx(bottoms, abs=2e-3)
