@@ -57,8 +57,8 @@ _WARY = 3  # cuts in all after which the curvature is looked at where steps look
 class Course:
     """What is stepped: number ``load``, over a ``span`` without units, in a ``stage``; what to do ``beyond`` its end.
 
-    The assembly is no stage, and has no name.  Where nothing is asked of the end of the branch, steps go on over it to a
-    state ``beside`` it.
+    The assembly is no stage, and has no name.  Where nothing is asked of the end of the branch, steps go on over it to
+    a state ``beside`` it.
     """
 
     load: int
