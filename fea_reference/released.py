@@ -30,7 +30,7 @@ from fea_reference.system import System, load_direction
 _OFF = 0.1  # of h times what F changes by: the most by which the rule is off on a branch
 _DROPPED = 0.6  # of what F changes by: by how much it may be less than its rates say
 _NOTICED = 0.01  # of F: less than that is a bend
-_ROUNDED = 1e-11  # of the energies themselves
+_ROUNDED = 1e-9  # of the energies themselves: Newton's residual and a face's corners leave 1e-10
 _NOTHING = 1e-13  # energy, in units, of a mechanism at rest: no branch ends there
 
 
@@ -54,7 +54,7 @@ def released(
     if missing > _OFF * off + _ROUNDED * size:
         return True
     changes = (forces[1] - forces[0], h * bends[0], h * bends[1])
-    largest, least = max(map(abs, changes)), _NOTICED * max(map(abs, forces))
+    largest, least = max(map(abs, changes)), max(_NOTICED * max(map(abs, forces)), _ROUNDED * size / abs(h))
     dropped = float(np.sign(h)) * (0.5 * (changes[1] + changes[2]) - changes[0])
     turned = changes[1] * h > 0.0 > changes[2] * h and min(abs(changes[1]), abs(changes[2])) > least
     return bool(turned or dropped > max(_DROPPED * largest, least))
