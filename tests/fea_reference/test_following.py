@@ -103,7 +103,7 @@ def test_a_turn_sharper_than_a_step_is_not_stepped_over(monkeypatch):
 
     def lost(march, branch, first, here, there, length):
         ends.append((here, there))
-        return SimpleNamespace(uncertainty=0.0, system=there.system)
+        return SimpleNamespace(value=here.value, uncertainty=0.0, system=there.system)
 
     monkeypatch.setattr(following, "_lost", lost)
     march = SimpleNamespace(

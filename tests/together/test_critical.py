@@ -157,6 +157,15 @@ def test_pinned_column(solve, within):
     assert -found["E.displacement"][0] == pytest.approx(exact.shortening * LENGTH, rel=6.0 * within)
 
 
+@SOLVERS
+def test_a_column_just_before_its_critical_load_is_reached(solve, within):
+    # reference: columns.py; the branch ends behind the last station
+    euler = columns.critical("pinned")
+    answer = solve(branches.pinned_column([0.5 * euler, (1.0 - 2.0 * within) * euler], beyond="stop"))
+    assert answer.completed, answer.sentence
+    assert not answer.critical
+
+
 @pytest.mark.parametrize("angle", [0.0, 2.39])
 @pytest.mark.parametrize(
     ("solver", "settings"),
