@@ -325,14 +325,6 @@ def test_the_document_has_the_documented_keys(bent):
     assert [found["exponent"] for found in data["trends"]] == pytest.approx([1.2, 0.9])
 
 
-def test_the_figures_are_the_same_bytes_every_time(bent):
-    ends = lambda n: (0.0, 0.1, 5, "GAVE_UP", 0.0) if n == 80 else power(1.0)(n)  # noqa: E731
-    again = [section.pictures(Clock(bent, paper=power(1.1), ipopt=ends).benchmark(repeat=2)) for _ in range(2)]
-    assert again[0] == again[1]
-    assert [picture.name for picture in again[0]] == ["bench-precision", "bench"]
-    assert b"<dc:date>" not in again[0][0].svg
-
-
 def test_nothing_that_counts_has_no_figure(bent):
     assert section.pictures(Clock(bent, auto=lambda n: (0.0, 0.1, 5, "GAVE_UP", 0.0)).benchmark(repeat=1)) == ()
 

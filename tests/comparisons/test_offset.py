@@ -149,12 +149,6 @@ def test_what_needs_an_equilibrium_says_so(capsys):
         assert "no equilibrium" in capsys.readouterr().err
 
 
-def test_figures_are_the_same_bytes_every_time(small):
-    compared = compared_offset(cases.asked(small))
-    first, again = offset.offset_figures(compared), offset.offset_figures(compared)
-    assert [picture.svg for picture in first] == [picture.svg for picture in again]
-
-
 def test_a_wrong_question_is_refused_by_its_key():
     for key, value, named, said in (
         ("side", "right", "offsets[8]", "radius of curvature"),
