@@ -1,4 +1,4 @@
-"""Families of made-up answers, whose limits are known, and what is told of them."""
+"""Families of made-up answers with known limits, and the output about the families."""
 
 import json
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The question of an offset curve: its exact route, its verdict, and its way through the command line."""
+"""The question of an offset curve: exact route, verdict, and command line."""
 
 import json
 import tomllib

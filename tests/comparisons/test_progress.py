@@ -1,4 +1,4 @@
-"""What is told while something is solved: bars on a terminal alone, sentences where they are asked for."""
+"""Progress of a solve: bars on a terminal alone, sentences on request."""
 
 import logging
 import os
@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def _on_a_terminal(*arguments):
-    """Exit code, standard output, which is a pipe, and what a terminal at standard error was given."""
+    """Exit code, standard output in a pipe, and the text on a terminal at standard error."""
     program = "import sys; from comparisons.cli.main import run; sys.exit(run(sys.argv[1:]))"
     try:
         mine, its = pty.openpty()
@@ -35,7 +35,7 @@ def _on_a_terminal(*arguments):
     while True:
         try:
             piece = os.read(mine, 4096)
-        except OSError:  # its end of the terminal is closed
+        except OSError:  # the program's end of the terminal is closed
             break
         if not piece:
             break
@@ -92,7 +92,7 @@ def test_a_comparison_says_which_of_its_runs_are_done_and_then_nobody_listens(ri
 
 
 def test_who_does_not_listen_costs_no_sentence(right, monkeypatch):
-    """No record is made where nobody asked for its level."""
+    """No record is made without a listener at the level."""
     made = []
     monkeypatch.setattr(logging.Logger, "makeRecord", lambda *given, **named: made.append(given))
     assert run(["solve", "hinge", "--quiet"], right) == 0

@@ -22,7 +22,7 @@ MACHINE = {
 
 @dataclass
 class Clocked:
-    """Answers at once, refuses or breaks off as told; counts its solves."""
+    """Answers at once, refuses or breaks off on request; counts the solves."""
 
     base: Callable[[Scene, Choices], Answer]
     refuses: str = ""
@@ -40,7 +40,7 @@ class Clocked:
 
 
 def nothing(scene, choices):
-    """An answer without stations, for what looks at times alone."""
+    """An answer without stations, for tests of times."""
     return Answer("made up", scene.name, frozendict(), Ending.COMPLETED, "", ())
 
 
@@ -59,7 +59,7 @@ def three_cells(monkeypatch):
 
 
 def test_table1_has_the_papers_discretisations_and_times():
-    """Table 1 of the paper, and the gripper's (30, 40) of its section 3.3."""
+    """Table 1 of the paper, and the gripper's (30, 40) of section 3.3."""
     theirs = {(cell.case, cell.method, cell.contact, cell.size_text): cell.theirs for cell in table1.CELLS}
     assert theirs == {
         ("hinge", "fea", True, "80"): 4.0,
@@ -104,7 +104,7 @@ def test_every_cell_is_solved_as_often_as_asked_and_a_refusal_is_said():
     assert [row[-1] for row in result.tables[0].rows].count("refused") == 3
     assert sum("found nothing" in sentence for sentence in result.sentences) == 3
     assert "i5-8500" in result.tables[0].note
-    # a quick solve is made twice and the second counts; one solve warms up; a refused cell is not tried again
+    # a quick solve runs twice and the second run counts; one solve warms up; a refused cell is not tried again
     assert solvers.cprbm.solves == 1 + 2 * 2 * 7 + 3
 
 

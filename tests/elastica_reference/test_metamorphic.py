@@ -1,4 +1,4 @@
-"""What may be done to a scene without another answer: each test compares the exact solution with itself."""
+"""Images of a scene with a known change of the answer: the exact solution beside the solution of the image."""
 
 from __future__ import annotations
 
@@ -155,7 +155,7 @@ def test_unloading_comes_back_the_same_way(name):
 
 
 def test_a_circle_that_moves_is_a_beam_that_does():
-    # a circle on a driven slide pressed into a beam's tip, and the beam's ground moved against a circle that stays
+    # a circle on a driven slide pressed into a beam's tip, and the beam's ground moved against a fixed circle
     punch, moved = scenes.punched(), scenes.punched()
     moved["bodies"]["wall"] |= {"motion": "slides", "along": [0.0, 1.0]}
     moved["bodies"]["punch"] = {"motion": "fixed", "points": punch["bodies"]["punch"]["points"]}

@@ -1,4 +1,4 @@
-"""A folder of the user's own modules, named like ours, must not break the program or the library."""
+"""Modules of a user with names of the project must not break the program or the library."""
 
 import subprocess
 import sys
@@ -20,7 +20,7 @@ if __name__ == "__main__":
 
 @pytest.fixture
 def folder(tmp_path):
-    """A folder whose modules end the process as soon as one of them is imported."""
+    """A folder of modules; an import of a module ends the process."""
     for name in OWN_MODULES:
         (tmp_path / name).write_text(f'raise SystemExit("imported the user\'s own {name}")\n')
     return tmp_path
