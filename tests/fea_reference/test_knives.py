@@ -13,7 +13,7 @@ from tests.fea_reference.test_faces import over_a_corner
 
 
 def knife(x, y, half, lean, long):
-    """A wedge with the tip at (x, y): half the angle ``half``, length ``long``, inclination ``lean`` from upright, rad."""
+    """A wedge with the tip at (x, y): half the angle ``half``, length ``long``, lean ``lean`` from upright, rad."""
     feet = [(x + long * np.sin(a), y - long * np.cos(a)) for a in (lean - half, lean + half)]
     return {"kind": "beam-line", "points": (feet[0], (x, y), feet[1], feet[0]), "side": "left"}
 
