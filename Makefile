@@ -28,8 +28,9 @@ compare: $(READY)
 	$(ENVIRONMENT) $(BIN)/cprbm compare all
 
 # With --dist loadfile a worker that takes the place of one that died leaves files unassigned, and the run never ends.
+# Bytecode is written, since workers and commands in fresh processes load the same modules.
 test: $(READY)
-	$(ENVIRONMENT) OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile --max-worker-restart 0
+	$(ENVIRONMENT) PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile --max-worker-restart 0
 
 check: $(READY)
 	$(BIN)/ruff check .

@@ -4,6 +4,7 @@ import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
+from functools import cache
 from pathlib import Path
 
 from .promises import Value
@@ -57,8 +58,13 @@ class Change:
         return None
 
 
+@cache
+def _expression(pattern: str) -> re.Pattern[str]:
+    return re.compile("(.*)".join(map(re.escape, pattern.split("*"))))
+
+
 def _meant(pattern: str, item: str) -> re.Match[str] | None:
-    return re.fullmatch("(.*)".join(map(re.escape, pattern.split("*"))), item)
+    return _expression(pattern).fullmatch(item)
 
 
 def meant(pattern: str, items: Iterable[str]) -> list[str]:

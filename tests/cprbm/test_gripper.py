@@ -71,7 +71,7 @@ def test_the_load_path_leads_where_the_whole_load_does():
 
 
 def test_the_whole_load_is_reached_however_many_joints_are_related():
-    answer = cprbm.answer(gripper("gripper", "F", [16.0]), asked((150, 200)))
+    answer = cprbm.answer(gripper("gripper", "F", [16.0]), asked((90, 120)))
     assert answer.completed, answer.sentence
     # reference: errors of second order, which are less at more links than between 30 and 60
     between = np.max(np.abs(np.subtract(MINIMA[60, 80][0], MINIMA[30, 40][0])))

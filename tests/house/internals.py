@@ -49,6 +49,7 @@ class Internals:
         self.public = public
         self.packages = {module.partition(".")[0] for module in public}
         self._dependencies = cache(self._find_dependencies)
+        self._functions = cache(functions_of)
 
     def names_for(self, test: Path, fixtures: Iterable[str] = ()) -> list[str]:
         """Sorted internal names behind a test.
@@ -65,7 +66,8 @@ class Internals:
             path = waiting.pop()
             if path not in seen:
                 seen.add(path)
-                names, helpers = self._dependencies(path, requested if path.name == "conftest.py" else None)
+                of_fixtures = requested & self._functions(path) if path.name == "conftest.py" else None
+                names, helpers = self._dependencies(path, of_fixtures)
                 internal |= names
                 waiting += helpers
         return sorted(internal)
@@ -119,6 +121,12 @@ class Internals:
         if not name or name in {"__doc__", "__file__", "__name__"}:
             return any(public == module or public.startswith(f"{module}.") for public in self.public)
         return name in self.public.get(module, ())
+
+
+def functions_of(path: Path) -> frozenset[str]:
+    """Names of the functions of a module; no names without the file."""
+    body = ast.parse(path.read_text(encoding="utf-8")).body if path.exists() else []
+    return frozenset(part.name for part in body if isinstance(part, ast.FunctionDef))
 
 
 def imported_names(tree: ast.AST) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""A folder of the user's own modules, named like ours, must not break the program or the library."""
+"""Modules of a user with names of the project must not break the program or the library."""
 
 import subprocess
 import sys
@@ -8,18 +8,19 @@ import pytest
 
 OWN_MODULES = ("scene.py", "exact.py", "comparisons.py", "tests.py")
 PROGRAM = Path(sys.executable).with_name("cprbm")
+SCENE = Path(__file__).parents[1] / "contract" / "scenes" / "cantilever.toml"
 
-FIRST_ON_THE_PATH = """
+FIRST_ON_THE_PATH = f"""
 from comparisons.cli.main import run
 
 if __name__ == "__main__":
-    raise SystemExit(run(["robustness", "--scenes", "1", "--quiet"]))
+    raise SystemExit(run(["robustness", "--replay", {str(SCENE)!r}, "--quiet"]))
 """
 
 
 @pytest.fixture
 def folder(tmp_path):
-    """A folder whose modules end the process as soon as one of them is imported."""
+    """A folder of modules; an import of a module ends the process."""
     for name in OWN_MODULES:
         (tmp_path / name).write_text(f'raise SystemExit("imported the user\'s own {name}")\n')
     return tmp_path
@@ -42,7 +43,7 @@ def test_the_program_shares_its_work_among_processes(folder):
 
 
 def test_the_tools_of_a_checkout_run(folder):
-    done = _run([PROGRAM, "robustness", "--scenes", "1", "--quiet"], folder)
+    done = _run([PROGRAM, "robustness", "--replay", SCENE, "--quiet"], folder)
     assert done.returncode in (0, 3), done.stderr
     assert done.stderr == ""
 

@@ -146,6 +146,7 @@ class HingeSolution:
         return _states(self.hinge, self._unknowns, places)[:, beam - 1]
 
 
+@lru_cache(maxsize=64)
 def solve(hinge: Hinge, moment: float) -> HingeSolution:
     """Equilibrium under ``moment`` (N·m), on the branch that starts at rest.
 

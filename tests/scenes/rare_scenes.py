@@ -19,6 +19,8 @@ from cprbm_scene import Answer, Scene, read
 
 FOLDER = Path(__file__).parent / "rare"
 LINKS, ELEMENTS = 80, 40
+COMPARED = Choices(links=40, elements=28, kinematics="bending")
+"""Coarser than the solvers alone, since a comparison also runs two finer sizes of both."""
 CRITICAL = "critical load"
 
 
@@ -116,7 +118,7 @@ def _number(answer: Answer, expected: Expected) -> float | None:
 
 
 def _compared(question: Scene, expected: Expected) -> Result:
-    found = comparisons.compare(question, Choices(links=LINKS, elements=ELEMENTS, kinematics="bending"))
+    found = comparisons.compare(question, COMPARED)
     rows = [row for row in found.rows if row.probe.name == expected.of]
     last = {"cprbm": rows[-1].cprbm, "fea": rows[-1].fea} if rows else {"cprbm": (), "fea": ()}
     numbers = {solver: _part(values, expected.component) for solver, values in last.items()}

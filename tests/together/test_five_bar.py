@@ -1,6 +1,6 @@
-"""The five-bar of section 3.5: two inputs, and beams that lie on a link of it up to their pins.
+"""The five-bar of section 3.5: two inputs, and beams that lie on a link up to the pins.
 
-No published number exists; each solver is held against itself on other ways, and against the other in the limit.
+No published number exists; the tests compare a solver on several ways, and both solvers in the limit.
 """
 
 from functools import cache
@@ -26,7 +26,7 @@ SOLVERS = {
 
 
 def on_the_way(parts):
-    """The five-bar on another way: angles of the cranks in degrees, counted from where they start."""
+    """The five-bar on another way: angles of the cranks in degrees from the start."""
     scene = cases.opened("five-bar")
     stages = []
     for i, (drive, angles) in enumerate(parts):
@@ -37,7 +37,7 @@ def on_the_way(parts):
 
 
 def states(solve, parts):
-    """Of every state: both angles, degrees, and its values."""
+    """Values of every state by both angles, degrees."""
     answer = solve(on_the_way(parts))
     assert answer.completed, answer.sentence
     angles, found = dict.fromkeys(("alpha1", "alpha2"), 0.0), {}
@@ -78,7 +78,7 @@ def test_it_comes_home(ways):
 
 
 def test_both_solvers_have_one_limit():
-    """Within bending, of the largest value; the chain is of fourth order: its finest mesh is its limit."""
+    """In bending, as a share of the largest value; the chain of fourth order reaches the limit with the finest mesh."""
     scene = cases.opened("five-bar")
     fine = cprbm.answer(scene, cprbm.Settings(links=160)).stations
     reference = fea_reference.answer(scene, fea_reference.Settings(elements=160, kinematics="bending")).stations
@@ -89,8 +89,8 @@ def test_both_solvers_have_one_limit():
 
 
 def test_forces_balance_where_a_penalty_is_so_stiff_that_gaps_are_rounded_to_a_force():
-    # the audit sums an answer up anew.  At 50° link1 presses beside its joint, with a penalty of 2e13: what the gap is
-    # rounded to left 8e-7 of the largest force unbalanced
+    # the audit sums an answer up anew.  At 50° link1 presses beside the joint, with a penalty of 2e13: round-off of the
+    # gap left 8e-7 of the largest force unbalanced
     scene = on_the_way([("alpha1", [20.0]), ("alpha2", [45.0, 50.0])])
     answer = fea_reference.answer(scene, fea_reference.Settings(elements=80))
     assert answer.completed, answer.sentence
