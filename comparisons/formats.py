@@ -13,8 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from comparisons.quantities import COMPONENTS, load_unit
-from cprbm_scene.answer import Answer, Array
-from cprbm_scene.statement import STRESSES, Quantity, Scene, Stage
+from cprbm_scene import STRESSES, Answer, Array, Quantity, Scene, Stage
 from cprbm_scene.units import ANGLE, FORCE, LENGTH, LINE_LOAD, MOMENT, STRESS
 
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"))

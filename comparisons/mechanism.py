@@ -15,8 +15,7 @@ from comparisons.present.columns import Figure, Table
 from comparisons.present.csv_table import comparison_records, csv_of, csv_of_comparisons, numbers
 from comparisons.present.page import rendered
 from comparisons.writing import write
-from cprbm_scene import Answer, Scene
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene import Answer, Scene, frozendict
 
 SolverName = Literal["cprbm", "fea", "exact", "solid"]
 

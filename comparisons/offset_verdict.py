@@ -22,11 +22,8 @@ from comparisons.case import Comparison, Verdict
 from comparisons.formats import percent
 from comparisons.geometry import ordinates
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
-from comparisons.verdict import Word, worst_of
-from comparisons.verdict.uncertainty import SAFETY
-from cprbm_scene import OffsetClaim, OffsetQuestion
-from cprbm_scene.answer import Array
-from cprbm_scene.frozendict import frozendict
+from comparisons.verdict import SAFETY, Word, worst_of
+from cprbm_scene import Array, OffsetClaim, OffsetQuestion, frozendict
 
 _ROUND_OFF = 64.0 * float(np.finfo(float).eps)
 

@@ -35,11 +35,21 @@ from comparisons.choices import Choices, check
 from comparisons.executor import ALONE, Crew, Job, Solver
 from comparisons.formats import in_file_units
 from comparisons.reactions import perturbed_scene
-from comparisons.verdict.runs import SOLVERS, TWICE, Runs, other_theory, runs_of
-from cprbm_scene import Answer, Ending, Mistake, RigidContact, Scene, SceneError, Spacing
-from cprbm_scene.answer import Array
-from cprbm_scene.frozendict import frozendict
-from cprbm_scene.statement import BodyLoad, Curve, Spline
+from comparisons.verdict import SOLVERS, TWICE, Runs, other_theory, runs_of
+from cprbm_scene import (
+    Answer,
+    Array,
+    BodyLoad,
+    Curve,
+    Ending,
+    Mistake,
+    RigidContact,
+    Scene,
+    SceneError,
+    Spacing,
+    Spline,
+    frozendict,
+)
 
 if TYPE_CHECKING:
     from cprbm import OffsetPoints

@@ -45,8 +45,19 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from comparisons.geometry import length, longest, points
-from cprbm_scene.answer import Answer, Array, Shape, StationAnswer
-from cprbm_scene.statement import STRESSES, Beam, DistributedLoad, Probe, Quantity, Scene, Stage
+from cprbm_scene import (
+    STRESSES,
+    Answer,
+    Array,
+    Beam,
+    DistributedLoad,
+    Probe,
+    Quantity,
+    Scene,
+    Shape,
+    Stage,
+    StationAnswer,
+)
 
 VANISHING = 1e-2
 """A reference below this share of its scale may vanish, and is no divisor of shown fractions."""

@@ -46,9 +46,8 @@ import numpy as np
 
 from comparisons.quantities import VANISHING
 from comparisons.stations import find_station, kept, station_of
-from cprbm_scene import Answer, Drive, Probe, Scene, Stage, StationAnswer
+from cprbm_scene import Answer, DisplacementDrive, Drive, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.curves import unit_vector as unit
-from cprbm_scene.statement import DisplacementDrive
 
 PERTURBATION = 2e-3
 """ρ of section 2.4 of the paper."""

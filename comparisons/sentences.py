@@ -8,19 +8,23 @@ from functools import partial
 from comparisons.formats import at_station, distance_text, number, percent, with_unit
 from comparisons.quantities import load_unit
 from comparisons.stations import ends_at_critical, event_tolerance, problems
-from comparisons.verdict import Reason, Word
-from comparisons.verdict.events import (
+from comparisons.verdict import (
     MIRRORED,
     PASSED,
+    SOLVERS,
     Closing,
     CriticalRow,
+    Reason,
+    Row,
+    Runs,
+    Word,
     disagree_within_a_solver,
+    error_ratios,
     mechanism,
     passed_by,
+    tally,
+    true_errors,
 )
-from comparisons.verdict.judge import error_ratios, tally, true_errors
-from comparisons.verdict.rows import Row
-from comparisons.verdict.runs import SOLVERS, Runs
 from cprbm_scene import Answer, Ending, Loss, Scene
 
 NAMES = {"cprbm": "the CPRBM", "fea": "the finite elements"}

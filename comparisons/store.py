@@ -21,8 +21,7 @@ from comparisons.executor import Crew, Decided, Job, Solver, crew_of
 from comparisons.pairing import Solvers, load_solvers
 from comparisons.provenance import program
 from comparisons.writing import clear_partial, write
-from cprbm_scene import Answer, Scene
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene import Answer, Scene, frozendict
 
 _LOG = logging.getLogger(__name__)
 

@@ -38,13 +38,8 @@ from comparisons.reactions import perturbed_scene
 from comparisons.sentences import problem_sentences
 from comparisons.stations import station_of
 from comparisons.store import AnswerMemory
-from comparisons.verdict.events import Place
-from comparisons.verdict.rows import Row, rows_of
-from comparisons.verdict.runs import Runs, Uncertainties, runs_of
-from comparisons.verdict.uncertainty import Error, error, limit
-from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer
-from cprbm_scene.answer import Array, PointForces, frozen_array
-from cprbm_scene.frozendict import frozendict
+from comparisons.verdict import Error, Place, Row, Runs, Uncertainties, error, limit, rows_of, runs_of
+from cprbm_scene import Answer, Array, PointForces, Probe, Scene, SceneError, StationAnswer, frozen_array, frozendict
 
 SolverName = Literal["cprbm", "fea", "solid"]
 

@@ -31,11 +31,9 @@ from comparisons.studies import convergence
 from comparisons.studies import table1 as timings
 from comparisons.studies.report import Report
 from comparisons.tolerances import runs_within
-from comparisons.verdict import Word
-from comparisons.verdict.runs import Runs
+from comparisons.verdict import Runs, Word
 from comparisons.writing import write
-from cprbm_scene import OffsetQuestion, Question
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene import OffsetQuestion, Question, frozendict
 
 
 def compare_all(request: output.Request) -> int:

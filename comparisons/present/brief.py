@@ -16,8 +16,7 @@ from comparisons.present.columns import NOTHING, Column, Table, follow, table_of
 from comparisons.present.row_tables import row_units, share
 from comparisons.present.table import brief_lines
 from comparisons.sentences import pressure, remedy_sentence, theory_sentence
-from comparisons.verdict import SEVERITY, Word
-from comparisons.verdict.rows import ROUND_OFF, Row
+from comparisons.verdict import ROUND_OFF, SEVERITY, Row, Word
 
 LINES, WIDTH = 30, 80
 """Most lines of a brief report, with an empty line below, and most columns."""

@@ -27,8 +27,7 @@ from comparisons.quantities import load_unit, norm, probe_scales, unit_of
 from comparisons.reactions import MESH_ALLOWANCE, PERTURBATION, WorkEnergyReaction, is_long
 from comparisons.stations import kept
 from comparisons.tolerances import Tolerance
-from comparisons.verdict.events import CriticalRow, Place, mechanism, released
-from comparisons.verdict.rows import ROUND_OFF
+from comparisons.verdict import ROUND_OFF, CriticalRow, Place, mechanism, released
 from cprbm_scene import Answer, Critical, Event, Scene, Stage
 
 CRITICAL_TITLE = "Critical values: where a branch ends"

@@ -9,8 +9,7 @@ from comparisons.case import Comparison
 from comparisons.formats import file_unit
 from comparisons.present.columns import Plain
 from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
-from cprbm_scene.answer import Answer, Array, PointForce, StationAnswer
-from cprbm_scene.statement import STRESSES, Probe, Scene
+from cprbm_scene import STRESSES, Answer, Array, PointForce, Probe, Scene, StationAnswer
 
 
 class Number(TypedDict):

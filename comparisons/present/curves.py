@@ -16,9 +16,19 @@ from comparisons.present.csv_table import pressing
 from comparisons.quantities import UNITS, arc_lengths, load_unit
 from comparisons.reactions import ENERGY, MESH_ALLOWANCE, WorkEnergyReaction, multiplier, reaction_probe
 from comparisons.stations import begins_at, station_of
-from cprbm_scene.answer import Answer, Array, StationAnswer
+from cprbm_scene import (
+    Answer,
+    Array,
+    DisplacementDrive,
+    Force,
+    Probe,
+    Quantity,
+    RotationDrive,
+    Scene,
+    Stage,
+    StationAnswer,
+)
 from cprbm_scene.curves import unit_vector as unit
-from cprbm_scene.statement import DisplacementDrive, Force, Probe, Quantity, RotationDrive, Scene, Stage
 
 Look = Mapping[str, Any]
 """Matplotlib's keywords of a line."""

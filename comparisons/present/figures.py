@@ -30,8 +30,7 @@ from comparisons.present.picture import Bounds, Part, View, bounds_of, view_of
 from comparisons.present.row_tables import shown_stations
 from comparisons.present.strips import Coloured
 from comparisons.stations import station_of
-from cprbm_scene import Answer, FreeEnd, Scene, StationAnswer
-from cprbm_scene.answer import Array
+from cprbm_scene import Answer, Array, FreeEnd, Scene, StationAnswer
 
 QUANTITIES: Mapping[Coloured, tuple[str, str, str]] = {
     "bending_stress": ("bending stress", "Pa", "RdYlBu_r"),

@@ -10,10 +10,8 @@ from comparisons.quantities import arc_lengths, unit_of
 from comparisons.reactions import WorkEnergyReaction
 from comparisons.stations import CERTIFICATE_NUMBERS
 from comparisons.tolerances import Tolerance
-from comparisons.verdict.events import CriticalRow, released
-from comparisons.verdict.rows import Row
-from cprbm_scene.answer import Answer, Array, Critical
-from cprbm_scene.statement import STRESSES, Probe, Scene
+from comparisons.verdict import CriticalRow, Row, released
+from cprbm_scene import STRESSES, Answer, Array, Critical, Probe, Scene
 
 
 def comparison(compared: Comparison) -> Plain:

@@ -8,9 +8,9 @@ import numpy as np
 
 from comparisons.geometry import edge_places, is_free_on_the_left, longest
 from comparisons.present.strips import Coloured, Strip, left_of, strip_of
-from cprbm_scene.answer import Answer, Array, StationAnswer
-from cprbm_scene.curves import unit_vector as unit
-from cprbm_scene.statement import (
+from cprbm_scene import (
+    Answer,
+    Array,
     BeamMoment,
     CircleContact,
     DisplacementDrive,
@@ -26,8 +26,10 @@ from cprbm_scene.statement import (
     RigidContact,
     Scene,
     SelfContact,
+    StationAnswer,
     TurningBody,
 )
+from cprbm_scene.curves import unit_vector as unit
 
 Kind = Literal["edge", "rest", "beam", "body", "weld", "pin", "pivot", "stop", "contact"]
 

@@ -10,12 +10,8 @@ from comparisons.geometry import bentness
 from comparisons.opinions import contact_model, thirds_of
 from comparisons.present.columns import Column, Table, columns_of, table_of
 from comparisons.quantities import norm
-from comparisons.verdict.events import Place
-from comparisons.verdict.judge import EXACT_FACTOR, error_ratios, tally, true_errors
-from comparisons.verdict.rows import ROUND_OFF, Row
-from comparisons.verdict.runs import SOLVERS
-from cprbm_scene.answer import Answer, Array
-from cprbm_scene.statement import STRESSES, Quantity, Scene
+from comparisons.verdict import EXACT_FACTOR, ROUND_OFF, SOLVERS, Place, Row, error_ratios, tally, true_errors
+from cprbm_scene import STRESSES, Answer, Array, Quantity, Scene
 
 STRESS = "Errors in stress"
 GROUPS: Mapping[str, frozenset[Quantity]] = {

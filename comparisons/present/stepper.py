@@ -28,9 +28,8 @@ from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, na
 from comparisons.present.row_tables import BOTH, ERROR, share_columns, value_columns
 from comparisons.present.strips import Strip
 from comparisons.present.table import with_minus
-from comparisons.verdict.runs import SOLVERS
-from cprbm_scene.answer import Array, StationAnswer
-from cprbm_scene.statement import STRESSES
+from comparisons.verdict import SOLVERS
+from cprbm_scene import STRESSES, Array, StationAnswer
 
 WIDE = 1000.0
 SHADES = 11

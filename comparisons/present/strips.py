@@ -21,8 +21,7 @@ from typing import Literal
 import numpy as np
 
 from comparisons.geometry import length, points
-from cprbm_scene.answer import Array, StationAnswer
-from cprbm_scene.statement import Beam, Probe, Quantity, Scene
+from cprbm_scene import Array, Beam, Probe, Quantity, Scene, StationAnswer
 
 Coloured = Literal["bending_stress", "combined_stress", "moment"]
 

@@ -24,8 +24,7 @@ from comparisons.executor import WorkerDiedError, call_fresh
 from comparisons.present.figures import QUANTITIES, TINY, colour_unit, stress_picture, view_title
 from comparisons.present.picture import Bounds, View, bounds_of, views_of
 from comparisons.present.strips import Coloured
-from cprbm_scene import Answer, Scene
-from cprbm_scene.answer import Array, Ints
+from cprbm_scene import Answer, Array, Ints, Scene
 
 T = TypeVar("T")
 

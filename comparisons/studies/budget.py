@@ -59,11 +59,8 @@ from comparisons.quantities import direction, norm, probe_scales
 from comparisons.sentences import problem_sentences
 from comparisons.stations import last_station, station_of
 from comparisons.store import AnswerMemory
-from comparisons.verdict.point_forces import away_from_point_forces
-from comparisons.verdict.rows import Row, bare_row
-from comparisons.verdict.uncertainty import limit
-from cprbm_scene import Answer, Probe, Scene, Stage
-from cprbm_scene.answer import Array, Flags
+from comparisons.verdict import Row, away_from_point_forces, bare_row, limit
+from cprbm_scene import Answer, Array, Flags, Probe, Scene, Stage
 
 PARTS = ("contact", "links", "rest", "elements", "penalty")
 """Names of the parts, in the order of the sum."""

@@ -17,11 +17,8 @@ from comparisons.pairing import Solvers, exact_answer, exact_if_covered, paired
 from comparisons.present.canvas import GREY, canvas, finished
 from comparisons.present.columns import Figure, Plain, Section, Table
 from comparisons.stations import complete_part
-from comparisons.verdict import Word
-from comparisons.verdict.judge import LARGEST_MEDIAN, SHARE_WITHIN, ErrorRatio, Tally, error_ratios, tally
-from comparisons.verdict.runs import SOLVERS
-from cprbm_scene import Answer, Scene
-from cprbm_scene.frozendict import frozendict
+from comparisons.verdict import LARGEST_MEDIAN, SHARE_WITHIN, SOLVERS, ErrorRatio, Tally, Word, error_ratios, tally
+from cprbm_scene import Answer, Scene, frozendict
 
 SIZES = ((17, 40), (20, 60), (40, 80), (80, 160))
 """Links per beam of the CPRBM and finite elements per beam."""

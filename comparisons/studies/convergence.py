@@ -25,7 +25,7 @@ from comparisons.studies import budget_section as budgets
 from comparisons.studies import convergence_tables as tables
 from comparisons.studies.budget import account_of
 from comparisons.studies.families import Convergence, Family, Method, Series, critical_families, probe_families, size
-from comparisons.verdict.uncertainty import Limit
+from comparisons.verdict import Limit
 from cprbm_scene import OffsetQuestion, Question, Scene
 from cprbm_scene.offset import FEWEST, MOST
 

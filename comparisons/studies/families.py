@@ -18,13 +18,18 @@ import numpy as np
 from comparisons.choices import Kinematics
 from comparisons.quantities import COMPONENTS, OPEN_AT_ZERO, arc_lengths, load_unit, probe_scales, unit_of
 from comparisons.stations import ends_at_critical, find_station, last_station, span_of, station_of
-from comparisons.verdict.events import mechanism
-from comparisons.verdict.point_forces import away_from_point_forces
-from comparisons.verdict.rows import ROUND_OFF
-from comparisons.verdict.uncertainty import OWN, STANDARD, Limit, limit, observed, orders
-from cprbm_scene.answer import Answer, Array, Critical
-from cprbm_scene.frozendict import frozendict
-from cprbm_scene.statement import CRITICAL, STRESSES, Probe, Scene, Stage
+from comparisons.verdict import (
+    OWN,
+    ROUND_OFF,
+    STANDARD,
+    Limit,
+    away_from_point_forces,
+    limit,
+    mechanism,
+    observed,
+    orders,
+)
+from cprbm_scene import CRITICAL, STRESSES, Answer, Array, Critical, Probe, Scene, Stage, frozendict
 
 _AS_LARGE = 1e-3  # share of the largest stress within which a stress counts as equal
 _BESIDE_A_KINK = 1.5  # elements: the element with the kink, and half of its neighbours

@@ -19,8 +19,7 @@ from comparisons.formats import number
 from comparisons.pairing import Solvers
 from comparisons.present.canvas import BLUE, RED, canvas, finished, name_rows
 from comparisons.present.columns import Column, Figure, Section, plain, records_of, table_of
-from cprbm_scene import Scene
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene import Scene, frozendict
 
 THEIR_MACHINE = "Intel Core i5-8500, MATLAB R2018b for the CPRBM, ANSYS 19.1 for the finite elements"
 

@@ -30,8 +30,7 @@ from comparisons.sweeps.outcome import Asked, Outcome
 from comparisons.sweeps.points import SEED, Axis, Point, in_file_units, place_text, ranges_of
 from comparisons.sweeps.running import JOURNAL, Runner, Sweep, known_outcomes, tasks_of
 from comparisons.writing import append_line
-from cprbm_scene import Mistake, Scene, SceneError
-from cprbm_scene.answer import Array
+from cprbm_scene import Array, Mistake, Scene, SceneError
 
 FEASIBLE = 1e-6
 """Excess over the scale of a limit that still counts as met: the optimum often lies on a limit."""

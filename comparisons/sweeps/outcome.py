@@ -12,7 +12,7 @@ from comparisons.choices import Choices
 from comparisons.executor import TimeLimitError, WorkerDiedError, call_limited
 from comparisons.pairing import Solvers, paired
 from comparisons.present.csv_table import comparison_records, numbers
-from comparisons.verdict.events import passed_by
+from comparisons.verdict import passed_by
 from cprbm_scene import Answer, Scene, SceneError
 
 Asked = Literal["cprbm", "fea", "compare"]

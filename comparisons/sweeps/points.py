@@ -11,8 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from comparisons.formats import file_unit
-from cprbm_scene import Mistake, Scene, SceneError
-from cprbm_scene.answer import Array
+from cprbm_scene import Array, Mistake, Scene, SceneError
 
 Point = Mapping[str, float]
 """Values of parameters by name, SI."""

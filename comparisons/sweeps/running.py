@@ -21,8 +21,7 @@ from comparisons.sweeps.points import Axis, Point, chosen_for_check, in_file_uni
 from comparisons.sweeps.tables import write_tables
 from comparisons.sweeps.workers import Workers, workers_on
 from comparisons.writing import append_line, whole_lines
-from cprbm_scene import Mistake, Scene, SceneError
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene import Mistake, Scene, SceneError, frozendict
 
 _LOG = logging.getLogger(__name__)
 

@@ -31,8 +31,7 @@ from comparisons.sweeps.demands import Bound, Measure, measures, meets
 from comparisons.sweeps.outcome import Asked, Outcome
 from comparisons.sweeps.points import SEED, axes_of, in_file_units
 from comparisons.sweeps.running import Sweep, tasks_of
-from cprbm_scene import Mistake, Scene, SceneError
-from cprbm_scene.answer import Array
+from cprbm_scene import Array, Mistake, Scene, SceneError
 
 LEVELS = (0.025, 0.5, 0.975)
 """Probabilities of the quantiles."""

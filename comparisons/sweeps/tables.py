@@ -28,10 +28,9 @@ from comparisons.present.page import put_section, rendered
 from comparisons.sweeps.demands import Measure, measures
 from comparisons.sweeps.outcome import NumberRecord, Outcome
 from comparisons.sweeps.points import Axis, place_text
-from comparisons.verdict.rows import ROUND_OFF
+from comparisons.verdict import ROUND_OFF
 from comparisons.writing import write
-from cprbm_scene import Scene, Stage
-from cprbm_scene.answer import Array
+from cprbm_scene import Array, Scene, Stage
 
 if TYPE_CHECKING:
     from comparisons.sweeps.running import Sweep, Task

@@ -41,12 +41,10 @@ import numpy as np
 
 from comparisons.quantities import deflection, load_unit
 from comparisons.stations import Where, begins_at, ends_at_critical, event_tolerance, span_of
-from comparisons.verdict import Reason, Word
 from comparisons.verdict.point_forces import active_contacts
 from comparisons.verdict.runs import SOLVERS, Bounds, Runs, solver_of
-from cprbm_scene import Answer, Critical, Loss, Scene, Stage, StationAnswer
-from cprbm_scene.answer import Shape
-from cprbm_scene.frozendict import frozendict
+from comparisons.verdict.words import Reason, Word
+from cprbm_scene import Answer, Critical, Loss, Scene, Shape, Stage, StationAnswer, frozendict
 
 BRANCH = "branch"
 PASSED = "passed critical points"

@@ -42,11 +42,11 @@ from statistics import median
 import numpy as np
 
 from comparisons.stations import ABSENT_WHILE_OPEN
-from comparisons.verdict import Reason, Word
 from comparisons.verdict.events import MIRRORED, PASSED, Place
 from comparisons.verdict.point_forces import resultant
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs import SOLVERS, Runs, Solver
+from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Scene
 
 Judged = tuple[Word | None, Reason | None]

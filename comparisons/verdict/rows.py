@@ -23,13 +23,12 @@ import numpy as np
 
 from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, denominator, norm, probe_scales, unit_of
 from comparisons.stations import complete_stations
-from comparisons.verdict import Reason, Word
 from comparisons.verdict.events import NO_EVENTS, Place, StationEvents, station_events
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
 from comparisons.verdict.runs import Bounds, Runs
 from comparisons.verdict.uncertainty import largest
-from cprbm_scene.answer import Array, Flags, StationAnswer
-from cprbm_scene.statement import STRESSES, Probe, Quantity, Scene, Stage
+from comparisons.verdict.words import Reason, Word
+from cprbm_scene import STRESSES, Array, Flags, Probe, Quantity, Scene, Stage, StationAnswer
 
 ROUND_OFF = 1e-9
 """Round-off of a value, and least uncertainty of an exact value, as shares of the probe's scale."""

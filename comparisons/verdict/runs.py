@@ -41,9 +41,7 @@ from typing import Literal, TypeAlias
 from comparisons.choices import Kinematics
 from comparisons.stations import Where, complete_stations, ends_at_critical, problems, stations_of
 from comparisons.verdict.uncertainty import Error, error
-from cprbm_scene import Answer, Scene, StationAnswer
-from cprbm_scene.answer import Array
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene import Answer, Array, Scene, StationAnswer, frozendict
 
 Solver = Literal["cprbm", "fea"]
 SOLVERS: tuple[Solver, ...] = ("cprbm", "fea")
