@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from comparisons import case
+from comparisons import case, cases
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer, exact_answer, fea_answer, paired, solid_answer, solvers_of
 from comparisons.present import figures
@@ -144,6 +144,41 @@ class Mechanism:
         drawing = (figures.answer_figure(self.scene, answer),) if answer.stations else ()
         ended = "" if answer.stations else f": {answer.sentence or answer.ending.value}"  # otherwise the table has it
         return _html(f"{self.scene.name}: {answer.ending.name}{ended}", answer_tables(self.scene, answer), drawing)
+
+
+def open(  # noqa: A001 - as in gzip.open or Image.open
+    case: str | Path, parameters: Mapping[str, float | str] | None = None
+) -> Mechanism:
+    """The mechanism of a scene file, or of a built-in case.
+
+    Args:
+        case: path of a TOML file, or name of a built-in case.
+        parameters: values of the scene's parameters by name, numbers in SI units or texts such as ``1.9mm``.
+
+    Returns:
+        The mechanism.
+
+    Raises:
+        SceneError: no case has this name, or the file is no valid scene.
+    """
+    return Mechanism(cases.opened(str(case), parameters))
+
+
+def compare(scene: Scene, choices: Choices | None = None) -> MechanismComparison:
+    """Both solvers' answers to a scene beside each other, and the verdict.
+
+    Args:
+        scene: the question, as :func:`cprbm_scene.read` hands it back.
+        choices: how finely, and by which variants (:class:`comparisons.choices.Choices`); the standard ones if None.
+
+    Returns:
+        The comparison of ``cprbm compare``: ``verdict``, ``rows`` with their uncertainties, and the answers in
+        ``runs``.
+
+    Raises:
+        SceneError: a solver refuses the question.
+    """
+    return Mechanism(scene).compare(choices)
 
 
 def _saved(drawing: Figure, path: str | Path | None) -> Figure:

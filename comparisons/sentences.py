@@ -7,7 +7,7 @@ from functools import partial
 
 from comparisons.formats import at_station, distance_text, number, percent, with_unit
 from comparisons.quantities import load_unit
-from comparisons.stations import ends_at_critical, event_tolerance, problems
+from comparisons.stations import ends_at_critical, event_tolerance, problems, stations_of
 from comparisons.verdict import (
     MIRRORED,
     PASSED,
@@ -53,7 +53,7 @@ def headline(runs: Runs, rows: Sequence[Row], decided: tuple[Word, Reason | None
     if word is Word.AGREE:
         counts = f"All {total}" if len(mine) == total else f"{len(mine)} of {total}"
         found = "The only row agrees," if total == 1 else f"{counts} rows agree; the closest is"
-        return f"{found} {place(runs.scene, row)}: {_measured(row)}.{_others(rows)}"
+        return f"{found} {place(runs.scene, row)}: {_measured(row)}.{_others(rows)}{_early_end(runs)}"
     verb = "differ" if word is Word.DIFFER else "are undecided"
     return f"{len(mine)} of {total} rows {verb}, first of all {place(runs.scene, row)}: {_explained(runs, row, reason)}"
 
@@ -268,6 +268,16 @@ def _others(rows: Sequence[Row]) -> str:
     found = Counter((row.probe.name, row.reason.value) for row in rows if row.word is Word.UNDECIDED and row.reason)
     parts = ", ".join(f"{count} of {name} ({reason})" for (name, reason), count in found.items())
     return f" Undecided rows: {parts}." if parts else ""
+
+
+def _early_end(runs: Runs) -> str:
+    """Stations that no agreeing case reaches, since both answers end at a critical point; empty for a complete case."""
+    asked, reached = len(stations_of(runs.scene)), len(runs.reached)
+    if asked == reached:
+        return ""
+    end = runs.answers["cprbm"].critical[-1]
+    where = f"{at_station(runs.scene, end.stage, end.value)} ({mechanism(end)})"
+    return f" The case ends early, at {where}: {asked - reached} of {asked} stations are not reached."
 
 
 def _measured(row: Row) -> str:

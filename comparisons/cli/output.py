@@ -137,13 +137,17 @@ class Request:
         return replace(self, out=out)
 
 
+def screen_width() -> int:
+    """Columns of the terminal, or of a file."""
+    return shutil.get_terminal_size().columns if sys.stdout.isatty() else _PLAIN_WIDTH
+
+
 def print_tables(tables: Iterable[Table], most: int = 10_000) -> None:
     """Print tables with at most ``most`` columns; colours appear on a terminal only."""
     from comparisons.present.table import screen_text  # loads rich
 
-    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else _PLAIN_WIDTH
     for table in tables:
-        click.echo(screen_text(table, width=min(width, most)))
+        click.echo(screen_text(table, width=min(screen_width(), most)))
 
 
 def print_section(section: Section) -> None:

@@ -117,7 +117,8 @@ def _show(request: output.Request, compared: Compared) -> None:
     """Print a case: in brief, with ``-v`` with all tables, or quietly with the verdict alone."""
     if not request.quiet and logs.level() == NOTSET:
         values = [text for name, value in request.values.items() for text in ("--set", f"{name}={value}")]
-        click.echo(brief.brief(compared, shlex.join([cases.argument(compared.question), *values]), request.out) + "\n")
+        argument = shlex.join([cases.argument(compared.question), *values])
+        click.echo(brief.brief(compared, argument, request.out, output.screen_width()) + "\n")
         return
     if not request.quiet:
         for section in page.sections_of(compared):

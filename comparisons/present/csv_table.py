@@ -3,12 +3,14 @@
 import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any, TypedDict
 
 from comparisons.case import Comparison
 from comparisons.formats import file_unit
 from comparisons.present.columns import Plain
 from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
+from comparisons.writing import write
 from cprbm_scene import STRESSES, Answer, Array, PointForce, Probe, Scene, StationAnswer
 
 
@@ -69,6 +71,34 @@ def numbers(scene: Scene, answer: Answer) -> Iterator[Number]:
                     value=value,
                     station_unit=load_unit(scene, stage),
                 )
+
+
+def records(scene: Scene, answer: Answer) -> list[Number]:
+    """Every number of an answer with its origin: ``pandas.DataFrame(records(scene, answer))`` is one table.
+
+    Args:
+        scene: the question.
+        answer: a solver's answer to the question.
+
+    Returns:
+        A dictionary of each number: ``scene``, ``solver``, ``stage``, ``station``, ``branch``, ``probe``,
+        ``component``, ``arc_length`` (m, along a beam), ``unit`` (SI) and ``value``.
+    """
+    return list(numbers(scene, answer))
+
+
+def write_csv(path: str | Path, scene: Scene, *answers: Answer) -> None:
+    """Write the numbers of answers as a file of comma-separated values with a line of headers.
+
+    Args:
+        path: of the file; a missing folder is made.
+        scene: the question.
+        answers: of one solver or several to the question, one below the other.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    write(Path(path), csv_of(scene, *answers))
 
 
 def _parts(scene: Scene, probe: Probe, values: Array) -> dict[tuple[str, float | None], float]:

@@ -20,7 +20,7 @@ from typing import Literal
 
 from pydantic import ValidationError
 
-from comparisons.formats import file_unit
+from comparisons.formats import file_unit, joined, with_symbols
 from comparisons.quantities import COMPONENTS, unit_of
 from comparisons.sweeps.outcome import NumberRecord, Outcome
 from cprbm_scene import Mistake, Scene, SceneError
@@ -122,7 +122,7 @@ class Measure:
 
     def text(self, value: float) -> str:
         """A value with its unit."""
-        return f"{value:.6g} {self.unit}".rstrip()
+        return joined(f"{value:.6g}", with_symbols(self.unit))
 
 
 @dataclass(frozen=True, slots=True)

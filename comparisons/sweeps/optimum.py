@@ -22,8 +22,10 @@ from pathlib import Path
 from threading import Lock
 
 import numpy as np
+from scipy.optimize import Bounds, NonlinearConstraint, minimize
+from scipy.stats import qmc
 
-from comparisons.formats import number
+from comparisons.formats import number, with_symbols
 from comparisons.present.columns import Column, Plain, Section, Table, plain, table_of
 from comparisons.sweeps.demands import Bound, Goal, Measure, bounds_of, measure_of, read_demands
 from comparisons.sweeps.outcome import Asked, Outcome
@@ -77,8 +79,6 @@ class Problem:
 
     def starts(self, count: int) -> list[Array]:
         """Shares (d,) of ``count`` starts: the values of the file, and Sobol points."""
-        from scipy.stats import qmc
-
         own = [(self.scene.parameters[axis.name].value - axis.low) / (axis.high - axis.low) for axis in self.axes]
         others = qmc.Sobol(len(own), seed=SEED).random_base2((count - 1).bit_length())
         return [np.clip(own, 0.0, 1.0), *others[: count - 1]]
@@ -230,8 +230,6 @@ def optimum(problem: Problem, runner: Runner, starts: int, most: int) -> Optimum
 
 def _end(problem: Problem, solver: _PointSolver, scale: float, most: int, begun: Array) -> End:
     """End of the start at the shares ``begun`` (d,)."""
-    from scipy.optimize import Bounds, NonlinearConstraint, minimize
-
     seen: dict[bytes, Array] = {}
 
     def values(u: Array) -> Array:
@@ -298,7 +296,7 @@ def _starts_table(found: Optimum) -> Table:
     columns = [
         Column[End]("start", "begun", place),
         Column("end", "point", place),
-        Column(f"{problem.measure}, {problem.measure.unit}", "number", partial(number, digits=6)),
+        Column(f"{problem.measure}, {with_symbols(problem.measure.unit)}", "number", partial(number, digits=6)),
         Column("limits", lambda each: "met" if each.feasible else "not met"),
         Column("solves", "solves"),
         Column("ending", "outcome.ending"),
@@ -309,7 +307,7 @@ def _starts_table(found: Optimum) -> Table:
 def _check_table(found: Optimum) -> Table:
     """Goal and limits at N and 2N links, and by the finite elements."""
     rows = tuple(
-        (name, measure.unit, *(number(value, 6) for value in _checked(found, measure)))
+        (name, with_symbols(measure.unit), *(number(value, 6) for value in _checked(found, measure)))
         for name, measure in _numbers(found.problem).items()
     )
     return Table("Best point, checked", ("number", "unit", "CPRBM", "at 2N", "FEA"), rows)

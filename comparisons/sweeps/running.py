@@ -239,25 +239,48 @@ class Runner:
                 future.cancel()
 
 
-def start(
+def sweep(
     scene: Scene,
     vary: Mapping[str, Sequence[float]],
-    asked: Asked,
-    check: int,
-    choices: Choices | None,
-    executor: Executor | str | None,
-    limit: float,
-    out: Path | None,
+    solver: Asked = "cprbm",
+    check: int = 0,
+    choices: Choices | None = None,
+    executor: Executor | str | None = None,
+    at_most: float = 600.0,
+    out: str | Path | None = None,
 ) -> Sweep:
-    """The finished sweep of a grid; arguments and errors as of :func:`comparisons.sweep`."""
+    """A scene at all combinations of values of its parameters.
+
+    Points are solved in processes: a script calls this function below ``if __name__ == "__main__":``.
+
+    Args:
+        scene: the question, read from a file with parameters.
+        vary: two values or more by the name of a parameter, SI.
+        solver: solver of every point, or ``compare`` for both with a verdict.
+        check: number of points at which both solvers are compared.
+        choices: how finely, and by which variants; the standard choices if None.
+        executor: executor of the solves, as of :mod:`concurrent.futures`, or ``dask://HOST:PORT`` with the address of
+            a scheduler; None for this machine.
+        at_most: time limit of a solve, s.
+        out: folder of the tables, where a stopped sweep goes on; None for no folder.
+
+    Returns:
+        The points with their outcomes.
+
+    Raises:
+        SceneError: the scene refuses a name or a value.
+        OSError: the folder cannot be written to.
+    """
     points = tuple(dict(zip(vary, map(float, values), strict=True)) for values in product(*vary.values()))
     axes = [Axis(name, min(each), max(each), len(each)) for name, each in vary.items()]
     chosen, place = choices or Choices(), executor or f"local:{os.cpu_count() or 1}"
-    tasks = tasks_of(scene, points, asked, chosen_for_check(points, axes, check), chosen)
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
+    tasks = tasks_of(scene, points, solver, chosen_for_check(points, axes, check), chosen)
+    folder = None if out is None else Path(out)
+    if folder is not None:
+        folder.mkdir(parents=True, exist_ok=True)
     with workers_on(place) if isinstance(place, str) else nullcontext(Workers(place)) as workers:
-        sweep = Runner(workers, chosen, Solvers(), limit, out).run(Sweep(scene, in_file_units(scene, axes), tasks))
-    if out is not None:
-        write_tables(out, sweep)
-    return sweep
+        runner = Runner(workers, chosen, Solvers(), at_most, folder)
+        found = runner.run(Sweep(scene, in_file_units(scene, axes), tasks))
+    if folder is not None:
+        write_tables(folder, found)
+    return found

@@ -22,9 +22,10 @@ from functools import cached_property, partial
 from typing import NamedTuple, Protocol
 
 import numpy as np
+from scipy.stats import binomtest, norm, qmc, quantile_test, sobol_indices, uniform
 
 from comparisons.choices import Choices
-from comparisons.formats import number, percent, scaled_unit
+from comparisons.formats import number, percent, scaled_unit, with_symbols
 from comparisons.present.canvas import BLUE, RED, canvas, finished, panels
 from comparisons.present.columns import Figure, Plain, Section, Table, plain
 from comparisons.sweeps.demands import Bound, Measure, measures, meets
@@ -64,8 +65,6 @@ def distributions_of(scene: Scene) -> dict[str, Distribution]:
     Raises:
         SceneError: no parameter has a tolerance.
     """
-    from scipy.stats import norm, uniform
-
     found: dict[str, Distribution] = {}
     for name, parameter in scene.parameters.items():
         scatter = parameter.tolerance
@@ -85,8 +84,6 @@ def drawn(distributions: Mapping[str, Distribution], count: int, *, indices: boo
     Raises:
         SceneError: indices of a single parameter.
     """
-    from scipy.stats import qmc
-
     size = len(distributions)
     if indices and size < 2:
         raise SceneError([Mistake("--sobol", "one parameter with a tolerance", "two or more: the index of one is 1")])
@@ -120,8 +117,6 @@ class Indices:
 
 def quantiles(values: Array) -> tuple[Interval, ...]:
     """Quantiles of ``values`` (n,) at ``LEVELS``."""
-    from scipy.stats import quantile_test
-
     found = []
     for level in LEVELS:
         ends = quantile_test(values, p=level).confidence_interval(_CONFIDENCE)
@@ -131,8 +126,6 @@ def quantiles(values: Array) -> tuple[Interval, ...]:
 
 def share(count: int, whole: int) -> Interval:
     """``count`` over ``whole``."""
-    from scipy.stats import binomtest
-
     ends = binomtest(count, whole).proportion_ci(_CONFIDENCE, method="wilson")
     return Interval(count / whole, float(ends.low), float(ends.high))
 
@@ -155,8 +148,6 @@ def indices(values: Array) -> Indices:
 
 def _estimates(values: Array) -> Array:
     """Estimates (2, d) of the first- and total-order indices."""
-    from scipy.stats import sobol_indices
-
     functions = {"f_A": values[None, 0], "f_B": values[None, 1], "f_AB": values[2:, None]}
     found = sobol_indices(func=functions, n=values.shape[1])
     return np.array([found.first_order, found.total_order])
@@ -312,7 +303,14 @@ def _quantile_table(scatter: Scatter, scattering: Sequence[Measure]) -> Table:
         size, unit = (1.0, measure.unit) if measure.size != 1.0 else scaled_unit(measure.unit, abs(nominal))
         values = values_of(measure, scatter.standing) / size
         cells = map(_cell, quantiles(values))
-        rows.append((str(measure), unit, *map(_plain, (nominal / size, values.mean(), values.std(ddof=1))), *cells))
+        rows.append(
+            (
+                str(measure),
+                with_symbols(unit),
+                *map(_plain, (nominal / size, values.mean(), values.std(ddof=1))),
+                *cells,
+            )
+        )
     note = "Last stations; complete answers on the branch of the nominal point. In brackets the ends of the interval."
     return Table("Quantiles", headers, tuple(rows), note)
 
@@ -348,7 +346,7 @@ def _histograms(scatter: Scatter, chosen: Sequence[Measure]) -> Iterator[Figure]
         for axes, measure in zip(panels(figure, len(chosen), 2.6), chosen, strict=True):
             axes.hist(values_of(measure, scatter.standing), bins="auto", color=BLUE)
             axes.axvline(measure.values(scatter.nominal)[0], color=RED, linewidth=1.0)
-            axes.set(xlabel=f"{measure}, {measure.unit}".rstrip(", "), ylabel="points")
+            axes.set(xlabel=f"{measure}, {with_symbols(measure.unit)}".rstrip(", "), ylabel="points")
         yield finished(figure, "scatter", "Numbers of points by value at the last stations. Line: nominal value.")
 
 

@@ -67,7 +67,7 @@ def write_tables(folder: Path, sweep: Sweep) -> None:
     Raises:
         OSError: a file cannot be written.
     """
-    heads = ["point", *(axis.label for axis in sweep.axes), "solver"]
+    heads = ["point", *(axis.column for axis in sweep.axes), "solver"]
     tails = ["ending", "verdict", "reason", "iterations", "seconds", "key", "sentence"]
     long = (_in_units(sweep, record) for record in records(sweep))
     columns = [*heads, *_PLACES, *_VALUES, "unit", "word", *tails]
@@ -92,7 +92,7 @@ def name_of(number: NumberRecord) -> str:
 def _in_units(sweep: Sweep, record: Mapping[str, Any]) -> dict[str, Any]:
     """A record with the units of the scene's file; parameters have their units in the keys."""
     row = in_file_units(sweep.scene, record) if "unit" in record else {**record}
-    return row | {axis.label: in_unit(row.pop(axis.name), axis.size) for axis in sweep.axes}
+    return row | {axis.column: in_unit(row.pop(axis.name), axis.size) for axis in sweep.axes}
 
 
 def write_netcdf(path: Path, sweep: Sweep) -> None:
