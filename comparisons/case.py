@@ -160,6 +160,7 @@ def _verdict(
     sentences = (
         *(sentence for *_, sentence in findings),
         said.ended_sentence(runs, others) if completed and others else "",
+        said.unreached_sentence(runs) if completed else "",
         *said.passed_sentences(runs, rows),
         said.calibration_sentence(scene, rows),
         said.theory_sentence(runs, rows),

@@ -139,14 +139,13 @@ def distance_text(scene: Scene, value: float, unit: str) -> str:
 
 def load_text(scene: Scene, stage: str, value: float) -> str:
     """A value of the load or drive that the stage of a name steps, with its displayed unit."""
-    unit = load_unit(scene, next(each for each in scene.stages if each.name == stage))
-    factor, name = _file_symbol(scene, unit)
+    factor, name = _file_symbol(scene, load_unit(scene, stage))
     return joined(f"{value / factor:.6g}", name) + _in_degrees(value, name)
 
 
 def load_column(scene: Scene, stage: Stage, values: Sequence[float]) -> tuple[str, tuple[str, ...]]:
     """Heading and texts of a column with values of a stage's load or drive."""
-    factor, unit = _file_symbol(scene, load_unit(scene, stage))
+    factor, unit = _file_symbol(scene, load_unit(scene, stage.name))
     return f"{stage.steps}, {unit}", tuple(f"{value / factor:.6g}{_in_degrees(value, unit)}" for value in values)
 
 

@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from comparisons import case, cases
 from comparisons.choices import Choices
-from comparisons.pairing import cprbm_answer, exact_answer, fea_answer, paired, solid_answer, solvers_of
+from comparisons.pairing import ANSWERS, SolverName, paired, solvers_of
 from comparisons.present import figures
 from comparisons.present.brief import headline, last_rows_of_stages, nearest_rows
 from comparisons.present.case_tables import answer_tables
@@ -16,10 +16,6 @@ from comparisons.present.csv_table import comparison_records, csv_of, csv_of_com
 from comparisons.present.page import rendered
 from comparisons.writing import write
 from cprbm_scene import Answer, Scene, frozendict
-
-SolverName = Literal["cprbm", "fea", "exact", "solid"]
-
-_SOLVERS = {"cprbm": cprbm_answer, "fea": fea_answer, "exact": exact_answer, "solid": solid_answer}
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -88,9 +84,9 @@ class Mechanism:
             SceneError: the solver refuses the scene.
             ValueError: no solver has this name.
         """
-        if solver not in _SOLVERS:
-            raise ValueError(f"found the solver {solver!r}; allowed: {', '.join(_SOLVERS)}")
-        answer = _SOLVERS[solver](self.scene, choices or Choices())
+        if solver not in ANSWERS:
+            raise ValueError(f"found the solver {solver!r}; allowed: {', '.join(ANSWERS)}")
+        answer = ANSWERS[solver](self.scene, choices or Choices())
         # an unknown key of a frozendict is refused with the known keys
         named = (replace(station, values=frozendict(station.values)) for station in answer.stations)
         return replace(answer, stations=tuple(named))

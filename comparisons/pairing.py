@@ -23,11 +23,11 @@ of the drive (:mod:`comparisons.reactions`).  The work–energy reaction follows
 use the reaction.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from pydantic import ValidationError
 
@@ -195,6 +195,15 @@ def solid_answer(scene: Scene, choices: Choices) -> Answer:
         settings = solid.Settings(elements=choices.elements, across=choices.across)
     return in_file_units(scene, solid.answer(scene, settings))
 
+
+SolverName = Literal["cprbm", "fea", "exact", "solid"]
+ANSWERS: Mapping[SolverName, Solver] = {
+    "cprbm": cprbm_answer,
+    "fea": fea_answer,
+    "exact": exact_answer,
+    "solid": solid_answer,
+}
+"""Functions of all solvers of a single answer."""
 
 Offsets: TypeAlias = "OffsetPoints"
 OffsetConstruction = Callable[[Curve, Spacing, int, Array], "OffsetPoints"]

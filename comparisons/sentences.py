@@ -53,7 +53,7 @@ def headline(runs: Runs, rows: Sequence[Row], decided: tuple[Word, Reason | None
     if word is Word.AGREE:
         counts = f"All {total}" if len(mine) == total else f"{len(mine)} of {total}"
         found = "The only row agrees," if total == 1 else f"{counts} rows agree; the closest is"
-        return f"{found} {place(runs.scene, row)}: {_measured(row)}.{_others(rows)}{_early_end(runs)}"
+        return f"{found} {place(runs.scene, row)}: {_measured(row)}.{_others(rows)}"
     verb = "differ" if word is Word.DIFFER else "are undecided"
     return f"{len(mine)} of {total} rows {verb}, first of all {place(runs.scene, row)}: {_explained(runs, row, reason)}"
 
@@ -125,6 +125,16 @@ def ended_sentence(runs: Runs, names: Iterable[str]) -> str:
     return f"Runs without a complete answer: {parts}."
 
 
+def unreached_sentence(runs: Runs) -> str:
+    """Number of the stations that the compared runs do not reach, and the critical point there; empty without any."""
+    asked, reached, critical = len(stations_of(runs.scene)), len(runs.reached), runs.pair[0].critical
+    if asked == reached:
+        return ""
+    end = critical[-1] if critical and all(map(ends_at_critical, runs.pair)) else None
+    place = f", at {at_station(runs.scene, end.stage, end.value)} ({mechanism(end)})" if end else ""
+    return f"The case ends early{place}: {asked - reached} of {asked} stations are not reached."
+
+
 def remedy_sentence(answer: Answer) -> str:
     """Changes that may continue an answer beyond its early end; empty without advice."""
     cause = answer.critical[-1].loss if ends_at_critical(answer) else answer.ending
@@ -171,7 +181,7 @@ def critical_sentence(runs: Runs, row: CriticalRow) -> str:
 def closing_sentence(scene: Scene, closing: Closing) -> str:
     """Loads at which a contact closes in both solvers."""
     stage, contact, pair, bounds = closing
-    unit = load_unit(scene, stage)
+    unit = load_unit(scene, stage.name)
     loads = " and ".join(
         f"{with_unit(scene, value, unit, 5)} in {name}" for value, name in zip(pair, NAMES.values(), strict=True)
     )
@@ -268,16 +278,6 @@ def _others(rows: Sequence[Row]) -> str:
     found = Counter((row.probe.name, row.reason.value) for row in rows if row.word is Word.UNDECIDED and row.reason)
     parts = ", ".join(f"{count} of {name} ({reason})" for (name, reason), count in found.items())
     return f" Undecided rows: {parts}." if parts else ""
-
-
-def _early_end(runs: Runs) -> str:
-    """Stations that no agreeing case reaches, since both answers end at a critical point; empty for a complete case."""
-    asked, reached = len(stations_of(runs.scene)), len(runs.reached)
-    if asked == reached:
-        return ""
-    end = runs.answers["cprbm"].critical[-1]
-    where = f"{at_station(runs.scene, end.stage, end.value)} ({mechanism(end)})"
-    return f" The case ends early, at {where}: {asked - reached} of {asked} stations are not reached."
 
 
 def _measured(row: Row) -> str:

@@ -15,7 +15,7 @@ from comparisons.present import offset
 from comparisons.present.columns import NOTHING, Column, Table, follow, table_of
 from comparisons.present.row_tables import row_units, share
 from comparisons.present.table import brief_lines
-from comparisons.sentences import pressure, remedy_sentence, theory_sentence
+from comparisons.sentences import pressure, remedy_sentence, theory_sentence, unreached_sentence
 from comparisons.verdict import ROUND_OFF, SEVERITY, Row, Word
 
 LINES, WIDTH = 30, 80
@@ -48,7 +48,11 @@ def brief(compared: Compared, argument: str, page: Path | None = None, width: in
         errors = offset.error_table(compared)
         lines = *brief_lines(errors, width=width), *wrapped(f"{errors.title}. {errors.note}")
         return "\n".join((*first, "", *lines, *last))
-    rest = [theory_sentence(compared.runs, compared.rows), *dict.fromkeys(map(remedy_sentence, compared.runs.pair))]
+    rest = [
+        unreached_sentence(compared.runs),
+        theory_sentence(compared.runs, compared.rows),
+        *dict.fromkeys(map(remedy_sentence, compared.runs.pair)),
+    ]
     rest = [*_found_sizes(compared), *(rest if compared.rows else ())]
     last = [*chain.from_iterable(map(wrapped, rest)), *last]
     rows = last_rows_of_stages(compared)

@@ -53,23 +53,22 @@ _CONTACT_FORCE = (
 
 def numbers(scene: Scene, answer: Answer) -> Iterator[Number]:
     """Every number of an answer, station by station and probe by probe; a missing value has no record."""
-    stages = {stage.name: stage for stage in scene.stages}
     for station in answer.stations:
-        stage = stages[station.stage]
+        station_unit = load_unit(scene, station.stage)
         for probe in scene.probes_in(station.stage):
             for (component, arc_length), value in _parts(scene, probe, station.values[probe.name]).items():
                 yield Number(
                     scene=scene.name,
                     solver=answer.solver,
-                    stage=stage.name,
+                    stage=station.stage,
                     station=station.value,
                     branch=station.branch,
                     probe=probe.name,
                     component=component,
                     arc_length=arc_length,
-                    unit=unit_of(scene, probe, stage),
+                    unit=unit_of(scene, probe, station.stage),
                     value=value,
-                    station_unit=load_unit(scene, stage),
+                    station_unit=station_unit,
                 )
 
 
@@ -115,10 +114,9 @@ def comparison_records(compared: Comparison) -> list[Plain]:
     ``difference`` and ``stated`` are norms of the probe, in ``unit``.
     """
     scene, records = compared.scene, list[Plain]()
-    units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
     for row in compared.rows:
         cprbm, fea = (_parts(scene, row.probe, values) for values in (row.cprbm, row.fea))
-        where = (scene.name, *row.where, units[row.stage], row.branch, row.probe.name)
+        where = (scene.name, *row.where, load_unit(scene, row.stage), row.branch, row.probe.name)
         judged = (row.difference, row.bounds and row.bounds.total, row.word.value if row.word else "")
         records += [
             dict(zip(_COMPARISON, (*where, *part, row.unit, cprbm.get(part), fea.get(part), *judged), strict=True))
@@ -141,9 +139,8 @@ def csv_of_comparisons(comparisons: Sequence[Comparison]) -> str:
 
 def contact_csv(scene: Scene, answers: Sequence[Answer]) -> str:
     """Contact forces of answers as comma-separated values in the units of the scene's file, with a line of headers."""
-    units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
     lines = (
-        (scene.name, answer.solver, at.stage, at.value, units[at.stage], force.source, force.target,
+        (scene.name, answer.solver, at.stage, at.value, load_unit(scene, at.stage), force.source, force.target,
          *map(float, (force.s, *force.place)), "m", *map(float, force.force), "N")
         for answer in answers for at in answer.stations for force in pressing(scene, at)
     )  # fmt: skip

@@ -143,7 +143,9 @@ def _curve(
 ) -> Figure:
     """Values of both answers against a load or drive, branch by branch, with critical points and jumps."""
     names, steps = {stage.name for stage in stages}, stages[0].steps
-    step, step_unit = axis_unit(scene, load_unit(scene, stages[0]), max(abs(x) for at in stages for x in at.stations))
+    step, step_unit = axis_unit(
+        scene, load_unit(scene, stages[0].name), max(abs(x) for at in stages for x in at.stations)
+    )
     mine = [station for answer in answers.values() for station in answer.stations if station.stage in names]
     panels = []
     for title, si, lines in ordinates:
@@ -210,7 +212,7 @@ def reaction_figures(compared: Comparison) -> Iterator[Figure]:
         if len({each.station for each in found}) < 2:
             continue
         factor, unit_name = display_unit(scene, found[0].unit, max(abs(each.multiplier) for each in found))
-        si = load_unit(scene, next(stage for stage in scene.stages if stage.name == found[0].stage))
+        si = load_unit(scene, found[0].stage)
         step, step_unit = axis_unit(scene, si, max(abs(each.station) for each in found))
         crosses = {**FEA, "linestyle": "none", "marker": "x"}
         forces = {

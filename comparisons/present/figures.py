@@ -29,6 +29,7 @@ from comparisons.present.curves import contact_figures, curve_figures, reaction_
 from comparisons.present.picture import Bounds, Part, View, bounds_of, view_of
 from comparisons.present.row_tables import shown_stations
 from comparisons.present.strips import Coloured
+from comparisons.quantities import stage_of
 from comparisons.stations import station_of
 from cprbm_scene import Answer, Array, FreeEnd, Scene, StationAnswer
 
@@ -182,8 +183,8 @@ def stress_picture(scene: Scene, view: View, bounds: Bounds, quantity: Coloured,
 
 def view_title(scene: Scene, view: View) -> str:
     """Stage, and load or drive at the station."""
-    stage = next(each for each in scene.stages if each.name == view.station.stage)
-    return f"{stage.name}, {stage.steps} = {load_text(scene, stage.name, view.station.value)}"
+    stage, value = view.station.stage, view.station.value
+    return f"{stage}, {stage_of(scene, stage).steps} = {load_text(scene, stage, value)}"
 
 
 def colour_unit(scene: Scene, quantity: Coloured, most: float) -> tuple[float, str]:

@@ -54,7 +54,6 @@ def solution(
     scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = (), audited: Audit | None = None
 ) -> Plain:
     """One case of ``solve``: the shape of ``compare`` with the column of one solver and no verdict."""
-    stages = {stage.name: stage for stage in scene.stages}
     return {
         "case": scene.name,
         "solvers": {answer.solver: {**solver(answer, audited), **_search(tolerances, answer.solver)}},
@@ -64,7 +63,7 @@ def solution(
                 "stage": station.stage,
                 "station": station.value,
                 "branch": station.branch,
-                "unit": unit_of(scene, probe, stages[station.stage]),
+                "unit": unit_of(scene, probe, station.stage),
                 answer.solver: values(probe, station.values[probe.name]),
                 **_places(scene, probe),
             }

@@ -62,18 +62,14 @@ class Strip:
         """Places (k, 2), m, of the neutral line at fractions ``u`` (k,) of the arc length."""
         return np.stack([np.interp(u * self.s[-1], self.s, each) for each in self.line.T], axis=1)
 
-    def layer(self, eta: float) -> Array:
-        """Places (n, 2), m, at the height η."""
-        return np.asarray(self.line + 0.5 * eta * self.thickness[:, None] * self.normal)
-
-    def rest_layer(self, eta: float) -> Array:
-        """Places (n, 2), m, at the height η of the beam at rest."""
-        return np.asarray(self.rest_line + 0.5 * eta * self.thickness[:, None] * self.rest_normal)
+    def layer(self, eta: float, *, rest: bool = False) -> Array:
+        """Places (n, 2), m, at the height η of the beam, or of the beam at ``rest``."""
+        line, normal = (self.rest_line, self.rest_normal) if rest else (self.line, self.normal)
+        return np.asarray(line + 0.5 * eta * self.thickness[:, None] * normal)
 
     def outline(self, *, rest: bool = False) -> Array:
         """Polygon (2n, 2), m, of both edges."""
-        edge = self.rest_layer if rest else self.layer
-        return np.concatenate([edge(-1.0), edge(1.0)[::-1]])
+        return np.concatenate([self.layer(-1.0, rest=rest), self.layer(1.0, rest=rest)[::-1]])
 
 
 def with_stresses(scene: Scene) -> Scene:

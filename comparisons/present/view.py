@@ -22,7 +22,7 @@ import numpy as np
 
 from comparisons.executor import WorkerDiedError, call_fresh
 from comparisons.present.figures import QUANTITIES, TINY, colour_unit, stress_picture, view_title
-from comparisons.present.picture import Bounds, View, bounds_of, views_of
+from comparisons.present.picture import Bounds, View, bounds_of, view_of
 from comparisons.present.strips import Coloured
 from cprbm_scene import Answer, Array, Ints, Scene
 
@@ -65,7 +65,7 @@ def files(scene: Scene, answer: Answer, path: Path, kind: Kind, quantity: Colour
         ImportError: a library for the kind is not installed.
         DrawingError: VTK cannot draw here.
     """
-    views = views_of(scene, answer)[0 if kind in _MOVING else -1 :]
+    views = [view_of(scene, station) for station in answer.stations[0 if kind in _MOVING else -1 :]]
     bounds = bounds_of(scene, views, quantity)
     if kind == ".pvd":
         yield from series(scene, views, path)
@@ -235,7 +235,7 @@ def beam_block(view: View) -> Block:
     blocks, eta = [], np.linspace(-1.0, 1.0, ACROSS + 1)
     for number, strip in enumerate(view.strips.values()):
         places = np.stack([strip.layer(each) for each in eta], axis=1)  # (n, ACROSS + 1, 2)
-        moved = places - np.stack([strip.rest_layer(each) for each in eta], axis=1)
+        moved = places - np.stack([strip.layer(each, rest=True) for each in eta], axis=1)
         values = {
             "displacement": np.pad(moved, ((0, 0), (0, 0), (0, 1))),
             "bending_stress": -eta * strip.bending_stress[:, None],

@@ -216,7 +216,7 @@ def measures(scene: Scene, *, every: bool = False) -> tuple[Measure, ...]:
             component,
             every,
             len(set(stage.stations)),
-            *file_unit(scene, unit_of(scene, probe, stage)),
+            *file_unit(scene, unit_of(scene, probe, stage.name)),
         )
         for stage in scene.stages
         for probe in scene.probes_in(stage.name)

@@ -193,7 +193,12 @@ class Runner:
             journal.unlink()
         tasks = tuple(task.known(every) for task in sweep.tasks)
         wanted = {task.key: task for task in tasks}
-        outcomes = {key: every[key] for key in wanted if key in every and not self._again(every[key])}
+        known = {key: every[key] for key in wanted if key in every}
+        outcomes = {
+            key: outcome
+            for key, outcome in known.items()
+            if not (outcome.ending == "CRASHED" or (outcome.ending == "TIME_LIMIT" and self.limit > outcome.limit))
+        }
         self.moved(len(outcomes))
         for task, outcome in self._solved([task for key, task in wanted.items() if key not in outcomes]):
             outcomes[task.key] = outcome
@@ -201,10 +206,6 @@ class Runner:
                 append_line(journal, outcome.line(task.key))
             self.moved(len(outcomes))
         return replace(sweep, tasks=tasks, outcomes=outcomes)
-
-    def _again(self, outcome: Outcome) -> bool:
-        """Whether a further solve may change the outcome."""
-        return outcome.ending == "CRASHED" or (outcome.ending == "TIME_LIMIT" and self.limit > outcome.limit)
 
     def _solved(self, tasks: Sequence[Task]) -> Iterator[tuple[Task, Outcome]]:
         """Points with outcomes in the order of their ends.

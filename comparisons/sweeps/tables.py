@@ -25,6 +25,7 @@ from comparisons.present.canvas import BLUE, RED, Axes, canvas, finished, panels
 from comparisons.present.columns import Figure, Section
 from comparisons.present.csv_table import csv_text, in_file_units, in_unit
 from comparisons.present.page import put_section, rendered
+from comparisons.quantities import stage_of
 from comparisons.sweeps.demands import Measure, measures
 from comparisons.sweeps.outcome import NumberRecord, Outcome
 from comparisons.sweeps.points import Axis, place_text
@@ -282,7 +283,7 @@ def _slider(sweep: Sweep, solved: Solved, measure: Measure) -> Mapping[str, Any]
     curves = [measure.numbers(outcome) for _, outcome in solved]
     ends = [curve[-1] for curve in curves if curve]
     (size, unit), (step, step_unit) = _unit_of(sweep, ends), _unit_of(sweep, ends, "station")
-    steps = next(each.steps for each in sweep.scene.stages if each.name == measure.stage)
+    steps = stage_of(sweep.scene, measure.stage).steps
     return {
         "title": f"Stage {measure.stage}: {measure.name}, {unit}, against {steps}, {step_unit}",
         "curves": [

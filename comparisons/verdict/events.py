@@ -190,7 +190,7 @@ def _critical_row(runs: Runs, stage: Stage, place: int, here: Mapping[str, Criti
     row = CriticalRow(
         stage=stage.name,
         place=place,
-        unit=load_unit(runs.scene, stage),
+        unit=load_unit(runs.scene, stage.name),
         cprbm=here["cprbm"],
         fea=here["fea"],
         span=span,
