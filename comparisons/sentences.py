@@ -155,26 +155,24 @@ def critical_sentence(runs: Runs, row: CriticalRow) -> str:
         texts = " and ".join(f"{with_unit(scene, each.value, row.unit, 5)} ({mechanism(each)})" for each in points)
         beside = f", which passed {texts} and went on," if texts else ""
         places.append(f"nowhere in {name}{beside}" if one is None else f"{texts} in {name}")
-    parts = " and ".join(places)
-    if row.bounds is not None:
-        sizes = (row.difference, row.bounds.total, row.allowed)
-        apart, stated, allowed = (distance_text(scene, size, row.unit) for size in sizes)
-        parts += f", {apart} apart against a stated {stated}, {allowed} allowed"
-        if math.isfinite(row.theory):
-            parts += f"; the theories are {distance_text(scene, row.theory, row.unit)} apart"
-        elif row.theory > row.largest:
-            parts += "; the CPRBM has no such point in the other theory"
-    elif row.ended_before:
-        parts += ", and the run without it ended before that load"
-    if disagree_within_a_solver(row.mechanisms) and not (row.bounds is None and row.ended_before):
-        names: dict[str, list[str]] = {}
-        for run, found in row.mechanisms.items():
-            names.setdefault(found or "no such point", []).append(run)
-        listed = "; ".join(f"{found} in {', '.join(runs)}" for found, runs in names.items())
-        parts += f", and runs of one solver disagree ({listed}); refine both: `-n` and `--elements` twice as large"
-    if row.turned:
-        most = number(max(row.turned.values()), 3)
-        parts += f". {', '.join(row.turned)} passed it and went on along a state turned by {most} rad"
+    runs_by_mechanism: dict[str, list[str]] = {}
+    for run, found in row.mechanisms.items():
+        runs_by_mechanism.setdefault(found or "no such point", []).append(run)
+    listed = "; ".join(f"{found} in {', '.join(names)}" for found, names in runs_by_mechanism.items())
+    known, total = row.bounds is not None, math.nan if row.bounds is None else row.bounds.total
+    sizes = (row.difference, total, row.allowed, row.theory)
+    apart, stated, allowed, theories = (distance_text(scene, size, row.unit) for size in sizes)
+    most, disagree = number(max(row.turned.values(), default=0.0), 3), disagree_within_a_solver(row.mechanisms)
+    clauses = {
+        f", {apart} apart against a stated {stated}, {allowed} allowed": known,
+        f"; the theories are {theories} apart": known and math.isfinite(row.theory),
+        "; the CPRBM has no such point in the other theory": known and row.theory == math.inf > row.largest,
+        ", and the run without it ended before that load": not known and row.ended_before,
+        f", and runs of one solver disagree ({listed}); refine both: `-n` and `--elements` twice as large":
+            disagree and (known or not row.ended_before),
+        f". {', '.join(row.turned)} passed it and went on along a state turned by {most} rad": bool(row.turned),
+    }  # fmt: skip
+    parts = " and ".join(places) + "".join(text for text, holds in clauses.items() if holds)
     return f"The branch ends in {row.stage} at {parts}: {row.word.value}."
 
 

@@ -31,6 +31,7 @@ from comparisons.sweeps.demands import Bound, Goal, Measure, bounds_of, measure_
 from comparisons.sweeps.outcome import Asked, Outcome
 from comparisons.sweeps.points import SEED, Axis, Point, in_file_units, place_text, ranges_of
 from comparisons.sweeps.running import JOURNAL, Runner, Sweep, known_outcomes, tasks_of
+from comparisons.verdict import first_met
 from comparisons.writing import append_line
 from cprbm_scene import Array, Mistake, Scene, SceneError
 
@@ -151,14 +152,14 @@ class Optimum:
     @property
     def doubt(self) -> str:
         """Why the best end is no optimum; empty for an optimum."""
-        if not self.best.feasible:
-            return "no start met all limits"
-        if not self.best.settled:
-            return "the number of solves ran out"
-        if not self.finer.completed:
-            return f"twice the links end with {self.finer.ending}"
         verdict = self.compared.verdict or self.compared.ending
-        return "" if verdict == "AGREE" else f"both solvers: {verdict} {self.compared.reason}".rstrip()
+        rules = (
+            (not self.best.feasible, "no start met all limits"),
+            (not self.best.settled, "the number of solves ran out"),
+            (not self.finer.completed, f"twice the links end with {self.finer.ending}"),
+            (verdict != "AGREE", f"both solvers: {verdict} {self.compared.reason}".rstrip()),
+        )
+        return first_met(rules, "")
 
 
 @dataclass(frozen=True, slots=True)

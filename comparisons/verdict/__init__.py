@@ -41,7 +41,7 @@ from comparisons.verdict.uncertainty import (
     observed,
     orders,
 )
-from comparisons.verdict.words import SEVERITY, Reason, Word, worst_of
+from comparisons.verdict.words import SEVERITY, Reason, Word, first_met, worst_of
 
 __all__ = [
     "EXACT_FACTOR",
@@ -77,6 +77,7 @@ __all__ = [
     "error",
     "error_ratios",
     "far_closings",
+    "first_met",
     "judge_case",
     "judge_rows",
     "largest",

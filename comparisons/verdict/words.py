@@ -2,6 +2,9 @@
 
 from collections.abc import Iterable
 from enum import Enum
+from typing import TypeVar
+
+T = TypeVar("T")
 
 
 class Word(Enum):
@@ -36,3 +39,8 @@ def worst_of(words: Iterable[Word | None]) -> Word | None:
     """DIFFER before UNDECIDED before AGREE; None without a word."""
     found = set(words)
     return next((word for word in SEVERITY if word in found), None)
+
+
+def first_met(rules: Iterable[tuple[bool, T]], otherwise: T) -> T:
+    """The result of the first rule that is met, of pairs of a condition and a result."""
+    return next((result for met, result in rules if met), otherwise)
