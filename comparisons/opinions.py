@@ -32,7 +32,18 @@ from comparisons.case import Comparison
 from comparisons.formats import percent
 from comparisons.quantities import VANISHING, norm
 from comparisons.stations import find_station, station_of
-from comparisons.verdict import GRIDS, CriticalRow, Limit, Row, Runs, Third, away_from_point_forces, largest, limit
+from comparisons.verdict import (
+    GRIDS,
+    CriticalRow,
+    Limit,
+    Row,
+    Runs,
+    Third,
+    away_from_point_forces,
+    largest,
+    limit,
+    other_theory,
+)
 from cprbm_scene import CRITICAL, STRESSES, Answer, Claim, Flags, Scene, StationAnswer
 
 _OF_THE_VALUE = frozenset({"force", "reaction", "reaction_moment"})
@@ -184,7 +195,7 @@ def solid_sentence(compared: Comparison) -> str:
     return (
         f"Beside the solid, displacements and rotations at the last station are off by at most "
         f"{_largest(last, 'fea')} in {runs.theory} (finite elements) and {_largest(last, 'other')} in "
-        f"{runs.other_theory} (CPRBM); the solid is uncertain by {_largest(last, 'uncertainty')}."
+        f"{other_theory(runs.theory)} (CPRBM); the solid is uncertain by {_largest(last, 'uncertainty')}."
     )
 
 

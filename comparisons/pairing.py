@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from pydantic import ValidationError
 
-from comparisons.choices import Choices, check
+from comparisons.choices import Choices, check_counts
 from comparisons.executor import ALONE, Crew, Job, Solver
 from comparisons.formats import in_file_units
 from comparisons.reactions import perturbed_scene
@@ -276,7 +276,7 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
     Raises:
         SceneError: the choices do not fit the scene.
     """
-    check(choices, scene)
+    check_counts(choices, scene)
     theory = choices.kinematics_of(scene)
     choices = choices.within(theory)
     even = replace(choices, formulation="auto")
@@ -339,7 +339,7 @@ def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> dict[str, Answ
 
 
 def in_other_theory(scene: Scene, choices: Choices, solvers: Solvers) -> dict[str, Answer | str]:
-    """The CPRBM in the other theory (:attr:`Runs.other_theory`), or the mistakes of a refusal, by name of the run."""
+    """The CPRBM in the other theory, or the mistakes of a refusal, by name of the run."""
     theory = other_theory(choices.kinematics_of(scene))
     try:
         return {f"cprbm {theory}": solvers.cprbm(scene, choices.within(theory))}

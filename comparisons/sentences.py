@@ -21,6 +21,7 @@ from comparisons.verdict import (
     disagree_within_a_solver,
     error_ratios,
     mechanism,
+    other_theory,
     passed_by,
     tally,
     true_errors,
@@ -97,15 +98,15 @@ def theory_sentence(runs: Runs, rows: Sequence[Row]) -> str:
     """The largest step of theory, or why the CPRBM has no value in the other theory; empty without this run."""
     scene, other, own = runs.scene, runs.other, runs.answers["cprbm"]
     if other is None:
-        refused = runs.absences.get(f"cprbm {runs.other_theory}")
-        return f"The CPRBM does not answer in {runs.other_theory}: {refused}." if refused else ""
-    parts, inside = [], f"In {runs.other_theory} the CPRBM"
+        refused = runs.absences.get(f"cprbm {other_theory(runs.theory)}")
+        return f"The CPRBM does not answer in {other_theory(runs.theory)}: {refused}." if refused else ""
+    parts, inside = [], f"In {other_theory(runs.theory)} the CPRBM"
     steps = [(row.theory / row.scale, row) for row in rows if math.isfinite(row.theory)]
     if steps:
         largest, row = max(steps, key=lambda step: step[0])
         parts.append(f"{inside}'s values are at most {percent(largest)} of the scale away ({place(scene, row)}).")
     if other.completed and not own.completed:
-        parts.append(f"{inside} has a complete answer: `--theory {runs.other_theory}`.")
+        parts.append(f"{inside} has a complete answer: `--theory {other_theory(runs.theory)}`.")
     elif own.completed and not other.completed:
         parts.append(f"{inside} has no complete answer: {_first(problem_sentences(scene, other))}.")
     return " ".join(parts)

@@ -21,7 +21,7 @@ from typing import TypeVar
 import click
 
 from comparisons import cases, logs, pairing
-from comparisons.choices import Choices, check
+from comparisons.choices import Choices, check_counts
 from comparisons.cli.errors import printable
 from comparisons.present.columns import Plain, Section, Table
 from comparisons.writing import text_of, write
@@ -122,7 +122,7 @@ class Request:
         for scene in (question for question in questions if isinstance(question, Scene)):
             for note in notes(scene):
                 click.echo(printable(f"Note: {scene.file}: {note}"), err=True)
-            check(self.choices, scene)
+            check_counts(self.choices, scene)
 
     def with_room(self, folder: str = "") -> Request:
         """The request with its folders made; without ``--out`` the report goes to ``folder``, or nowhere if empty.

@@ -17,7 +17,7 @@ from comparisons import case, cases, logs, pairing, provenance
 from comparisons.bench import measures, running
 from comparisons.bench.section import bench_section, size_text
 from comparisons.case import Comparison
-from comparisons.choices import Count, check
+from comparisons.choices import Count, check_counts
 from comparisons.cli import output
 from comparisons.cli.commands import load_tool
 from comparisons.cli.errors import INCOMPLETE, UNDECIDED
@@ -26,9 +26,7 @@ from comparisons.offset_verdict import Compared, compared_offset
 from comparisons.present import brief, csv_table, figures, page
 from comparisons.present.columns import Plain, Section
 from comparisons.store import Run, run_into
-from comparisons.studies import calibration as calibrations
-from comparisons.studies import convergence
-from comparisons.studies import table1 as timings
+from comparisons.studies import calibration, convergence, table1
 from comparisons.studies.report import Report
 from comparisons.tolerances import runs_within
 from comparisons.verdict import Runs, Word
@@ -219,7 +217,7 @@ def bench(
     opened, whole = request.scene().model_copy(update={"theory": "bending"}), stations == "all"
     counts = tuple(n if isinstance(n, int) else frozendict(n) for n in numbers) or (sizes or ())
     for n in counts:
-        check(replace(request.choices, links=n), opened)
+        check_counts(replace(request.choices, links=n), opened)
     wanted = methods or (*running.OURS, *OPTIMISERS)
     asked = [each for each in running.contenders(request.solvers, request.choices) if each.name in wanted]
     asked += [load_tool(f"bench --method {name}").contender() for name in OPTIMISERS if name in wanted]
@@ -252,22 +250,22 @@ def _absence(contender: running.Contender, *, whole: bool) -> str:
     return "an optimiser solves the last station only" if alone else contender.absence
 
 
-def calibration(request: output.Request) -> int:
+def study_calibration(request: output.Request) -> int:
     """Compare stated with true errors; exit code 1 for a case that differs or did not complete."""
     request = request.with_room()
     with run_into(request.out, request.solvers, processes=request.processes) as run:
-        take = partial(calibrations.with_case, solvers=run.solvers, crew=run.crew)
-        found = take_steps(request, calibrations.Calibration(), calibrations.pieces(), take, calibrations.result_of)
+        take = partial(calibration.with_case, solvers=run.solvers, crew=run.crew)
+        found = take_steps(request, calibration.Calibration(), calibration.pieces(), take, calibration.result_of)
     verdicts = [trial.verdict for trial in found.trials]
     return INCOMPLETE if any(each.word is Word.DIFFER or not each.completed for each in verdicts) else 0
 
 
-def table1(request: output.Request, repeat: int) -> int:
+def study_table1(request: output.Request, repeat: int) -> int:
     """Time both solvers on the cells of the paper's Table 1; exit code 1 for an incomplete solve."""
     request = request.with_room()
-    session = timings.session(request.solvers, provenance.machine(), repeat, request.at_most)
-    take_steps(request, session, session.jobs(), running.Session.do, timings.result_of)
-    return 0 if timings.result_of(session).complete else INCOMPLETE
+    session = table1.session(request.solvers, provenance.machine(), repeat, request.at_most)
+    take_steps(request, session, session.jobs(), running.Session.do, table1.result_of)
+    return 0 if table1.result_of(session).complete else INCOMPLETE
 
 
 def take_steps(

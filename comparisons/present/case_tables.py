@@ -27,7 +27,7 @@ from comparisons.quantities import load_unit, norm, probe_scales, unit_of
 from comparisons.reactions import MESH_ALLOWANCE, PERTURBATION, WorkEnergyReaction, is_long
 from comparisons.stations import kept
 from comparisons.tolerances import Tolerance
-from comparisons.verdict import ROUND_OFF, CriticalRow, Place, mechanism, released
+from comparisons.verdict import ROUND_OFF, CriticalRow, Place, mechanism, other_theory, released
 from cprbm_scene import Answer, Critical, Event, Scene, Stage
 
 CRITICAL_TITLE = "Critical values: where a branch ends"
@@ -331,7 +331,7 @@ def _seconds_table(compared: Comparison) -> Table:
     labels = {
         "cprbm": f"CPRBM ({runs.theory})",
         "fea": f"FEA ({runs.theory})",
-        f"cprbm {runs.other_theory}": f"CPRBM ({runs.other_theory})",
+        f"cprbm {other_theory(runs.theory)}": f"CPRBM ({other_theory(runs.theory)})",
         "exact": "exact (bending)",
     }
     answers = [(label, runs.answers[name]) for name, label in labels.items() if name in runs.answers]

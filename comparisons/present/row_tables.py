@@ -10,7 +10,17 @@ from comparisons.geometry import bentness
 from comparisons.opinions import contact_model, thirds_of
 from comparisons.present.columns import Column, Table, columns_of, table_of
 from comparisons.quantities import norm
-from comparisons.verdict import EXACT_FACTOR, ROUND_OFF, SOLVERS, Place, Row, error_ratios, tally, true_errors
+from comparisons.verdict import (
+    EXACT_FACTOR,
+    ROUND_OFF,
+    SOLVERS,
+    Place,
+    Row,
+    error_ratios,
+    other_theory,
+    tally,
+    true_errors,
+)
 from cprbm_scene import STRESSES, Answer, Array, Quantity, Scene
 
 STRESS = "Errors in stress"
@@ -147,7 +157,7 @@ def theory_table(compared: Comparison, rows: Sequence[Row]) -> Table:
     """Values of one station in both theories; without rows where the CPRBM has no value in the other theory."""
     runs = compared.runs
     paths = {
-        f"CPRBM in {runs.other_theory}": "other",
+        f"CPRBM in {other_theory(runs.theory)}": "other",
         f"CPRBM in {runs.theory}": "cprbm",
         f"FEA in {runs.theory}": "fea",
     }
@@ -218,7 +228,7 @@ def solid_table(compared: Comparison) -> Table:
         "u solid": "third.uncertainty",
         "CPRBM off": "third.cprbm",
         "FEA off": "third.fea",
-        f"CPRBM in {compared.runs.other_theory} off": "third.other",
+        f"CPRBM in {other_theory(compared.runs.theory)} off": "third.other",
     }
     values = {**BOTH, "solid": "third.solid"}
     return table_of(

@@ -51,7 +51,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from comparisons.choices import Choices, check
+from comparisons.choices import Choices, check_counts
 from comparisons.geometry import bentness_on, length
 from comparisons.opinions import solid_limit
 from comparisons.pairing import in_paper
@@ -154,7 +154,7 @@ def account_of(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
     Raises:
         SceneError: a solver refuses the question.
     """
-    check(choices, scene)
+    check_counts(choices, scene)
     choices = choices.within(choices.kinematics_of(scene))
     runs = _solve(scene, choices, memory)
     solids = runs.pop("solid", [])

@@ -12,8 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
 
-from comparisons.choices import Choices
-from comparisons.choices import check as check_choices
+from comparisons.choices import Choices, check_counts
 from comparisons.pairing import Solvers
 from comparisons.store import digest, relevant
 from comparisons.sweeps.outcome import Asked, Outcome, crashed, outcome_of, solve_limited
@@ -109,7 +108,7 @@ def tasks_of(
     Raises:
         SceneError: the scene at a point is invalid.
     """
-    check_choices(choices, scene)
+    check_counts(choices, scene)
     found, refused = [], []
     for place in range(shard[0] - 1, len(points), shard[1]):
         point = points[place]

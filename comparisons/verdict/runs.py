@@ -103,14 +103,9 @@ class Runs:
         return self.answers["cprbm"], self.answers["fea"]
 
     @property
-    def other_theory(self) -> Kinematics:
-        """``bending``, the paper's theory; ``shear`` where the comparison is in ``bending``."""
-        return other_theory(self.theory)
-
-    @property
     def other(self) -> Answer | None:
         """The CPRBM's answer in the other theory; None without this run."""
-        return self.answers.get(f"cprbm {self.other_theory}")
+        return self.answers.get(f"cprbm {other_theory(self.theory)}")
 
     @property
     def formulations(self) -> tuple[str, str]:
