@@ -88,8 +88,7 @@ def pictures(measured: Session) -> tuple[Figure, ...]:
 
 
 def _precision(rows: Rows, measures: Sequence[Measure]) -> Figure:
-    with canvas(6.4, 1.2 + 3.6 * len(measures)) as drawing:
-        panels = np.atleast_1d(drawing.subplots(len(measures), 1, sharex=True))
+    with canvas(6.4, 1.2 + 3.6 * len(measures), len(measures), shared="x") as (drawing, panels):
         for axes, measure in zip(panels, measures, strict=True):
             for method, mine in rows.items():
                 shown = [row for row in mine if row.errors.get(measure, 0.0) > 0.0]
@@ -107,8 +106,8 @@ def _precision(rows: Rows, measures: Sequence[Measure]) -> Figure:
 
 
 def _growth(rows: Rows) -> Figure:
-    with canvas(6.4, 7.2) as drawing:
-        seconds, iterations = drawing.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    with canvas(6.4, 7.2, 2, shared="x") as (drawing, (seconds, iterations)):
+        drawing.axes[0].get_gridspec().set_height_ratios((3, 2))
         for method, mine in rows.items():
             _, exponent, _ = trend(tuple(mine))
             label = method.label + ("" if exponent is None else f": exponent {exponent:.2f}")

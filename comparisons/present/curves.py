@@ -81,8 +81,7 @@ def panels_figure(
         marks: abscissa, colour and text of dotted lines across all panels.
         shared: whether all panels have the same range of abscissae.
     """
-    with canvas(_WIDTH, 0.8 + _HEIGHT * len(panels)) as drawing:
-        plots = drawing.subplots(len(panels), 1, sharex=shared, squeeze=False)[:, 0]
+    with canvas(_WIDTH, 0.8 + _HEIGHT * len(panels), len(panels), shared="x" if shared else "") as (drawing, plots):
         for axes, panel in zip(plots, panels, strict=True):
             axes.axhspan(-panel.band, panel.band, color=_BAND, linewidth=0.0, zorder=0)
             axes.axhline(0.0, color=GREY, linewidth=0.5)

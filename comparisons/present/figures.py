@@ -86,8 +86,7 @@ def designs_figure(designs: Sequence[Comparison]) -> Figure:
     views = [view_of(each.scene, each.runs.answers["fea"].stations[-1]) for each in designs]
     limits = [bounds_of(each.scene, [view], "moment") for each, view in zip(designs, views, strict=True)]
     low, high = np.min([each.low for each in limits], axis=0), np.max([each.high for each in limits], axis=0)
-    with canvas(*_sides(low, high, _SHAPES, (0.9, 1.3))) as drawing:
-        axes = drawing.add_subplot()
+    with canvas(*_sides(low, high, _SHAPES, (0.9, 1.3))) as (drawing, (axes,)):
         for each, view, colour in zip(designs, views, cycle(_DESIGNS), strict=False):
             draw_parts(axes, view.of("body", "weld", "pin", "pivot"), colour)
             label = f"{each.scene.name}: {at_station(each.scene, view.station.stage, view.station.value)}"
@@ -112,9 +111,8 @@ def shapes(scene: Scene, answers: Mapping[str, Answer], stations: Sequence[tuple
     columns = 1 if alone or float(np.ptp((high - low) / max(high - low))) >= 0.6 else 2
     rows, steps = -(-len(views) // columns), {stage.name: stage.steps for stage in scene.stages}
     width, height = _sides(low, high, _SHAPES, (0.8, 0.8))
-    with canvas(columns * width, rows * height + 0.6) as drawing:
-        for place, (view, pair, (stage, value)) in enumerate(zip(views, found, stations, strict=True)):
-            axes = drawing.add_subplot(rows, columns, place + 1)
+    with canvas(columns * width, rows * height + 0.6, len(views), columns) as (drawing, plots):
+        for axes, view, pair, (stage, value) in zip(plots, views, found, stations, strict=True):
             _draw_mechanism(axes, scene, view, pair)
             if alone:
                 draw_names(axes, scene)
@@ -171,8 +169,7 @@ def _set_window(axes: Axes, scene: Scene, low: Array, high: Array, title: str = 
 
 def stress_picture(scene: Scene, view: View, bounds: Bounds, quantity: Coloured, kind: str, dots: float) -> bytes:
     """A view as ``png`` or ``svg``: beams at true thickness with colours of a quantity, over the beams at rest."""
-    with canvas(*_sides(bounds.low, bounds.high, _STRESS, (1.6, 1.0))) as drawing:
-        axes = drawing.add_subplot()
+    with canvas(*_sides(bounds.low, bounds.high, _STRESS, (1.6, 1.0))) as (drawing, (axes,)):
         draw_parts(axes, view.of("edge", "rest"))
         _draw_colours(drawing, axes, scene, view, bounds, quantity)
         draw_parts(axes, view.of("body", "weld", "pin", "pivot", "stop"))

@@ -126,8 +126,7 @@ def _errors(compared: OffsetComparison) -> Figure:
     found = {(row.spacing, row.n, row.offset): 100.0 * row.difference for row in compared.rows}
     positive = [value for value in found.values() if value > 0.0] or [1.0]
     least, most = 10.0 ** np.floor(np.log10(min(positive))), 10.0 ** np.ceil(np.log10(max(positive)))
-    with canvas(5.2, 2.6 * len(spacings)) as drawing:
-        plots = drawing.subplots(len(spacings), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    with canvas(5.2, 2.6 * len(spacings), len(spacings), shared="xy") as (drawing, plots):
         for axes, spacing in zip(plots, spacings, strict=True):
             z = np.array([[max(found[spacing, n, t], least) for n in numbers] for t in offsets])
             mesh = axes.pcolormesh(
@@ -147,8 +146,7 @@ def _errors(compared: OffsetComparison) -> Figure:
 def _points(compared: OffsetComparison, shown: Shown) -> Figure:
     """The curve, its exact offsets and the calculated points, in the manner of the paper's Fig. 5."""
     question, u = compared.question, np.linspace(0.0, 1.0, 400)
-    with canvas(5.2, 3.0 * len(shown.numbers)) as drawing:
-        plots = drawing.subplots(len(shown.numbers), 1, sharex=True, squeeze=False)[:, 0]
+    with canvas(5.2, 3.0 * len(shown.numbers), len(shown.numbers), shared="x") as (drawing, plots):
         for axes, n, points in zip(plots, shown.numbers, compared.shown, strict=True):
             axes.plot(*offset_curve(question.curve, u, 0.0).T, color="black", linewidth=1.4, label="curve")
             for t, found in zip(shown.offsets, points, strict=True):

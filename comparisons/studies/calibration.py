@@ -202,8 +202,7 @@ def _worst(found: Calibration) -> Table:
 
 def _stated_against_true(found: Calibration) -> Figure:
     """Stated against true errors of every row, a panel for each solver and a colour for each case."""
-    with canvas(9.6, 5.2) as drawing:
-        panels = drawing.subplots(1, 2, sharex=True, sharey=True)
+    with canvas(9.6, 5.2, 2, 2, "xy") as (drawing, panels):
         every = [size for trial in found.trials for each in trial.ratios for size in _shares(each)]
         low, high = 0.5 * min(every), 2.0 * max(every)
         for axes, solver in zip(panels, SOLVERS, strict=True):

@@ -101,8 +101,7 @@ def convergence_figures(found: Convergence) -> tuple[Figure, ...]:
     if not last:
         return ()
     names = list(dict.fromkeys(family.probe for family in last))
-    with canvas(10.4, 5.6) as drawing:
-        panels = drawing.subplots(1, 2, sharey=True)
+    with canvas(10.4, 5.6, 2, 2, "y") as (drawing, panels):
         for axes, method, count in zip(panels, convergence_tables.NAMES, ("links", "elements"), strict=True):
             logarithmic(axes, found.sizes)
             for family in last:
@@ -231,8 +230,7 @@ def _offset_table(question: OffsetQuestion, numbers: tuple[int, ...], families: 
 
 
 def _offset_figure(question: OffsetQuestion, numbers: tuple[int, ...], families: list[Family]) -> Figure:
-    with canvas(6.4, 4.2) as drawing:
-        axes = drawing.add_subplot()
+    with canvas(6.4, 4.2) as (drawing, (axes,)):
         for place, spacing in enumerate(question.spacings):
             line, marker = LINES[place % len(LINES)]
             worst = [_largest(families, spacing, n) for n in numbers]

@@ -180,8 +180,7 @@ def result_of(measured: Session, cells: tuple[Cell, ...] = CELLS) -> Section:
 
 def _run_times(cells: tuple[Cell, ...], taken: Mapping[Cell, Timing]) -> Figure:
     """Our median times with their quartiles and the paper's, a line for each cell."""
-    with canvas(7.2, 1.2 + 0.26 * len(cells)) as drawing:
-        axes = drawing.add_subplot()
+    with canvas(7.2, 1.2 + 0.26 * len(cells)) as (drawing, (axes,)):
         for cell, timing in taken.items():
             low, middle, high = timing.quartiles("both")
             bars = [[middle - low], [high - middle]]

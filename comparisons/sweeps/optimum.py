@@ -280,16 +280,16 @@ def _sentences(found: Optimum) -> Iterator[str]:
     yield f"{problem.scene.name}: {name} at {place_text(problem.axes, best.point)}. {value[0].upper()}{value[1:]}."
     if found.doubt:
         yield f"The point is no optimum: {found.doubt}. {found.compared.sentence}".rstrip()
-    same = sum(each.feasible and _near(problem, each.point, best.point) for each in found.ends)
+    same = sum(
+        each.feasible
+        and all(abs(each.point[a.name] - best.point[a.name]) <= _SAME * abs(a.high - a.low) for a in problem.axes)
+        for each in found.ends
+    )
     ends = [axis.name for axis in problem.axes if min(abs(best.point[axis.name] - end) for end in (axis.low, axis.high))
             <= _SAME * abs(axis.high - axis.low)]  # fmt: skip
     yield f"{same} of {len(found.ends)} starts end there." + (
         f" {', '.join(ends)} lies at an end of its range." if ends else ""
     )
-
-
-def _near(problem: Problem, one: Point, other: Point) -> bool:
-    return all(abs(one[a.name] - other[a.name]) <= _SAME * abs(a.high - a.low) for a in problem.axes)
 
 
 def _starts_table(found: Optimum) -> Table:

@@ -19,7 +19,7 @@ Physics Communications 181 (2010) 259-270, in SciPy; their intervals of 95 % con
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from scipy.stats import binomtest, norm, qmc, quantile_test, sobol_indices, uniform
@@ -52,11 +52,8 @@ _EDGE = 2.0**-32
 """Distance of a share from 0 and 1, where a normal distribution is infinite; Sobol points have 30 bits."""
 
 
-class Distribution(Protocol):
-    """Distribution of a parameter, such as a frozen distribution of :mod:`scipy.stats`."""
-
-    def ppf(self, q: Array) -> Array:
-        """Values, SI, below which the parameter lies with the probabilities ``q``."""
+Distribution: TypeAlias = Any
+"""Frozen distribution of :mod:`scipy.stats`, which has no types, of a parameter in SI."""
 
 
 def distributions_of(scene: Scene) -> dict[str, Distribution]:
@@ -107,12 +104,8 @@ class Interval(NamedTuple):
     high: float
 
 
-@dataclass(frozen=True, slots=True)
-class Indices:
-    """First- and total-order indices by parameter."""
-
-    first: tuple[Interval, ...]
-    total: tuple[Interval, ...]
+Indices = tuple[tuple[Interval, ...], ...]
+"""First-order indices by parameter, and total-order indices."""
 
 
 def quantiles(values: Array) -> tuple[Interval, ...]:
@@ -140,10 +133,7 @@ def indices(values: Array) -> Indices:
     rows = np.random.default_rng(SEED).integers(count, size=(_RESAMPLES, count))
     estimate = _estimates(values)
     low, high = np.quantile([_estimates(values[:, row]) for row in rows], [0.025, 0.975], axis=0)
-    first, total = (
-        tuple(map(Interval, *(each[order].tolist() for each in (estimate, low, high)))) for order in range(2)
-    )
-    return Indices(first, total)
+    return tuple(tuple(map(Interval, *(each[order].tolist() for each in (estimate, low, high)))) for order in range(2))
 
 
 def _estimates(values: Array) -> Array:
@@ -324,7 +314,7 @@ def _limit_table(scatter: Scatter) -> Table:
 def _index_table(scatter: Scatter, found: dict[Measure, Indices]) -> Table:
     names = [axis.name for axis in scatter.sweep.axes]
     rows = tuple(
-        (str(measure), name, _cell(each.first[place]), _cell(each.total[place]))
+        (str(measure), name, *(_cell(order[place]) for order in each))
         for measure, each in found.items()
         for place, name in enumerate(names)
     )
@@ -342,8 +332,8 @@ def _cell(each: Interval, whole: float = 1.0) -> str:
 def _histograms(scatter: Scatter, chosen: Sequence[Measure]) -> Iterator[Figure]:
     if not chosen:
         return
-    with canvas(8.4, 2.6) as figure:
-        for axes, measure in zip(panels(figure, len(chosen), 2.6), chosen, strict=True):
+    with canvas(*panels(len(chosen), 2.6)) as (figure, plots):
+        for axes, measure in zip(plots, chosen, strict=True):
             axes.hist(values_of(measure, scatter.standing), bins="auto", color=BLUE)
             axes.axvline(measure.values(scatter.nominal)[0], color=RED, linewidth=1.0)
             axes.set(xlabel=f"{measure}, {with_symbols(measure.unit)}".rstrip(", "), ylabel="points")
@@ -360,8 +350,7 @@ def _data(scatter: Scatter, scattering: Sequence[Measure], found: dict[Measure, 
             "unit": measure.unit,
             "nominal": measure.values(scatter.nominal)[0],
             "quantiles": quantiles(values_of(measure, scatter.standing)),
-            "first": found[measure].first if measure in found else [],
-            "total": found[measure].total if measure in found else [],
+            **dict(zip(("first", "total"), found.get(measure, ([], [])), strict=True)),
         }
         for measure in scattering
     ]

@@ -206,8 +206,8 @@ def _over_parameters(sweep: Sweep, solved: Solved, shown: Sequence[Measure]) -> 
     grid, first = all(axis.count for axis in sweep.axes), sweep.axes[0]
     mapped = grid and len(sweep.axes) == 2
     failed = [task for task, outcome in sweep.points() if not outcome.completed]
-    with canvas(6.4, 4.8) as figure:
-        for axes, measure in zip(panels(figure, len(shown), 3.0), shown, strict=True):
+    with canvas(*panels(len(shown), 3.0)) as (figure, plots):
+        for axes, measure in zip(plots, shown, strict=True):
             known = [measure.last(outcome) for _, outcome in solved]
             size, label = _unit_of(sweep, [each for each in known if each is not None])
             numbers = [np.nan if each is None else each["value"] / size for each in known]
@@ -258,8 +258,8 @@ def _contours(figure: Any, axes: Axes, pair: Sequence[Axis], solved: Solved, num
 def _curves(sweep: Sweep, solved: Solved, stage: Stage, shown: Sequence[Measure]) -> Figure:
     """The curves of all points against the load or drive of a stage."""
     first, longest = sweep.axes[0], _fullest(solved)
-    with canvas(6.4, 4.8) as figure:
-        for axes, measure in zip(panels(figure, len(shown), 3.0), shown, strict=True):
+    with canvas(*panels(len(shown), 3.0)) as (figure, plots):
+        for axes, measure in zip(plots, shown, strict=True):
             whole = measure.numbers(longest)
             (size, label), (step, step_label) = _unit_of(sweep, whole[-1:]), _unit_of(sweep, whole, "station")
             axes.set(title=f"{measure.name}, {label}".rstrip(", "), xlabel=f"{stage.steps}, {step_label}")
@@ -302,8 +302,7 @@ def _checked(sweep: Sweep, solved: Solved) -> Figure:
     ratios = [
         max((n["difference"] / n["stated"] for n in numbers if n["stated"]), default=np.nan) for _, numbers in checked
     ]
-    with canvas(6.4, 4.0) as figure:
-        axes = figure.add_subplot()
+    with canvas(6.4, 4.0) as (figure, (axes,)):
         axes.set(xlabel=sweep.axes[0].label, ylabel=sweep.axes[1].label if len(sweep.axes) > 1 else _RATIO)
         x, y = ([axis.of(point) for point, _ in checked] for axis in (sweep.axes * 2)[:2])
         if len(sweep.axes) > 1:
