@@ -14,7 +14,7 @@ from comparisons.bench.measures import MEASURES, Measure, uncertainties
 from comparisons.bench.running import FIT_FROM, NO_WORSE, OURS, Clocked, Contender, Session, Timing, trend
 from comparisons.choices import Count
 from comparisons.formats import number, percent
-from comparisons.present.canvas import Axes, canvas, common_legend, finished, logarithmic
+from comparisons.present.canvas import Axes, canvas, finished, logarithmic
 from comparisons.present.columns import (
     NOTHING,
     Column,
@@ -101,8 +101,8 @@ def _precision(rows: Rows, measures: Sequence[Measure]) -> Figure:
         for axes, measure in zip(panels, measures, strict=True):
             _decades(axes, _MEASURED[measure])
         panels[-1].set_xlabel("seconds of set-up and solve")
-        common_legend(drawing, "upper center", 3)
-        return finished(drawing, "bench-precision", "Error against time, each point a number of links or elements.")
+        caption = "Error against time, each point a number of links or elements."
+        return finished(drawing, "bench-precision", caption, ("upper center", 3))
 
 
 def _growth(rows: Rows) -> Figure:

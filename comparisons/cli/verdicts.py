@@ -103,8 +103,7 @@ def _run(request: output.Request, questions: Sequence[Question]) -> AbstractCont
 
 def _keep(request: output.Request, run: Run, shown: Sequence[Question], whole: page.Page, document: Plain) -> None:
     """Write the page and the JSON of the questions ``shown``, unless they would replace more; the last one is new."""
-    run.mark_shown(shown[-1].name)
-    if run.covers([question.name for question in shown]):
+    if run.may_show([question.name for question in shown]):
         if request.out is not None:
             page.put_page(request.out, whole)
         if request.prints:

@@ -97,8 +97,10 @@ def panels(count: int, height: float) -> tuple[float, float, int, int]:
     return 4.2 * columns, height * -(-count // columns), count, columns
 
 
-def finished(drawing: Drawing, name: str, caption: str) -> Figure:
-    """The figure of a drawing."""
+def finished(drawing: Drawing, name: str, caption: str, legend: tuple[str, int] | None = None) -> Figure:
+    """The figure of a drawing, with a common ``legend`` at a place and with a number of columns."""
+    if legend is not None:
+        common_legend(drawing, *legend)
     layout = drawing.get_layout_engine()
     if layout is not None:  # made once, it serves both formats
         layout.execute(drawing)

@@ -7,7 +7,7 @@ import numpy as np
 from comparisons.formats import number, percent
 from comparisons.geometry import offset_curve
 from comparisons.offset_verdict import OffsetComparison, OffsetRow, claim_of_offset
-from comparisons.present.canvas import BLUE, RED, canvas, common_legend, finished
+from comparisons.present.canvas import BLUE, RED, canvas, finished
 from comparisons.present.columns import Column, Figure, Plain, Section, Table, plain, table_of
 from cprbm_scene.offset import Shown
 
@@ -157,6 +157,5 @@ def _points(compared: OffsetComparison, shown: Shown) -> Figure:
             axes.margins(0.08)
             axes.set(title=f"N = {n}", ylabel="y, m", aspect="equal")
         plots[-1].set_xlabel("x, m")
-        common_legend(drawing, "lower center", 3)
         caption = f"Offset points on the exact offset curves, spacing {next(iter(question.spacings))}."
-        return finished(drawing, "points", caption)
+        return finished(drawing, "points", caption, ("lower center", 3))
