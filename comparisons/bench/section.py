@@ -106,8 +106,7 @@ def _precision(rows: Rows, measures: Sequence[Measure]) -> Figure:
 
 
 def _growth(rows: Rows) -> Figure:
-    with canvas(6.4, 7.2, 2, shared="x") as (drawing, (seconds, iterations)):
-        drawing.axes[0].get_gridspec().set_height_ratios((3, 2))
+    with canvas(6.4, 7.2, 2, shared="x", heights=(3, 2)) as (drawing, (seconds, iterations)):
         for method, mine in rows.items():
             _, exponent, _ = trend(tuple(mine))
             label = method.label + ("" if exponent is None else f": exponent {exponent:.2f}")

@@ -10,7 +10,7 @@ import click
 from comparisons.audit import Audit, audit
 from comparisons.cli import output
 from comparisons.cli.doctor import WHAT_DRAWS
-from comparisons.cli.errors import INCOMPLETE, UNDECIDED
+from comparisons.cli.errors import code_of
 from comparisons.formats import at_station, file_unit
 from comparisons.logs import SOLVERS
 from comparisons.pairing import ANSWERS, SolverName, solvers_of
@@ -76,7 +76,7 @@ def _answer_of(request: output.Request, scene: Scene, solver: SolverName) -> Fou
 
 def _report_problems(scene: Scene, answer: Answer, audited: Audit, searches: tuple[Tolerance, ...]) -> int:
     """Report an early end, complaints of the audit, or a missed tolerance; the exit code."""
-    ending, code = answer.ending.value, UNDECIDED if answer.completed else INCOMPLETE
+    ending = answer.ending.value
     sentences = [f"the audit fails {complaint}" for complaint in audited.complaints]
     if not answer.completed:
         ended = answer.sentence if answer.sentence.startswith(ending) else f"{ending}. {answer.sentence}".rstrip()
@@ -84,7 +84,7 @@ def _report_problems(scene: Scene, answer: Answer, audited: Audit, searches: tup
     sentences = sentences or [search.sentence(scene) for search in searches if not search.met]
     for sentence in sentences:
         click.echo(f"cprbm: {scene.name}: {sentence}", err=True)
-    return code if sentences else 0
+    return code_of(incomplete=not answer.completed, undecided=bool(sentences))
 
 
 def view(request: output.Request, solver: SolverName, quantity: Coloured, station: str | None) -> int:

@@ -20,7 +20,7 @@ from comparisons.case import Comparison
 from comparisons.choices import Count, check_counts
 from comparisons.cli import output
 from comparisons.cli.commands import load_tool
-from comparisons.cli.errors import INCOMPLETE, UNDECIDED
+from comparisons.cli.errors import code_of
 from comparisons.cli.main import OPTIMISERS
 from comparisons.offset_verdict import Compared, compared_offset
 from comparisons.present import brief, csv_table, figures, page
@@ -62,10 +62,9 @@ def compare_all(request: output.Request) -> int:
         output.print_tables([brief.summary(finished)], brief.WIDTH)
     output.print_folder(request)
     verdicts = [found.verdict for found in finished]
-    if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):
-        return INCOMPLETE
-    undecided = any(verdict.word is Word.UNDECIDED for verdict in verdicts)
-    return UNDECIDED if undecided or any(map(_failed_searches, finished)) else 0
+    undecided = any(verdict.word is Word.UNDECIDED for verdict in verdicts) or any(map(_failed_searches, finished))
+    incomplete = any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts)
+    return code_of(incomplete=incomplete, undecided=undecided)
 
 
 def _comparisons(
@@ -167,7 +166,7 @@ def converge_all(request: output.Request, sizes: tuple[int, ...]) -> int:
     if not request.prints:
         output.write_json(request.json_file, document)
     output.print_folder(request)
-    return 0 if all(section.complete for section in finished) else INCOMPLETE
+    return code_of(incomplete=not all(section.complete for section in finished))
 
 
 def report(request: output.Request, sizes: tuple[int, ...], without: tuple[str, ...]) -> None:
@@ -240,7 +239,7 @@ def bench(
     for row in failed:
         who = f"{row.contender.label} at N = {size_text(row.count)}"
         click.echo(f"cprbm: {opened.name}: {who}: {row.outcome.why}", err=True)
-    return INCOMPLETE if failed else 0
+    return code_of(incomplete=bool(failed))
 
 
 def _absence(contender: running.Contender, *, whole: bool) -> str:
@@ -254,9 +253,10 @@ def study_calibration(request: output.Request) -> int:
     request = request.with_room()
     with run_into(request.out, request.solvers, processes=request.processes) as run:
         take = partial(calibration.with_case, solvers=run.solvers, crew=run.crew)
-        found = take_steps(request, calibration.Calibration(), calibration.pieces(), take, calibration.result_of)
+        scenes = [*map(cases.opened, cases.scenes())]
+        found = take_steps(request, calibration.Calibration(), scenes, take, calibration.result_of)
     verdicts = [trial.verdict for trial in found.trials]
-    return INCOMPLETE if any(each.word is Word.DIFFER or not each.completed for each in verdicts) else 0
+    return code_of(incomplete=any(each.word is Word.DIFFER or not each.completed for each in verdicts))
 
 
 def study_table1(request: output.Request, repeat: int) -> int:
@@ -264,7 +264,7 @@ def study_table1(request: output.Request, repeat: int) -> int:
     request = request.with_room()
     session = table1.session(request.solvers, provenance.machine(), repeat, request.at_most)
     take_steps(request, session, session.jobs(), running.Session.do, table1.result_of)
-    return 0 if table1.result_of(session).complete else INCOMPLETE
+    return code_of(incomplete=not table1.result_of(session).complete)
 
 
 def take_steps(

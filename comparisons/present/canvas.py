@@ -71,7 +71,12 @@ _RIGID: dict[str, Any] = {"facecolor": "#b9bfc6", "alpha": 0.55, "linewidth": 0.
 
 @contextmanager
 def canvas(
-    width: float, height: float, count: int = 1, columns: int = 1, shared: Literal["", "x", "y", "xy"] = ""
+    width: float,
+    height: float,
+    count: int = 1,
+    columns: int = 1,
+    shared: Literal["", "x", "y", "xy"] = "",
+    heights: Sequence[float] | None = None,
 ) -> Iterator[tuple[Drawing, list[Axes]]]:
     """Context with an empty drawing and its axes; draw and finish it inside the context.
 
@@ -80,15 +85,18 @@ def canvas(
         count: number of axes, row by row.
         columns: number of columns.
         shared: axes of abscissae, of ordinates or of both that have one range.
+        heights: ratios of the heights of the rows; None for equal heights.
     """
     import matplotlib.figure
 
     with matplotlib.rc_context(_STYLE):
         drawing, rows = matplotlib.figure.Figure(figsize=(width, height), layout="constrained"), -(-count // columns)
-        axes = [*drawing.subplots(rows, columns, sharex="x" in shared, sharey="y" in shared, squeeze=False).flat]
+        axes = drawing.subplots(
+            rows, columns, sharex="x" in shared, sharey="y" in shared, squeeze=False, height_ratios=heights
+        ).ravel()
         for spare in axes[count:]:
             spare.remove()
-        yield drawing, axes[:count]
+        yield drawing, [*axes[:count]]
 
 
 def panels(count: int, height: float) -> tuple[float, float, int, int]:

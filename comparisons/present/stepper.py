@@ -22,10 +22,10 @@ import shapely
 from comparisons.case import Comparison
 from comparisons.formats import number
 from comparisons.geometry import length, points
-from comparisons.present.columns import NOTHING, Column, Plain
+from comparisons.present.columns import NOTHING, Column, Plain, columns_of
 from comparisons.present.figures import colour_unit, view_title
 from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, names_by_place, view_of
-from comparisons.present.row_tables import BOTH, ERROR, share_columns, value_columns
+from comparisons.present.row_tables import BOTH, ERROR, share, value_columns
 from comparisons.present.strips import Strip
 from comparisons.present.table import with_minus
 from comparisons.verdict import SOLVERS
@@ -86,7 +86,7 @@ def stepper(compared: Comparison) -> Plain | None:
     names = [probe.name for probe in scene.probes if probe.quantity not in STRESSES]
     rows = {(row.probe.name, *row.where): row for row in compared.rows}
     _, unit_of, *values = value_columns(scene, [*rows.values()], BOTH)
-    columns = [*values, *share_columns(ERROR), Column("word", "word.value")]
+    columns = [*values, *columns_of(share, ERROR), Column("word", "word.value")]
     units = {name: unit_of.cell(at) for (name, *_), at in rows.items()}
     labels = names_by_place(views[-1].points, 1.0 / scale)
     leaders = [text.partition(", ")[0] for text in labels]

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from comparisons import cases
 from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
 from comparisons.executor import ALONE, Crew
@@ -53,11 +52,6 @@ class Calibration:
         """Trials of every case."""
         names = dict.fromkeys(trial.case for trial in self.trials)
         return {name: tuple(trial for trial in self.trials if trial.case == name) for name in names}
-
-
-def pieces() -> tuple[Scene, ...]:
-    """All built-in scenes."""
-    return tuple(scene for scene in map(cases.asked, cases.names()) if isinstance(scene, Scene))
 
 
 def with_case(

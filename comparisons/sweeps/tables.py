@@ -40,13 +40,6 @@ _VALUES = ("value", "fea", "difference", "stated")
 _PLACES = ("stage", "station", "station_unit", "branch", "probe", "component", "arc_length", "arc_length_unit")
 
 
-def records(sweep: Sweep) -> Iterator[dict[str, Any]]:
-    """Every number of a sweep with its point, SI; a point without numbers has a record too."""
-    for task, outcome in sweep.points():
-        for number in outcome.numbers or ({},):
-            yield {**_point(task, outcome), **number}
-
-
 def _point(task: Task, outcome: Outcome) -> dict[str, Any]:
     return {
         "point": task.number,
@@ -70,7 +63,11 @@ def write_tables(folder: Path, sweep: Sweep) -> None:
     """
     heads = ["point", *(axis.column for axis in sweep.axes), "solver"]
     tails = ["ending", "verdict", "reason", "iterations", "seconds", "key", "sentence"]
-    long = (_in_units(sweep, record) for record in records(sweep))
+    long = (
+        _in_units(sweep, {**_point(task, outcome), **number})
+        for task, outcome in sweep.points()
+        for number in outcome.numbers or ({},)  # a point without numbers has a line too
+    )
     columns = [*heads, *_PLACES, *_VALUES, "unit", "word", *tails]
     write(folder / "numbers.csv", csv_text(columns, long))
     rows = [_wide(sweep, task, outcome) for task, outcome in sweep.points()]
