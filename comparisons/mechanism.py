@@ -12,7 +12,7 @@ from comparisons.present import figures
 from comparisons.present.brief import headline, last_rows_of_stages, nearest_rows
 from comparisons.present.case_tables import answer_tables
 from comparisons.present.columns import Figure, Table
-from comparisons.present.csv_table import comparison_records, csv_of, csv_of_comparisons, numbers
+from comparisons.present.csv_table import comparison_records, csv_of, csv_of_comparisons, records
 from comparisons.present.page import rendered
 from comparisons.writing import write
 from cprbm_scene import Answer, Scene, frozendict
@@ -132,7 +132,7 @@ class Mechanism:
             SceneError: the solver refuses the scene.
             ImportError: pandas is not installed.
         """
-        return _data_frame(numbers(self.scene, self.solve(solver, choices)))
+        return _data_frame(records(self.scene, self.solve(solver, choices)))
 
     def _repr_html_(self) -> str:
         """Tables and drawing of the CPRBM's answer, for a notebook."""

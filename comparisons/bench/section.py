@@ -146,8 +146,8 @@ def tables_of(measured: Session) -> tuple[Table, ...]:
     name = measured.scene.title or measured.scene.name
     timings = table_of(f"{name}: time against error", _COLUMNS, measured.rows(), _note(measured))
     fastest = [_fastest(measured, clocked) for clocked in _CLOCKED]
-    found = (timings, *fastest, _ratios(measured), _trends(measured), _omissions(measured))
-    return tuple(table for table in found if table.rows)
+    others = _ratios(measured), _trends(measured), _omissions(measured)
+    return tuple(table for table in (timings, *fastest, *others) if table.rows)
 
 
 def size_text(count: Count) -> str:

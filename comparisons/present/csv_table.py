@@ -51,27 +51,6 @@ _CONTACT_FORCE = (
 )
 
 
-def numbers(scene: Scene, answer: Answer) -> Iterator[Number]:
-    """Every number of an answer, station by station and probe by probe; a missing value has no record."""
-    for station in answer.stations:
-        station_unit = load_unit(scene, station.stage)
-        for probe in scene.probes_in(station.stage):
-            for (component, arc_length), value in _parts(scene, probe, station.values[probe.name]).items():
-                yield Number(
-                    scene=scene.name,
-                    solver=answer.solver,
-                    stage=station.stage,
-                    station=station.value,
-                    branch=station.branch,
-                    probe=probe.name,
-                    component=component,
-                    arc_length=arc_length,
-                    unit=unit_of(scene, probe, station.stage),
-                    value=value,
-                    station_unit=station_unit,
-                )
-
-
 def records(scene: Scene, answer: Answer) -> list[Number]:
     """Every number of an answer with its origin: ``pandas.DataFrame(records(scene, answer))`` is one table.
 
@@ -80,10 +59,29 @@ def records(scene: Scene, answer: Answer) -> list[Number]:
         answer: a solver's answer to the question.
 
     Returns:
-        A dictionary of each number: ``scene``, ``solver``, ``stage``, ``station``, ``branch``, ``probe``,
-        ``component``, ``arc_length`` (m, along a beam), ``unit`` (SI) and ``value``.
+        A dictionary of each number, station by station and probe by probe: ``scene``, ``solver``, ``stage``,
+        ``station``, ``branch``, ``probe``, ``component``, ``arc_length`` (m, along a beam), ``unit`` (SI) and
+        ``value``.  A missing value has no record.
     """
-    return list(numbers(scene, answer))
+    station_units = {stage.name: load_unit(scene, stage.name) for stage in scene.stages}
+    return [
+        Number(
+            scene=scene.name,
+            solver=answer.solver,
+            stage=station.stage,
+            station=station.value,
+            branch=station.branch,
+            probe=probe.name,
+            component=component,
+            arc_length=arc_length,
+            unit=unit_of(scene, probe, station.stage),
+            value=value,
+            station_unit=station_units[station.stage],
+        )
+        for station in answer.stations
+        for probe in scene.probes_in(station.stage)
+        for (component, arc_length), value in _parts(scene, probe, station.values[probe.name]).items()
+    ]
 
 
 def write_csv(path: str | Path, scene: Scene, *answers: Answer) -> None:
@@ -113,22 +111,22 @@ def comparison_records(compared: Comparison) -> list[Plain]:
 
     ``difference`` and ``stated`` are norms of the probe, in ``unit``.
     """
-    scene, records = compared.scene, list[Plain]()
+    scene, found = compared.scene, list[Plain]()
     for row in compared.rows:
         cprbm, fea = (_parts(scene, row.probe, values) for values in (row.cprbm, row.fea))
         where = (scene.name, *row.where, load_unit(scene, row.stage), row.branch, row.probe.name)
         judged = (row.difference, row.bounds and row.bounds.total, row.word.value if row.word else "")
-        records += [
+        found += [
             dict(zip(_COMPARISON, (*where, *part, row.unit, cprbm.get(part), fea.get(part), *judged), strict=True))
             for part in cprbm | fea
         ]
-    return records
+    return found
 
 
 def csv_of(scene: Scene, *answers: Answer) -> str:
     """Answers to a scene as comma-separated values in the units of the scene's file, with a line of headers."""
-    records = (number for answer in answers for number in numbers(scene, answer))
-    return csv_text([*Number.__annotations__, "arc_length_unit"], (in_file_units(scene, each) for each in records))
+    rows = (in_file_units(scene, number) for answer in answers for number in records(scene, answer))
+    return csv_text([*Number.__annotations__, "arc_length_unit"], rows)
 
 
 def csv_of_comparisons(comparisons: Sequence[Comparison]) -> str:

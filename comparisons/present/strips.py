@@ -88,17 +88,15 @@ def strip_of(name: str, beam: Beam, station: StationAnswer) -> Strip:
     t, w, s = beam.thickness_at(u), beam.width_at(u), u * whole
     spline = CubicSpline(shape.s, np.stack([shape.x, shape.y], axis=1))
     ahead, behind = (points(beam.curve, whole * np.clip(u + step, 0.0, 1.0)) for step in (_STEP, -_STEP))
-    bending, combined = (station.values.get(f"{name}.{quantity}", np.empty(0)) for quantity in _STRESSES)
     state = station.beams.get(name)
-    if bending.size:
-        bending = np.interp(u, np.linspace(0.0, 1.0, bending.size), bending)
-    else:
-        bending = np.zeros(SECTIONS) if state is None else 6.0 * np.interp(s, state.s, state.M) / (w * t**2)
-    if combined.size:
-        combined = np.interp(u, np.linspace(0.0, 1.0, combined.size), combined)
-    else:
-        normal = np.zeros(SECTIONS) if state is None else np.interp(s, state.s, state.N) / (w * t)
-        combined = np.abs(bending) + np.abs(normal)
+    M, N = np.zeros((2, SECTIONS)) if state is None else (np.interp(s, state.s, of) for of in (state.M, state.N))
+
+    def stress(quantity: Quantity, otherwise: Array) -> Array:
+        stated = station.values.get(f"{name}.{quantity}", np.empty(0))
+        return np.interp(u, np.linspace(0.0, 1.0, stated.size), stated) if stated.size else otherwise
+
+    bending = stress("bending_stress", 6.0 * M / (w * t**2))
+    combined = stress("combined_stress", np.abs(bending) + np.abs(N / (w * t)))
     along = u * shape.s[-1]
     return Strip(s, np.asarray(spline(along)), left_of(spline(along, 1)), points(beam.curve, s),
                  left_of(ahead - behind), t, w, bending, combined)  # fmt: skip

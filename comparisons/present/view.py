@@ -74,20 +74,13 @@ def files(scene: Scene, answer: Answer, path: Path, kind: Kind, quantity: Colour
     elif kind in _DOTS:
         yield path, stress_picture(scene, views[-1], bounds, quantity, kind[1:], _DOTS[kind])
     else:
-        few = _some(views)
+        few = [views[round(place)] for place in np.linspace(0, len(views) - 1, min(_MOST, len(views)))]
         pictures = (
             space_pictures(scene, few, bounds, quantity)
             if kind.startswith(".3d")
             else [stress_picture(scene, view, bounds, quantity, "png", _MOVING_DOTS) for view in few]
         )
         yield path, pictures[0] if kind == ".3d.png" else animation(pictures, "gif" if "gif" in kind else "apng")
-
-
-def _some(views: Sequence[View]) -> Sequence[View]:
-    """All views, or ``_MOST`` evenly chosen views with the last."""
-    if len(views) <= _MOST:
-        return views
-    return [views[round(place)] for place in np.linspace(0, len(views) - 1, _MOST)]
 
 
 def animation(pictures: Sequence[bytes], kind: Literal["gif", "apng"]) -> bytes:

@@ -83,12 +83,13 @@ def convergence_section(
     memory = AnswerMemory(pool=crew.pool, solvers=solvers)
     found = convergence_of(question, sizes, choices, solvers, memory)
     account = account_of(question, replace(choices, links=found.shown, elements=2 * found.shown), memory)
-    shown = (*convergence_tables.tables_of(found), budget_section.budget_table(account))
     return Section(
         "Error against N, and the error budget",
         (*convergence_tables.sentences_of(found), *budget_section.sentences_of(account)),
         (*convergence_figures(found), *budget_section.budget_figures(account)),
-        tuple(table for table in shown if table.rows),
+        tuple(
+            each for each in (*convergence_tables.tables_of(found), budget_section.budget_table(account)) if each.rows
+        ),
         "convergence",
         {**convergence_tables.document(found), **budget_section.data_of(account)},
         found.completed and not account.missing,
