@@ -23,7 +23,6 @@ From Python it is :func:`open` for a mechanism with all that the program does::
 A function loads its module with the first use: the command line imports this package at every start.
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -31,19 +30,19 @@ if TYPE_CHECKING:
     from comparisons.present.csv_table import records, write_csv
     from comparisons.sweeps.running import sweep
 else:
-    _MODULES = {
-        "open": "mechanism",
-        "compare": "mechanism",
-        "records": "present.csv_table",
-        "write_csv": "present.csv_table",
-        "sweep": "sweeps.running",
-    }
 
     def __getattr__(name: str) -> object:
         """A function of this package by name."""
-        if name not in _MODULES:
-            raise AttributeError(f"module 'comparisons' has no attribute {name!r}")
-        return getattr(import_module(f"comparisons.{_MODULES[name]}"), name)
+        match name:
+            case "open" | "compare":
+                from comparisons import mechanism as module
+            case "records" | "write_csv":
+                from comparisons.present import csv_table as module
+            case "sweep":
+                from comparisons.sweeps import running as module
+            case _:
+                raise AttributeError(f"module 'comparisons' has no attribute {name!r}")
+        return getattr(module, name)
 
 
 __all__ = ["compare", "open", "records", "sweep", "write_csv"]

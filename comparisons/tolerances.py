@@ -39,7 +39,8 @@ from comparisons.sentences import problem_sentences
 from comparisons.stations import station_of
 from comparisons.store import AnswerMemory
 from comparisons.verdict import Error, Place, Row, Runs, Uncertainties, error, first_met, limit, rows_of, runs_of
-from cprbm_scene import Answer, Array, PointForces, Probe, Scene, SceneError, StationAnswer, frozen_array, frozendict
+from cprbm_scene import Answer, Array, PointForces, Probe, Scene, SceneError, StationAnswer, frozendict
+from cprbm_scene.answer import frozen_array
 
 SolverName = Literal["cprbm", "fea", "solid"]
 

@@ -22,7 +22,6 @@ from cprbm_scene.answer import (
     PointForces,
     Shape,
     StationAnswer,
-    frozen_array,
 )
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, SceneError
@@ -146,7 +145,6 @@ __all__ = [
     "Stop",
     "TurningBody",
     "WeldedEnd",
-    "frozen_array",
     "frozendict",
     "read",
     "read_question",
