@@ -27,8 +27,7 @@ from typing import Any, get_args, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from cprbm_scene.answer import Answer, Array
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene import Answer, Array, frozendict
 
 DAMAGES = (EOFError, zlib.error, gzip.BadGzipFile, KeyError, IndexError, TypeError, ValueError)
 """Errors of :func:`unpacked` on damaged bytes."""

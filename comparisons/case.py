@@ -8,13 +8,23 @@ from comparisons.audit import Audit, audit
 from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.stations import complete_part, ends_at_critical
 from comparisons.tolerances import Tolerance
-from comparisons.verdict import SEVERITY, Reason, Word, worst_of
-from comparisons.verdict.events import CriticalRow, Place, critical_rows, far_closings
-from comparisons.verdict.judge import judge_case, judge_rows
-from comparisons.verdict.rows import Row, rows_of
-from comparisons.verdict.runs import SOLVERS, Runs
-from cprbm_scene import Answer, Scene
-from cprbm_scene.frozendict import frozendict
+from comparisons.verdict import (
+    SEVERITY,
+    SOLVERS,
+    CriticalRow,
+    Place,
+    Reason,
+    Row,
+    Runs,
+    Word,
+    critical_rows,
+    far_closings,
+    judge_case,
+    judge_rows,
+    rows_of,
+    worst_of,
+)
+from cprbm_scene import Answer, Scene, frozendict
 
 Finding = tuple[Word, Reason | None, str]
 """Word, reason and sentence."""
@@ -150,6 +160,7 @@ def _verdict(
     sentences = (
         *(sentence for *_, sentence in findings),
         said.ended_sentence(runs, others) if completed and others else "",
+        said.unreached_sentence(runs) if completed else "",
         *said.passed_sentences(runs, rows),
         said.calibration_sentence(scene, rows),
         said.theory_sentence(runs, rows),

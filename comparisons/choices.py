@@ -89,7 +89,7 @@ class Choices:
         return self.kinematics or self.theory_of(scene)
 
 
-def check(choices: Choices, scene: Scene) -> None:
+def check_counts(choices: Choices, scene: Scene) -> None:
     """Check that the choices fit the scene.
 
     Raises:

@@ -13,8 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from comparisons.quantities import COMPONENTS, load_unit
-from cprbm_scene.answer import Answer, Array
-from cprbm_scene.statement import STRESSES, Quantity, Scene, Stage
+from cprbm_scene import STRESSES, Answer, Array, Quantity, Scene, Stage
 from cprbm_scene.units import ANGLE, FORCE, LENGTH, LINE_LOAD, MOMENT, STRESS
 
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"))
@@ -89,7 +88,7 @@ def _component(value: float, factor: float, floor: float) -> str:
 
 def display_unit(scene: Scene, unit: str, size: float) -> tuple[float, str]:
     """Size in SI and name of the unit in which values of about ``size`` of the SI ``unit`` are displayed."""
-    return _with_symbols(*file_unit(scene, unit)) if _stated(scene, unit) else scaled_unit(unit, abs(size))
+    return _file_symbol(scene, unit) if _stated(scene, unit) else scaled_unit(unit, abs(size))
 
 
 def display_units(scene: Scene, sizes: Iterable[tuple[str, float]]) -> Mapping[str, tuple[float, str]]:
@@ -127,7 +126,7 @@ def axis_unit(scene: Scene, unit: str, size: float) -> tuple[float, str]:
 def with_unit(scene: Scene, value: float, unit: str, digits: int) -> str:
     """An SI value with its displayed unit; an angle of a file in radians also in degrees."""
     factor, name = display_unit(scene, unit, value)
-    return _joined(number(value / factor, digits), name) + _in_degrees(value, name)
+    return joined(number(value / factor, digits), name) + _in_degrees(value, name)
 
 
 def distance_text(scene: Scene, value: float, unit: str) -> str:
@@ -135,19 +134,18 @@ def distance_text(scene: Scene, value: float, unit: str) -> str:
     if not math.isfinite(value):
         return "–"
     factor, name = axis_unit(scene, unit, value)
-    return _joined(number(value / factor, 2), name)
+    return joined(number(value / factor, 2), name)
 
 
 def load_text(scene: Scene, stage: str, value: float) -> str:
     """A value of the load or drive that the stage of a name steps, with its displayed unit."""
-    unit = load_unit(scene, next(each for each in scene.stages if each.name == stage))
-    factor, name = _with_symbols(*file_unit(scene, unit))
-    return _joined(f"{value / factor:.6g}", name) + _in_degrees(value, name)
+    factor, name = _file_symbol(scene, load_unit(scene, stage))
+    return joined(f"{value / factor:.6g}", name) + _in_degrees(value, name)
 
 
 def load_column(scene: Scene, stage: Stage, values: Sequence[float]) -> tuple[str, tuple[str, ...]]:
     """Heading and texts of a column with values of a stage's load or drive."""
-    factor, unit = _with_symbols(*file_unit(scene, load_unit(scene, stage)))
+    factor, unit = _file_symbol(scene, load_unit(scene, stage.name))
     return f"{stage.steps}, {unit}", tuple(f"{value / factor:.6g}{_in_degrees(value, unit)}" for value in values)
 
 
@@ -167,9 +165,15 @@ def in_file_units(scene: Scene, answer: Answer) -> Answer:
     return replace(answer, sentence=sentence, notes=tuple(notes))
 
 
-def _with_symbols(size: float, name: str) -> tuple[float, str]:
-    """Size and name of a unit, with the symbols of degree and of micro."""
-    return size, name.replace("deg", "°").replace("um", "µm").replace("uN", "µN")
+def with_symbols(name: str) -> str:
+    """Name of a unit of a file, with the symbols of degree and of micro."""
+    return name.replace("deg", "°").replace("um", "µm").replace("uN", "µN")
+
+
+def _file_symbol(scene: Scene, unit: str) -> tuple[float, str]:
+    """The file's unit (:func:`file_unit`) with symbols."""
+    size, name = file_unit(scene, unit)
+    return size, with_symbols(name)
 
 
 def _in_degrees(value: float, unit: str) -> str:
@@ -177,5 +181,6 @@ def _in_degrees(value: float, unit: str) -> str:
     return f" ({number(value / DEGREE, 4)}°)" if unit == "rad" else ""
 
 
-def _joined(text: str, unit: str) -> str:
+def joined(text: str, unit: str) -> str:
+    """A number and its unit."""
     return f"{text}{'' if unit == '°' else ' '}{unit}".rstrip()

@@ -20,9 +20,8 @@ from typing import TypeAlias, assert_never
 
 import numpy as np
 
-from cprbm_scene.answer import Array
-from cprbm_scene.curve_records import shape_of
-from cprbm_scene.statement import (
+from cprbm_scene import (
+    Array,
     Beam,
     Curve,
     EdgeContact,
@@ -33,6 +32,7 @@ from cprbm_scene.statement import (
     Scene,
     SplineContact,
 )
+from cprbm_scene.curve_records import shape_of
 
 RigidEdge: TypeAlias = EdgeContact | SplineContact | EllipseContact
 """Contacts with a rigid edge that has places along it."""

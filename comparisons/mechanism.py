@@ -3,24 +3,19 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
-from comparisons import case
+from comparisons import case, cases
 from comparisons.choices import Choices
-from comparisons.pairing import cprbm_answer, exact_answer, fea_answer, paired, solid_answer, solvers_of
+from comparisons.pairing import ANSWERS, SolverName, paired, solvers_of
 from comparisons.present import figures
 from comparisons.present.brief import headline, last_rows_of_stages, nearest_rows
 from comparisons.present.case_tables import answer_tables
 from comparisons.present.columns import Figure, Table
-from comparisons.present.csv_table import comparison_records, csv_of, csv_of_comparisons, numbers
+from comparisons.present.csv_table import comparison_records, csv_of, csv_of_comparisons, records
 from comparisons.present.page import rendered
 from comparisons.writing import write
-from cprbm_scene import Answer, Scene
-from cprbm_scene.frozendict import frozendict
-
-SolverName = Literal["cprbm", "fea", "exact", "solid"]
-
-_SOLVERS = {"cprbm": cprbm_answer, "fea": fea_answer, "exact": exact_answer, "solid": solid_answer}
+from cprbm_scene import Answer, Scene, frozendict
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -89,9 +84,9 @@ class Mechanism:
             SceneError: the solver refuses the scene.
             ValueError: no solver has this name.
         """
-        if solver not in _SOLVERS:
-            raise ValueError(f"found the solver {solver!r}; allowed: {', '.join(_SOLVERS)}")
-        answer = _SOLVERS[solver](self.scene, choices or Choices())
+        if solver not in ANSWERS:
+            raise ValueError(f"found the solver {solver!r}; allowed: {', '.join(ANSWERS)}")
+        answer = ANSWERS[solver](self.scene, choices or Choices())
         # an unknown key of a frozendict is refused with the known keys
         named = (replace(station, values=frozendict(station.values)) for station in answer.stations)
         return replace(answer, stations=tuple(named))
@@ -137,7 +132,7 @@ class Mechanism:
             SceneError: the solver refuses the scene.
             ImportError: pandas is not installed.
         """
-        return _data_frame(numbers(self.scene, self.solve(solver, choices)))
+        return _data_frame(records(self.scene, self.solve(solver, choices)))
 
     def _repr_html_(self) -> str:
         """Tables and drawing of the CPRBM's answer, for a notebook."""
@@ -145,6 +140,41 @@ class Mechanism:
         drawing = (figures.answer_figure(self.scene, answer),) if answer.stations else ()
         ended = "" if answer.stations else f": {answer.sentence or answer.ending.value}"  # otherwise the table has it
         return _html(f"{self.scene.name}: {answer.ending.name}{ended}", answer_tables(self.scene, answer), drawing)
+
+
+def open(  # noqa: A001 - as in gzip.open or Image.open
+    case: str | Path, parameters: Mapping[str, float | str] | None = None
+) -> Mechanism:
+    """The mechanism of a scene file, or of a built-in case.
+
+    Args:
+        case: path of a TOML file, or name of a built-in case.
+        parameters: values of the scene's parameters by name, numbers in SI units or texts such as ``1.9mm``.
+
+    Returns:
+        The mechanism.
+
+    Raises:
+        SceneError: no case has this name, or the file is no valid scene.
+    """
+    return Mechanism(cases.opened(str(case), parameters))
+
+
+def compare(scene: Scene, choices: Choices | None = None) -> MechanismComparison:
+    """Both solvers' answers to a scene beside each other, and the verdict.
+
+    Args:
+        scene: the question, as :func:`cprbm_scene.read` hands it back.
+        choices: how finely, and by which variants (:class:`comparisons.choices.Choices`); the standard ones if None.
+
+    Returns:
+        The comparison of ``cprbm compare``: ``verdict``, ``rows`` with their uncertainties, and the answers in
+        ``runs``.
+
+    Raises:
+        SceneError: a solver refuses the question.
+    """
+    return Mechanism(scene).compare(choices)
 
 
 def _saved(drawing: Figure, path: str | Path | None) -> Figure:

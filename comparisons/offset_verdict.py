@@ -22,11 +22,8 @@ from comparisons.case import Comparison, Verdict
 from comparisons.formats import percent
 from comparisons.geometry import ordinates
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
-from comparisons.verdict import Word, worst_of
-from comparisons.verdict.uncertainty import SAFETY
-from cprbm_scene import OffsetClaim, OffsetQuestion
-from cprbm_scene.answer import Array
-from cprbm_scene.frozendict import frozendict
+from comparisons.verdict import SAFETY, Word, first_met, worst_of
+from cprbm_scene import Array, OffsetClaim, OffsetQuestion, frozendict
 
 _ROUND_OFF = 64.0 * float(np.finfo(float).eps)
 
@@ -54,6 +51,11 @@ class OffsetRow:
     limit: float
 
     @property
+    def total(self) -> Array:
+        """u_i + r_i, (n,)."""
+        return self.stated + self.round_off
+
+    @property
     def difference(self) -> float:
         """The largest d_i; NaN where a point has no exact ordinate."""
         return float(np.max(self.differences))
@@ -61,16 +63,17 @@ class OffsetRow:
     @property
     def pressure(self) -> float:
         """The largest d_i/(u_i + r_i)."""
-        return float(np.max(self.differences / (self.stated + self.round_off)))
+        return float(np.max(self.differences / self.total))
 
     @property
     def word(self) -> Word:
         """The verdict on the row."""
-        if not np.all(np.isfinite(self.differences)):
-            return Word.UNDECIDED
-        if self.pressure > 1.0:
-            return Word.DIFFER
-        return Word.UNDECIDED if np.max(self.stated + self.round_off) > self.limit else Word.AGREE
+        rules = (
+            (not np.all(np.isfinite(self.differences)), Word.UNDECIDED),
+            (self.pressure > 1.0, Word.DIFFER),
+            (bool(np.max(self.total) > self.limit), Word.UNDECIDED),
+        )
+        return first_met(rules, Word.AGREE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,14 +158,13 @@ def _judged(question: OffsetQuestion, rows: Sequence[OffsetRow]) -> Verdict:
     word = worst_of(row.word for row in rows) or Word.UNDECIDED
     mine = [row for row in rows if row.word is word]
     row = max(mine, key=lambda row: row.pressure if np.isfinite(row.pressure) else np.inf)
-    if not np.isfinite(row.pressure):
-        cause = "some offset point lies beyond the ends of the exact curve"
-    elif word is Word.UNDECIDED:
-        largest = max(float(np.max(row.stated)) for row in mine)
-        cause = f"the stated uncertainty reaches {percent(largest)}, more than {percent(question.verdict_limit)}"
-    else:
-        i = int(np.argmax(row.differences / (row.stated + row.round_off)))
-        cause = f"{percent(row.differences[i])} against a stated {percent(row.stated[i] + row.round_off[i])}"
+    largest, i = max(float(np.max(row.stated)) for row in mine), int(np.argmax(row.differences / row.total))
+    limit = percent(question.verdict_limit)
+    rules = (
+        (not np.isfinite(row.pressure), "some offset point lies beyond the ends of the exact curve"),
+        (word is Word.UNDECIDED, f"the stated uncertainty reaches {percent(largest)}, more than {limit}"),
+    )
+    cause = first_met(rules, f"{percent(row.differences[i])} against a stated {percent(row.total[i])}")
     beginning = {
         Word.AGREE: f"All {len(rows)} rows agree; the closest call is",
         Word.DIFFER: f"{len(mine)} of {len(rows)} rows differ, most of all",

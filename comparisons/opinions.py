@@ -32,13 +32,19 @@ from comparisons.case import Comparison
 from comparisons.formats import percent
 from comparisons.quantities import VANISHING, norm
 from comparisons.stations import find_station, station_of
-from comparisons.verdict.events import CriticalRow
-from comparisons.verdict.point_forces import away_from_point_forces
-from comparisons.verdict.rows import Row, Third
-from comparisons.verdict.runs import Runs
-from comparisons.verdict.uncertainty import GRIDS, Limit, largest, limit
-from cprbm_scene.answer import Answer, Flags, StationAnswer
-from cprbm_scene.statement import CRITICAL, STRESSES, Claim, Scene
+from comparisons.verdict import (
+    GRIDS,
+    CriticalRow,
+    Limit,
+    Row,
+    Runs,
+    Third,
+    away_from_point_forces,
+    largest,
+    limit,
+    other_theory,
+)
+from cprbm_scene import CRITICAL, STRESSES, Answer, Claim, Flags, Scene, StationAnswer
 
 _OF_THE_VALUE = frozenset({"force", "reaction", "reaction_moment"})
 """Quantities with claims on the share of the value itself."""
@@ -189,7 +195,7 @@ def solid_sentence(compared: Comparison) -> str:
     return (
         f"Beside the solid, displacements and rotations at the last station are off by at most "
         f"{_largest(last, 'fea')} in {runs.theory} (finite elements) and {_largest(last, 'other')} in "
-        f"{runs.other_theory} (CPRBM); the solid is uncertain by {_largest(last, 'uncertainty')}."
+        f"{other_theory(runs.theory)} (CPRBM); the solid is uncertain by {_largest(last, 'uncertainty')}."
     )
 
 

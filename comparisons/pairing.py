@@ -23,23 +23,33 @@ of the drive (:mod:`comparisons.reactions`).  The work–energy reaction follows
 use the reaction.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from pydantic import ValidationError
 
-from comparisons.choices import Choices, check
+from comparisons.choices import Choices, check_counts
 from comparisons.executor import ALONE, Crew, Job, Solver
 from comparisons.formats import in_file_units
 from comparisons.reactions import perturbed_scene
-from comparisons.verdict.runs import SOLVERS, TWICE, Runs, other_theory, runs_of
-from cprbm_scene import Answer, Ending, Mistake, RigidContact, Scene, SceneError, Spacing
-from cprbm_scene.answer import Array
-from cprbm_scene.frozendict import frozendict
-from cprbm_scene.statement import BodyLoad, Curve, Spline
+from comparisons.verdict import SOLVERS, TWICE, Runs, other_theory, runs_of
+from cprbm_scene import (
+    Answer,
+    Array,
+    BodyLoad,
+    Curve,
+    Ending,
+    Mistake,
+    RigidContact,
+    Scene,
+    SceneError,
+    Spacing,
+    Spline,
+    frozendict,
+)
 
 if TYPE_CHECKING:
     from cprbm import OffsetPoints
@@ -186,6 +196,15 @@ def solid_answer(scene: Scene, choices: Choices) -> Answer:
     return in_file_units(scene, solid.answer(scene, settings))
 
 
+SolverName = Literal["cprbm", "fea", "exact", "solid"]
+ANSWERS: Mapping[SolverName, Solver] = {
+    "cprbm": cprbm_answer,
+    "fea": fea_answer,
+    "exact": exact_answer,
+    "solid": solid_answer,
+}
+"""Functions of all solvers of a single answer."""
+
 Offsets: TypeAlias = "OffsetPoints"
 OffsetConstruction = Callable[[Curve, Spacing, int, Array], "OffsetPoints"]
 """Arguments: a curve, a spacing, N and signed distances (k,), m, positive to the left."""
@@ -257,7 +276,7 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
     Raises:
         SceneError: the choices do not fit the scene.
     """
-    check(choices, scene)
+    check_counts(choices, scene)
     theory = choices.kinematics_of(scene)
     choices = choices.within(theory)
     even = replace(choices, formulation="auto")
@@ -320,7 +339,7 @@ def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> dict[str, Answ
 
 
 def in_other_theory(scene: Scene, choices: Choices, solvers: Solvers) -> dict[str, Answer | str]:
-    """The CPRBM in the other theory (:attr:`Runs.other_theory`), or the mistakes of a refusal, by name of the run."""
+    """The CPRBM in the other theory, or the mistakes of a refusal, by name of the run."""
     theory = other_theory(choices.kinematics_of(scene))
     try:
         return {f"cprbm {theory}": solvers.cprbm(scene, choices.within(theory))}

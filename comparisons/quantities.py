@@ -45,8 +45,19 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from comparisons.geometry import length, longest, points
-from cprbm_scene.answer import Answer, Array, Shape, StationAnswer
-from cprbm_scene.statement import STRESSES, Beam, DistributedLoad, Probe, Quantity, Scene, Stage
+from cprbm_scene import (
+    STRESSES,
+    Answer,
+    Array,
+    Beam,
+    DistributedLoad,
+    Probe,
+    Quantity,
+    Scene,
+    Shape,
+    Stage,
+    StationAnswer,
+)
 
 VANISHING = 1e-2
 """A reference below this share of its scale may vanish, and is no divisor of shown fractions."""
@@ -116,14 +127,19 @@ def norm(quantity: Quantity, values: Array) -> float:
     return float(np.max(np.abs(values)) if quantity in STRESSES else np.linalg.norm(values))
 
 
-def unit_of(scene: Scene, probe: Probe, stage: Stage) -> str:
-    """SI unit of a probe's values in a stage."""
+def stage_of(scene: Scene, name: str) -> Stage:
+    """The stage of a name."""
+    return next(stage for stage in scene.stages if stage.name == name)
+
+
+def unit_of(scene: Scene, probe: Probe, stage: str) -> str:
+    """SI unit of a probe's values in the stage of a name."""
     return load_unit(scene, stage) if probe.quantity == "closing_load" else UNITS[probe.quantity]
 
 
-def load_unit(scene: Scene, stage: Stage) -> str:
-    """SI unit of the load or drive that a stage steps."""
-    return LOAD_UNITS[scene.stepped(stage).kind]
+def load_unit(scene: Scene, stage: str) -> str:
+    """SI unit of the load or drive that the stage of a name steps."""
+    return LOAD_UNITS[scene.stepped(stage_of(scene, stage)).kind]
 
 
 def arc_lengths(scene: Scene, probe: Probe) -> Array:

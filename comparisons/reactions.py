@@ -44,11 +44,10 @@ from itertools import chain
 
 import numpy as np
 
-from comparisons.quantities import VANISHING
+from comparisons.quantities import VANISHING, stage_of
 from comparisons.stations import find_station, kept, station_of
-from cprbm_scene import Answer, Drive, Probe, Scene, Stage, StationAnswer
+from cprbm_scene import Answer, DisplacementDrive, Drive, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.curves import unit_vector as unit
-from cprbm_scene.statement import DisplacementDrive
 
 PERTURBATION = 2e-3
 """ρ of section 2.4 of the paper."""
@@ -212,26 +211,33 @@ def reactions(scene: Scene, cprbm: Answer, fea: Answer, perturbed: Answer | None
                 scale=abs(F) if abs(F) >= VANISHING * largest else largest,
                 touches=bool(here.touching),
             )
-            if d not in steps or beside is None:
-                found.append(replace(row, absence=Absence.NOT_PERTURBED))
-                continue
-            before, after = (find_station(beside, stage.name, d + step) for step in (-steps[d], steps[d]))
-            if before is None or after is None:
-                found.append(replace(row, absence=Absence.NOT_REACHED))
-                continue
-            found.append(_with_work_energy(scene, stage, row, (before, here, after), passed))
+            found.append(_with_work_energy(scene, row, here, beside, steps.get(d), passed))
     return tuple(found)
 
 
 def _with_work_energy(
     scene: Scene,
-    stage: Stage,
     row: WorkEnergyReaction,
-    states: tuple[StationAnswer, StationAnswer, StationAnswer],
+    here: StationAnswer,
+    beside: Answer | None,
+    h: float | None,
     passed: Sequence[float],
 ) -> WorkEnergyReaction:
-    """The row with R from states at d − h, d and d + h, or with the event on the interval that forbids a difference."""
-    before, _, after = states
+    """The row with R, or with the reason for its absence.
+
+    Args:
+        scene, row: the question, and the row of a station d.
+        here: the state at d.
+        beside: the answer with the states at d − h and d + h, if any.
+        h: the step; None where the station is not perturbed.
+        passed: loads of passed critical points.
+    """
+    if beside is None or h is None:
+        return replace(row, absence=Absence.NOT_PERTURBED)
+    before, after = (find_station(beside, row.stage, row.station + step) for step in (-h, h))
+    if before is None or after is None:
+        return replace(row, absence=Absence.NOT_REACHED)
+    states, stage = (before, here, after), stage_of(scene, row.stage)
     active = [_active(scene, state) for state in states]
     changes = tuple(sorted(frozenset.union(*active) - frozenset.intersection(*active)))
     events = {

@@ -7,20 +7,25 @@ from functools import partial
 
 from comparisons.formats import at_station, distance_text, number, percent, with_unit
 from comparisons.quantities import load_unit
-from comparisons.stations import ends_at_critical, event_tolerance, problems
-from comparisons.verdict import Reason, Word
-from comparisons.verdict.events import (
+from comparisons.stations import ends_at_critical, event_tolerance, problems, stations_of
+from comparisons.verdict import (
     MIRRORED,
     PASSED,
+    SOLVERS,
     Closing,
     CriticalRow,
+    Reason,
+    Row,
+    Runs,
+    Word,
     disagree_within_a_solver,
+    error_ratios,
     mechanism,
+    other_theory,
     passed_by,
+    tally,
+    true_errors,
 )
-from comparisons.verdict.judge import error_ratios, tally, true_errors
-from comparisons.verdict.rows import Row
-from comparisons.verdict.runs import SOLVERS, Runs
 from cprbm_scene import Answer, Ending, Loss, Scene
 
 NAMES = {"cprbm": "the CPRBM", "fea": "the finite elements"}
@@ -93,15 +98,15 @@ def theory_sentence(runs: Runs, rows: Sequence[Row]) -> str:
     """The largest step of theory, or why the CPRBM has no value in the other theory; empty without this run."""
     scene, other, own = runs.scene, runs.other, runs.answers["cprbm"]
     if other is None:
-        refused = runs.absences.get(f"cprbm {runs.other_theory}")
-        return f"The CPRBM does not answer in {runs.other_theory}: {refused}." if refused else ""
-    parts, inside = [], f"In {runs.other_theory} the CPRBM"
+        refused = runs.absences.get(f"cprbm {other_theory(runs.theory)}")
+        return f"The CPRBM does not answer in {other_theory(runs.theory)}: {refused}." if refused else ""
+    parts, inside = [], f"In {other_theory(runs.theory)} the CPRBM"
     steps = [(row.theory / row.scale, row) for row in rows if math.isfinite(row.theory)]
     if steps:
         largest, row = max(steps, key=lambda step: step[0])
         parts.append(f"{inside}'s values are at most {percent(largest)} of the scale away ({place(scene, row)}).")
     if other.completed and not own.completed:
-        parts.append(f"{inside} has a complete answer: `--theory {runs.other_theory}`.")
+        parts.append(f"{inside} has a complete answer: `--theory {other_theory(runs.theory)}`.")
     elif own.completed and not other.completed:
         parts.append(f"{inside} has no complete answer: {_first(problem_sentences(scene, other))}.")
     return " ".join(parts)
@@ -119,6 +124,16 @@ def ended_sentence(runs: Runs, names: Iterable[str]) -> str:
         by_problem.setdefault(_first(problem_sentences(runs.scene, runs.same_theory[name])), []).append(name)
     parts = "; ".join(f"{', '.join(runs)}: {problem}" for problem, runs in by_problem.items())
     return f"Runs without a complete answer: {parts}."
+
+
+def unreached_sentence(runs: Runs) -> str:
+    """Number of the stations that the compared runs do not reach, and the critical point there; empty without any."""
+    asked, reached, critical = len(stations_of(runs.scene)), len(runs.reached), runs.pair[0].critical
+    if asked == reached:
+        return ""
+    end = critical[-1] if critical and all(map(ends_at_critical, runs.pair)) else None
+    place = f", at {at_station(runs.scene, end.stage, end.value)} ({mechanism(end)})" if end else ""
+    return f"The case ends early{place}: {asked - reached} of {asked} stations are not reached."
 
 
 def remedy_sentence(answer: Answer) -> str:
@@ -141,33 +156,31 @@ def critical_sentence(runs: Runs, row: CriticalRow) -> str:
         texts = " and ".join(f"{with_unit(scene, each.value, row.unit, 5)} ({mechanism(each)})" for each in points)
         beside = f", which passed {texts} and went on," if texts else ""
         places.append(f"nowhere in {name}{beside}" if one is None else f"{texts} in {name}")
-    parts = " and ".join(places)
-    if row.bounds is not None:
-        sizes = (row.difference, row.bounds.total, row.allowed)
-        apart, stated, allowed = (distance_text(scene, size, row.unit) for size in sizes)
-        parts += f", {apart} apart against a stated {stated}, {allowed} allowed"
-        if math.isfinite(row.theory):
-            parts += f"; the theories are {distance_text(scene, row.theory, row.unit)} apart"
-        elif row.theory > row.largest:
-            parts += "; the CPRBM has no such point in the other theory"
-    elif row.ended_before:
-        parts += ", and the run without it ended before that load"
-    if disagree_within_a_solver(row.mechanisms) and not (row.bounds is None and row.ended_before):
-        names: dict[str, list[str]] = {}
-        for run, found in row.mechanisms.items():
-            names.setdefault(found or "no such point", []).append(run)
-        listed = "; ".join(f"{found} in {', '.join(runs)}" for found, runs in names.items())
-        parts += f", and runs of one solver disagree ({listed}); refine both: `-n` and `--elements` twice as large"
-    if row.turned:
-        most = number(max(row.turned.values()), 3)
-        parts += f". {', '.join(row.turned)} passed it and went on along a state turned by {most} rad"
+    runs_by_mechanism: dict[str, list[str]] = {}
+    for run, found in row.mechanisms.items():
+        runs_by_mechanism.setdefault(found or "no such point", []).append(run)
+    listed = "; ".join(f"{found} in {', '.join(names)}" for found, names in runs_by_mechanism.items())
+    known, total = row.bounds is not None, math.nan if row.bounds is None else row.bounds.total
+    sizes = (row.difference, total, row.allowed, row.theory)
+    apart, stated, allowed, theories = (distance_text(scene, size, row.unit) for size in sizes)
+    most, disagree = number(max(row.turned.values(), default=0.0), 3), disagree_within_a_solver(row.mechanisms)
+    clauses = {
+        f", {apart} apart against a stated {stated}, {allowed} allowed": known,
+        f"; the theories are {theories} apart": known and math.isfinite(row.theory),
+        "; the CPRBM has no such point in the other theory": known and row.theory == math.inf > row.largest,
+        ", and the run without it ended before that load": not known and row.ended_before,
+        f", and runs of one solver disagree ({listed}); refine both: `-n` and `--elements` twice as large":
+            disagree and (known or not row.ended_before),
+        f". {', '.join(row.turned)} passed it and went on along a state turned by {most} rad": bool(row.turned),
+    }  # fmt: skip
+    parts = " and ".join(places) + "".join(text for text, holds in clauses.items() if holds)
     return f"The branch ends in {row.stage} at {parts}: {row.word.value}."
 
 
 def closing_sentence(scene: Scene, closing: Closing) -> str:
     """Loads at which a contact closes in both solvers."""
     stage, contact, pair, bounds = closing
-    unit = load_unit(scene, stage)
+    unit = load_unit(scene, stage.name)
     loads = " and ".join(
         f"{with_unit(scene, value, unit, 5)} in {name}" for value, name in zip(pair, NAMES.values(), strict=True)
     )

@@ -11,8 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from comparisons.quantities import COMPONENTS
-from cprbm_scene import Answer, Ending, Probe, Scene, Stage, StationAnswer
-from cprbm_scene.statement import STRESSES, RotationDrive
+from cprbm_scene import STRESSES, Answer, Ending, Probe, RotationDrive, Scene, Stage, StationAnswer
 
 ROTATION_TOLERANCE = math.radians(0.3)
 """Distance of two events on the axis of a rotation that still counts as one event, rad."""

@@ -7,7 +7,7 @@ damaged file is ignored with a note.
 
 import logging
 import shutil
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -21,8 +21,7 @@ from comparisons.executor import Crew, Decided, Job, Solver, crew_of
 from comparisons.pairing import Solvers, load_solvers
 from comparisons.provenance import program
 from comparisons.writing import clear_partial, write
-from cprbm_scene import Answer, Scene
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene import Answer, Scene, frozendict
 
 _LOG = logging.getLogger(__name__)
 
@@ -127,19 +126,17 @@ class Run:
     folder: Path | None
     names: tuple[str, ...]
 
-    def mark_shown(self, name: str) -> None:
-        """Note that the page is about to show a question.
+    def may_show(self, names: Sequence[str]) -> bool:
+        """True if ``names`` have all questions of the present page; otherwise the present page stays.
+
+        The last of the ``names`` counts as shown from now on.
 
         Raises:
             OSError: the folder cannot be written to.
         """
-        if self.folder is not None:
-            write(self.folder / f"{name}.shown", name)
-
-    def covers(self, names: Collection[str]) -> bool:
-        """True if ``names`` have all questions of the present page; otherwise the present page stays."""
         if self.folder is None:
             return True
+        write(self.folder / f"{names[-1]}.shown", names[-1])
         return not any((self.folder / f"{name}.shown").exists() for name in self.names if name not in names)
 
 

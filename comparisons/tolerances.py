@@ -38,13 +38,9 @@ from comparisons.reactions import perturbed_scene
 from comparisons.sentences import problem_sentences
 from comparisons.stations import station_of
 from comparisons.store import AnswerMemory
-from comparisons.verdict.events import Place
-from comparisons.verdict.rows import Row, rows_of
-from comparisons.verdict.runs import Runs, Uncertainties, runs_of
-from comparisons.verdict.uncertainty import Error, error, limit
-from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer
-from cprbm_scene.answer import Array, PointForces, frozen_array
-from cprbm_scene.frozendict import frozendict
+from comparisons.verdict import Error, Place, Row, Runs, Uncertainties, error, first_met, limit, rows_of, runs_of
+from cprbm_scene import Answer, Array, PointForces, Probe, Scene, SceneError, StationAnswer, frozendict
+from cprbm_scene.answer import frozen_array
 
 SolverName = Literal["cprbm", "fea", "solid"]
 
@@ -206,14 +202,14 @@ class _Level:
     def end(self, most: int) -> str:
         """Why the search ends at this level, with at most ``most`` for N; empty where the search goes on."""
         n, fraction = self.found.n, self.found.fraction
-        if self.found.met:
-            return "the tolerance is met"
-        if 2 * n > most:
-            return f"N = {most} is the largest N"
-        if not math.isfinite(fraction):
-            return "no larger N would help" if n >= PATIENCE else ""
-        hopeless = n >= ENOUGH and fraction * (n / most) ** HIGHEST_ORDER > self.found.asked
-        return f"N = {most}, the largest N, would not do either" if hopeless else ""
+        finite, at_most = math.isfinite(fraction), fraction * (n / most) ** HIGHEST_ORDER
+        rules = (
+            (self.found.met, "the tolerance is met"),
+            (2 * n > most, f"N = {most} is the largest N"),
+            (not finite and n >= PATIENCE, "no larger N would help"),
+            (finite and n >= ENOUGH and at_most > self.found.asked, f"N = {most}, the largest N, would not do either"),
+        )
+        return first_met(rules, "")
 
 
 @dataclass(frozen=True, slots=True)

@@ -161,7 +161,7 @@ class PointForces:
     """All forces of joints, contacts, stops, slides, pivots, drives and pins on beams and moving bodies, as arrays.
 
     A force stands once, for the loaded beam or body; the ground's share and the scene's loads are left out.
-    The fields are those of :class:`PointForce`, of k forces: (k,), ``place`` and ``force`` (k, 2).
+    The fields are those of :class:`PointForce`, of k forces: ``s`` and ``moment`` (k,), ``place`` and ``force`` (k, 2).
     """
 
     source: tuple[str, ...] = ()

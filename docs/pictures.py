@@ -43,8 +43,7 @@ SIDE = 2.4
 
 def thumbnail(question: Scene | OffsetQuestion, answer: Answer | None) -> bytes:
     """Small PNG picture of a case without axes: the mechanism as drawn in grey, at the last station in red."""
-    with canvas(SIDE, SIDE) as figure:
-        axes = figure.add_subplot()
+    with canvas(SIDE, SIDE) as (figure, (axes,)):
         if isinstance(question, OffsetQuestion):
             _draw_offset(axes, question)
         elif answer is not None:
@@ -100,13 +99,13 @@ def draw_tutorials() -> None:
     arch = read(HERE / "tutorials" / "arch.toml")
     answer = cprbm.answer(arch, cprbm.Settings(links=LINKS))
     push, force = zip(*((at.value, -at.values["pushed.reaction"][1]) for at in answer.stations), strict=True)
-    with canvas(5.6, 2.8) as figure:
-        axes = figure.add_subplot(xlabel="push, mm", ylabel="force of the drive, N")
+    with canvas(5.6, 2.8) as (figure, (axes,)):
+        axes.set(xlabel="push, mm", ylabel="force of the drive, N")
         axes.axhline(0.0, color=GREY, linewidth=0.6)
         axes.plot(1e3 * np.array(push), force, "o-", color=BLUE)
         write(folder / "arch-force.png", _png(figure))
-    with canvas(5.6, 3.2) as figure:
-        axes = figure.add_subplot(xlabel="A moves down by, mm", ylabel="force at A, N")
+    with canvas(5.6, 3.2) as (figure, (axes,)):
+        axes.set(xlabel="A moves down by, mm", ylabel="force at A, N")
         for thickness in THICKNESSES:
             answer = cprbm.answer(cases.opened("gripper", {"t": thickness}), cprbm.Settings(links=LINKS))
             down, force = zip(*((-at.values["A.displacement"][1], at.value) for at in answer.stations), strict=True)

@@ -31,8 +31,7 @@ import shapely
 from comparisons.audit.state import PIECES, Complex, Finding, StationState
 from comparisons.formats import at_station
 from comparisons.geometry import RigidEdge, edge_places, is_free_on_the_left
-from cprbm_scene.answer import ACTIVE, Array
-from cprbm_scene.statement import CircleContact, Contact, RigidContact, Scene, SelfContact
+from cprbm_scene import ACTIVE, Array, CircleContact, Contact, RigidContact, Scene, SelfContact
 
 Rigid = CircleContact | RigidEdge
 

@@ -46,9 +46,11 @@ import numpy as np
 from comparisons.audit.state import BESIDE, Finding, StationState, about, gauss, unit
 from comparisons.formats import at_station, load_text
 from comparisons.quantities import arc_lengths
-from cprbm_scene.answer import Answer, Array, Flags
-from cprbm_scene.statement import (
+from cprbm_scene import (
+    Answer,
+    Array,
     DisplacementDrive,
+    Flags,
     FreeEnd,
     PinnedEnd,
     Probe,

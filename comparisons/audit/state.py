@@ -24,9 +24,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.geometry import length
-from cprbm_scene.answer import Answer, Array, BeamState, StationAnswer
+from cprbm_scene import (
+    Answer,
+    Array,
+    Beam,
+    BeamMoment,
+    BeamState,
+    DistributedLoad,
+    Force,
+    Material,
+    Moment,
+    Scene,
+    Stage,
+    StationAnswer,
+    WeldedEnd,
+)
 from cprbm_scene.curve_records import shape_of
-from cprbm_scene.statement import Beam, BeamMoment, DistributedLoad, Force, Material, Moment, Scene, Stage, WeldedEnd
 
 Complex = NDArray[np.complex128]
 Forces = NDArray[np.void]

@@ -37,11 +37,8 @@ import numpy as np
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers
 from comparisons.quantities import NATURAL_SHARE, natural_value
-from comparisons.verdict.uncertainty import limit
-from cprbm_scene import Answer, Scene, SceneError
-from cprbm_scene.answer import Array
-from cprbm_scene.frozendict import frozendict
-from cprbm_scene.statement import DisplacementDrive, Probe
+from comparisons.verdict import limit
+from cprbm_scene import Answer, Array, DisplacementDrive, Probe, Scene, SceneError, frozendict
 
 Measure = Literal["places", "forces"]
 MEASURES: tuple[Measure, ...] = ("places", "forces")

@@ -34,9 +34,7 @@ from comparisons.bench.measures import NOTHING, Measure, Reference, errors
 from comparisons.choices import Choices, Count, Kinematics
 from comparisons.executor import Solver
 from comparisons.pairing import Solvers, prepared
-from cprbm_scene import Answer, Scene, SceneError
-from cprbm_scene.answer import Array
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene import Answer, Array, Scene, SceneError, frozendict
 from cprbm_scene.solving import one_thread
 
 OURS: tuple[str, ...] = ("auto", "paper", "fea")

@@ -14,7 +14,7 @@ from comparisons.bench.measures import MEASURES, Measure, uncertainties
 from comparisons.bench.running import FIT_FROM, NO_WORSE, OURS, Clocked, Contender, Session, Timing, trend
 from comparisons.choices import Count
 from comparisons.formats import number, percent
-from comparisons.present.canvas import Axes, canvas, common_legend, finished, logarithmic
+from comparisons.present.canvas import Axes, canvas, finished, logarithmic
 from comparisons.present.columns import (
     NOTHING,
     Column,
@@ -88,8 +88,7 @@ def pictures(measured: Session) -> tuple[Figure, ...]:
 
 
 def _precision(rows: Rows, measures: Sequence[Measure]) -> Figure:
-    with canvas(6.4, 1.2 + 3.6 * len(measures)) as drawing:
-        panels = np.atleast_1d(drawing.subplots(len(measures), 1, sharex=True))
+    with canvas(6.4, 1.2 + 3.6 * len(measures), len(measures), shared="x") as (drawing, panels):
         for axes, measure in zip(panels, measures, strict=True):
             for method, mine in rows.items():
                 shown = [row for row in mine if row.errors.get(measure, 0.0) > 0.0]
@@ -102,13 +101,12 @@ def _precision(rows: Rows, measures: Sequence[Measure]) -> Figure:
         for axes, measure in zip(panels, measures, strict=True):
             _decades(axes, _MEASURED[measure])
         panels[-1].set_xlabel("seconds of set-up and solve")
-        common_legend(drawing, "upper center", 3)
-        return finished(drawing, "bench-precision", "Error against time, each point a number of links or elements.")
+        caption = "Error against time, each point a number of links or elements."
+        return finished(drawing, "bench-precision", caption, ("upper center", 3))
 
 
 def _growth(rows: Rows) -> Figure:
-    with canvas(6.4, 7.2) as drawing:
-        seconds, iterations = drawing.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    with canvas(6.4, 7.2, 2, shared="x", heights=(3, 2)) as (drawing, (seconds, iterations)):
         for method, mine in rows.items():
             _, exponent, _ = trend(tuple(mine))
             label = method.label + ("" if exponent is None else f": exponent {exponent:.2f}")
@@ -148,8 +146,8 @@ def tables_of(measured: Session) -> tuple[Table, ...]:
     name = measured.scene.title or measured.scene.name
     timings = table_of(f"{name}: time against error", _COLUMNS, measured.rows(), _note(measured))
     fastest = [_fastest(measured, clocked) for clocked in _CLOCKED]
-    found = (timings, *fastest, _ratios(measured), _trends(measured), _omissions(measured))
-    return tuple(table for table in found if table.rows)
+    others = _ratios(measured), _trends(measured), _omissions(measured)
+    return tuple(table for table in (timings, *fastest, *others) if table.rows)
 
 
 def size_text(count: Count) -> str:

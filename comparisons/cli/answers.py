@@ -4,17 +4,16 @@ import math
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal
 
 import click
 
 from comparisons.audit import Audit, audit
 from comparisons.cli import output
 from comparisons.cli.doctor import WHAT_DRAWS
-from comparisons.cli.errors import INCOMPLETE, UNDECIDED
+from comparisons.cli.errors import code_of
 from comparisons.formats import at_station, file_unit
 from comparisons.logs import SOLVERS
-from comparisons.pairing import Solvers, exact_answer, solid_answer, solvers_of
+from comparisons.pairing import ANSWERS, SolverName, solvers_of
 from comparisons.present.strips import Coloured, with_stresses
 from comparisons.quantities import load_unit
 from comparisons.sentences import remedy_sentence
@@ -22,7 +21,6 @@ from comparisons.tolerances import Tolerance
 from comparisons.writing import write
 from cprbm_scene import Answer, Scene
 
-SolverName = Literal["cprbm", "fea", "exact", "solid"]
 Found = tuple[Answer, Audit, tuple[Tolerance, ...]]
 """An answer, its audit, and the searches for N."""
 
@@ -63,14 +61,14 @@ def _answer_of(request: output.Request, scene: Scene, solver: SolverName) -> Fou
     Raises:
         SceneError: the solver does not support the scene.
     """
-    solvers = solvers_of(request.planted or Solvers(exact=exact_answer))  # a named solver has no rule on its size
     if request.tol is not None and solver != "exact":
         from comparisons.tolerances import solve_within
 
         with output.status(shown=not request.quiet) as say:
-            answer, search = solve_within(scene, solver, request.choices, request.tol, solvers, say)
+            answer, search = solve_within(scene, solver, request.choices, request.tol, solvers_of(request.planted), say)
         return answer, audit(scene, answer), (search,)
-    function = getattr(solvers, solver) or {"exact": exact_answer, "solid": solid_answer}[solver]
+    # a named solver has no rule on its size
+    function = getattr(request.planted, solver, None) or ANSWERS[solver]
     with output.bar(1, shown=not request.quiet, loggers=SOLVERS):
         answer = function(scene, request.choices)
     return answer, audit(scene, answer), ()
@@ -78,7 +76,7 @@ def _answer_of(request: output.Request, scene: Scene, solver: SolverName) -> Fou
 
 def _report_problems(scene: Scene, answer: Answer, audited: Audit, searches: tuple[Tolerance, ...]) -> int:
     """Report an early end, complaints of the audit, or a missed tolerance; the exit code."""
-    ending, code = answer.ending.value, UNDECIDED if answer.completed else INCOMPLETE
+    ending = answer.ending.value
     sentences = [f"the audit fails {complaint}" for complaint in audited.complaints]
     if not answer.completed:
         ended = answer.sentence if answer.sentence.startswith(ending) else f"{ending}. {answer.sentence}".rstrip()
@@ -86,7 +84,7 @@ def _report_problems(scene: Scene, answer: Answer, audited: Audit, searches: tup
     sentences = sentences or [search.sentence(scene) for search in searches if not search.met]
     for sentence in sentences:
         click.echo(f"cprbm: {scene.name}: {sentence}", err=True)
-    return code if sentences else 0
+    return code_of(incomplete=not answer.completed, undecided=bool(sentences))
 
 
 def view(request: output.Request, solver: SolverName, quantity: Coloured, station: str | None) -> int:
@@ -132,7 +130,7 @@ def _station(scene: Scene, text: str) -> tuple[str, float]:
         click.BadParameter: the text names no station.
     """
     stage, _, value = text.rpartition(":")
-    known = [(each.name, load, load / file_unit(scene, load_unit(scene, each))[0])
+    known = [(each.name, load, load / file_unit(scene, load_unit(scene, each.name))[0])
              for each in scene.stages for load in each.stations]  # fmt: skip
     with suppress(ValueError):
         for name, load, typed in reversed(known):

@@ -15,7 +15,7 @@ from importlib.metadata import PackageNotFoundError, version
 import click
 
 from comparisons import cases
-from comparisons.cli.errors import INCOMPLETE
+from comparisons.cli.errors import code_of
 
 SECONDS = 120.0
 
@@ -162,7 +162,7 @@ def doctor(quiet: bool) -> int:  # noqa: FBT001 - click passes a keyword
         if required:
             summary = "A required library is missing; install the library with the command above."
         click.echo(summary if missing else "All libraries are installed.")
-    return INCOMPLETE if required else 0
+    return code_of(incomplete=required)
 
 
 def _drawing_text() -> str:

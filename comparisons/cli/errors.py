@@ -27,6 +27,12 @@ INCOMPLETE, WRONG_QUESTION, UNDECIDED = 1, 2, 3
 CLOSED_PIPE = 141
 """Exit code of a shell for SIGPIPE."""
 
+
+def code_of(*, incomplete: bool, undecided: bool = False) -> int:
+    """Exit code of a finished command: an incomplete result counts more than an undecided result."""
+    return next((code for code, met in ((INCOMPLETE, incomplete), (UNDECIDED, undecided)) if met), 0)
+
+
 End = tuple[str, int]
 """Sentence on standard error, and exit code."""
 

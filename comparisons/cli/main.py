@@ -229,14 +229,14 @@ STUDIES = Commands(
     {"Commands": (
         SolvingCommand(
             "calibration",
-            callback=later("verdicts.calibration"),
+            callback=later("verdicts.study_calibration"),
             params=[*OUTPUT, options.folder(help="Folder for page, numbers and figure.")],
             help="Compare stated and true errors on every case with an exact answer.",
         ),
         ToolCommand("study relations"),
         SolvingCommand(
             "table1",
-            callback=later("verdicts.table1"),
+            callback=later("verdicts.study_table1"),
             params=[options.repeated(help="Repetitions of every cell of the table."),
                     options.time_limit(default="60", help="A solve that takes longer is not repeated."), *OUTPUT,
                     options.folder(help="Folder for page, numbers and figure.")],

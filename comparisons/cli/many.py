@@ -9,7 +9,7 @@ from typing import Literal
 import click
 
 from comparisons.cli import output
-from comparisons.cli.errors import INCOMPLETE, UNDECIDED
+from comparisons.cli.errors import code_of
 from comparisons.present.columns import Section
 from comparisons.present.page import Page, put_page, put_section
 from comparisons.sweeps import points as grids
@@ -53,9 +53,9 @@ def sweep(
                 click.echo(f"{grids.place_text(axes, task.point)}: {outcome.sentence}")
         click.echo(f"tables: {out / 'numbers.csv'}, {out / 'last.csv'}; page: {out / 'index.html'}")
     outcomes = [outcome for _, outcome in found.points()]
-    if any(not outcome.completed or outcome.verdict == "DIFFER" for outcome in outcomes):
-        return INCOMPLETE
-    return UNDECIDED if any(outcome.verdict == "UNDECIDED" for outcome in outcomes) else 0
+    undecided = any(outcome.verdict == "UNDECIDED" for outcome in outcomes)
+    incomplete = any(not outcome.completed or outcome.verdict == "DIFFER" for outcome in outcomes)
+    return code_of(incomplete=incomplete, undecided=undecided)
 
 
 def tolerance(
@@ -70,7 +70,7 @@ def tolerance(
     result = scatter_section(found)
     write_tables(out, found.sweep)
     _put(request, scene, out, result, f"{out / 'tolerance.json'}, {out / 'numbers.csv'}")
-    return 0 if result.complete else INCOMPLETE
+    return code_of(incomplete=not result.complete)
 
 
 def optimise(request: output.Request, goal: Path, vary: tuple[str, ...], starts: int, solves: int) -> int:
@@ -80,9 +80,8 @@ def optimise(request: output.Request, goal: Path, vary: tuple[str, ...], starts:
     with _runner(request, scene, "optimise", starts * solves) as (out, runner):
         found = optimum(problem, runner, starts, solves)
     _put(request, scene, out, optimum_section(found), str(out / "optimum.json"))
-    if not found.doubt:
-        return 0
-    return UNDECIDED if found.compared.verdict == "UNDECIDED" else INCOMPLETE
+    undecided = found.compared.verdict == "UNDECIDED"
+    return code_of(incomplete=bool(found.doubt) and not undecided, undecided=bool(found.doubt))
 
 
 @contextmanager

@@ -21,7 +21,7 @@ from typing import TypeVar
 import click
 
 from comparisons import cases, logs, pairing
-from comparisons.choices import Choices, check
+from comparisons.choices import Choices, check_counts
 from comparisons.cli.errors import printable
 from comparisons.present.columns import Plain, Section, Table
 from comparisons.writing import text_of, write
@@ -122,7 +122,7 @@ class Request:
         for scene in (question for question in questions if isinstance(question, Scene)):
             for note in notes(scene):
                 click.echo(printable(f"Note: {scene.file}: {note}"), err=True)
-            check(self.choices, scene)
+            check_counts(self.choices, scene)
 
     def with_room(self, folder: str = "") -> Request:
         """The request with its folders made; without ``--out`` the report goes to ``folder``, or nowhere if empty.
@@ -137,13 +137,17 @@ class Request:
         return replace(self, out=out)
 
 
+def screen_width() -> int:
+    """Columns of the terminal, or of a file."""
+    return shutil.get_terminal_size().columns if sys.stdout.isatty() else _PLAIN_WIDTH
+
+
 def print_tables(tables: Iterable[Table], most: int = 10_000) -> None:
     """Print tables with at most ``most`` columns; colours appear on a terminal only."""
     from comparisons.present.table import screen_text  # loads rich
 
-    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else _PLAIN_WIDTH
     for table in tables:
-        click.echo(screen_text(table, width=min(width, most)))
+        click.echo(screen_text(table, width=min(screen_width(), most)))
 
 
 def print_section(section: Section) -> None:
@@ -172,43 +176,36 @@ def print_folder(request: Request, file: str = "index.html") -> None:
 
 
 @dataclass(slots=True)
-class Rounds:
-    """Progress of an item with rounds of steps; a round takes a ``share`` of the remaining part of the item.
+class Bar:
+    """Progress of items, of which an item may have rounds of steps; no bar is drawn by default.
 
-    ``item`` is the item's number, ``left`` the remaining fraction after the last round, ``done`` the last step.
+    Attributes:
+        move: draws the bar at a number of finished items.
+        clear: clears the line of the bar before other output.
+        share: part of the remaining item that a round of steps takes.
+        item: number of the present item; left: its remaining fraction after the last round; done: its last step.
     """
 
+    move: Callable[[float], None] = lambda done: None
+    clear: Callable[[], None] = lambda: None
     share: float = 1.0
     item: int = 0
     left: float = 1.0
     done: int = 0
 
-    def begin(self, item: int) -> float:
-        """The number of an item, which begins."""
-        self.item, self.left, self.done = item, 1.0, 0
-        return item
-
-    def at(self, done: int, whole: int) -> float:
-        """Number of finished items plus the finished part of the present item; the value never falls."""
-        if done <= self.done:
-            self.left *= 1.0 - self.share
-        self.done = done
-        return self.item + 1.0 - self.left * (1.0 - self.share * done / whole)
-
-
-@dataclass(frozen=True, slots=True)
-class Bar:
-    """A bar: ``move`` to a number of finished items, ``clear`` the line before other output; no bar by default."""
-
-    move: Callable[[float], None] = lambda done: None
-    clear: Callable[[], None] = lambda: None
-    rounds: Rounds = field(default_factory=Rounds)
-
     def through(self, items: Sequence[T]) -> Iterator[T]:
         """The items in order; the bar moves with every item."""
         for number, item in enumerate(items):
-            self.move(self.rounds.begin(number))
+            self.item, self.left, self.done = number, 1.0, 0
+            self.move(number)
             yield item
+
+    def step(self, done: int, whole: int) -> None:
+        """Move to the finished items and the finished part of the present item; the bar never goes back."""
+        if done <= self.done:
+            self.left *= 1.0 - self.share
+        self.done = done
+        self.move(self.item + 1.0 - self.left * (1.0 - self.share * done / whole))
 
 
 def _visible(*, shown: bool) -> bool:
@@ -246,7 +243,7 @@ def bar(
         redirect_stderr=False,
         speed_estimate_period=3600.0,
     ) as progress:
-        task, rounds = progress.add_task("solving", total=whole), Rounds(share)
+        task = progress.add_task("solving", total=whole)
 
         def move(done: float) -> None:
             progress.update(task, completed=done)
@@ -259,8 +256,9 @@ def bar(
             progress.console.control(Control(ControlType.CARRIAGE_RETURN, (ControlType.ERASE_IN_LINE, 2)))
 
         move(0)
-        with logs.steps_from(loggers, lambda done, steps: move(rounds.at(done, steps))):
-            yield Bar(move, clear, rounds)
+        found = Bar(move, clear, share)
+        with logs.steps_from(loggers, found.step):
+            yield found
         clear()
 
 

@@ -17,25 +17,21 @@ from comparisons import case, cases, logs, pairing, provenance
 from comparisons.bench import measures, running
 from comparisons.bench.section import bench_section, size_text
 from comparisons.case import Comparison
-from comparisons.choices import Count, check
+from comparisons.choices import Count, check_counts
 from comparisons.cli import output
 from comparisons.cli.commands import load_tool
-from comparisons.cli.errors import INCOMPLETE, UNDECIDED
+from comparisons.cli.errors import code_of
 from comparisons.cli.main import OPTIMISERS
 from comparisons.offset_verdict import Compared, compared_offset
 from comparisons.present import brief, csv_table, figures, page
 from comparisons.present.columns import Plain, Section
 from comparisons.store import Run, run_into
-from comparisons.studies import calibration as calibrations
-from comparisons.studies import convergence
-from comparisons.studies import table1 as timings
+from comparisons.studies import calibration, convergence, table1
 from comparisons.studies.report import Report
 from comparisons.tolerances import runs_within
-from comparisons.verdict import Word
-from comparisons.verdict.runs import Runs
+from comparisons.verdict import Runs, Word
 from comparisons.writing import write
-from cprbm_scene import OffsetQuestion, Question
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene import OffsetQuestion, Question, frozendict
 
 
 def compare_all(request: output.Request) -> int:
@@ -66,10 +62,9 @@ def compare_all(request: output.Request) -> int:
         output.print_tables([brief.summary(finished)], brief.WIDTH)
     output.print_folder(request)
     verdicts = [found.verdict for found in finished]
-    if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):
-        return INCOMPLETE
-    undecided = any(verdict.word is Word.UNDECIDED for verdict in verdicts)
-    return UNDECIDED if undecided or any(map(_failed_searches, finished)) else 0
+    undecided = any(verdict.word is Word.UNDECIDED for verdict in verdicts) or any(map(_failed_searches, finished))
+    incomplete = any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts)
+    return code_of(incomplete=incomplete, undecided=undecided)
 
 
 def _comparisons(
@@ -107,8 +102,7 @@ def _run(request: output.Request, questions: Sequence[Question]) -> AbstractCont
 
 def _keep(request: output.Request, run: Run, shown: Sequence[Question], whole: page.Page, document: Plain) -> None:
     """Write the page and the JSON of the questions ``shown``, unless they would replace more; the last one is new."""
-    run.mark_shown(shown[-1].name)
-    if run.covers([question.name for question in shown]):
+    if run.may_show([question.name for question in shown]):
         if request.out is not None:
             page.put_page(request.out, whole)
         if request.prints:
@@ -119,7 +113,8 @@ def _show(request: output.Request, compared: Compared) -> None:
     """Print a case: in brief, with ``-v`` with all tables, or quietly with the verdict alone."""
     if not request.quiet and logs.level() == NOTSET:
         values = [text for name, value in request.values.items() for text in ("--set", f"{name}={value}")]
-        click.echo(brief.brief(compared, shlex.join([cases.argument(compared.question), *values]), request.out) + "\n")
+        argument = shlex.join([cases.argument(compared.question), *values])
+        click.echo(brief.brief(compared, argument, request.out, output.screen_width()) + "\n")
         return
     if not request.quiet:
         for section in page.sections_of(compared):
@@ -171,7 +166,7 @@ def converge_all(request: output.Request, sizes: tuple[int, ...]) -> int:
     if not request.prints:
         output.write_json(request.json_file, document)
     output.print_folder(request)
-    return 0 if all(section.complete for section in finished) else INCOMPLETE
+    return code_of(incomplete=not all(section.complete for section in finished))
 
 
 def report(request: output.Request, sizes: tuple[int, ...], without: tuple[str, ...]) -> None:
@@ -220,7 +215,7 @@ def bench(
     opened, whole = request.scene().model_copy(update={"theory": "bending"}), stations == "all"
     counts = tuple(n if isinstance(n, int) else frozendict(n) for n in numbers) or (sizes or ())
     for n in counts:
-        check(replace(request.choices, links=n), opened)
+        check_counts(replace(request.choices, links=n), opened)
     wanted = methods or (*running.OURS, *OPTIMISERS)
     asked = [each for each in running.contenders(request.solvers, request.choices) if each.name in wanted]
     asked += [load_tool(f"bench --method {name}").contender() for name in OPTIMISERS if name in wanted]
@@ -244,7 +239,7 @@ def bench(
     for row in failed:
         who = f"{row.contender.label} at N = {size_text(row.count)}"
         click.echo(f"cprbm: {opened.name}: {who}: {row.outcome.why}", err=True)
-    return INCOMPLETE if failed else 0
+    return code_of(incomplete=bool(failed))
 
 
 def _absence(contender: running.Contender, *, whole: bool) -> str:
@@ -253,22 +248,23 @@ def _absence(contender: running.Contender, *, whole: bool) -> str:
     return "an optimiser solves the last station only" if alone else contender.absence
 
 
-def calibration(request: output.Request) -> int:
+def study_calibration(request: output.Request) -> int:
     """Compare stated with true errors; exit code 1 for a case that differs or did not complete."""
     request = request.with_room()
     with run_into(request.out, request.solvers, processes=request.processes) as run:
-        take = partial(calibrations.with_case, solvers=run.solvers, crew=run.crew)
-        found = take_steps(request, calibrations.Calibration(), calibrations.pieces(), take, calibrations.result_of)
+        take = partial(calibration.with_case, solvers=run.solvers, crew=run.crew)
+        scenes = [*map(cases.opened, cases.scenes())]
+        found = take_steps(request, calibration.Calibration(), scenes, take, calibration.result_of)
     verdicts = [trial.verdict for trial in found.trials]
-    return INCOMPLETE if any(each.word is Word.DIFFER or not each.completed for each in verdicts) else 0
+    return code_of(incomplete=any(each.word is Word.DIFFER or not each.completed for each in verdicts))
 
 
-def table1(request: output.Request, repeat: int) -> int:
+def study_table1(request: output.Request, repeat: int) -> int:
     """Time both solvers on the cells of the paper's Table 1; exit code 1 for an incomplete solve."""
     request = request.with_room()
-    session = timings.session(request.solvers, provenance.machine(), repeat, request.at_most)
-    take_steps(request, session, session.jobs(), running.Session.do, timings.result_of)
-    return 0 if timings.result_of(session).complete else INCOMPLETE
+    session = table1.session(request.solvers, provenance.machine(), repeat, request.at_most)
+    take_steps(request, session, session.jobs(), running.Session.do, table1.result_of)
+    return code_of(incomplete=not table1.result_of(session).complete)
 
 
 def take_steps(

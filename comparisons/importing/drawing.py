@@ -14,8 +14,7 @@ import numpy as np
 import shapely
 
 from comparisons.executor import WorkerDiedError, call_fresh
-from cprbm_scene.answer import Array
-from cprbm_scene.mistakes import Mistake, SceneError
+from cprbm_scene import Array, Mistake, SceneError
 from cprbm_scene.units import read_points
 
 _BEGIN = 4096

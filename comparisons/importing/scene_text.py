@@ -34,11 +34,8 @@ import numpy as np
 import shapely
 
 from comparisons.importing.drawing import Drawing, DrawnCurve
-from cprbm_scene import Arc, Line, Spline
-from cprbm_scene.answer import Array
+from cprbm_scene import Arc, Array, Line, Mistake, SceneError, Spline, scene_from
 from cprbm_scene.curve_records import shape_of
-from cprbm_scene.mistakes import Mistake, SceneError
-from cprbm_scene.reading import scene_from
 
 Unit = Literal["m", "cm", "mm", "um", "in"]
 

@@ -15,9 +15,8 @@ from comparisons.present import offset
 from comparisons.present.columns import NOTHING, Column, Table, follow, table_of
 from comparisons.present.row_tables import row_units, share
 from comparisons.present.table import brief_lines
-from comparisons.sentences import pressure, remedy_sentence, theory_sentence
-from comparisons.verdict import SEVERITY, Word
-from comparisons.verdict.rows import ROUND_OFF, Row
+from comparisons.sentences import pressure, remedy_sentence, theory_sentence, unreached_sentence
+from comparisons.verdict import ROUND_OFF, SEVERITY, Row, Word
 
 LINES, WIDTH = 30, 80
 """Most lines of a brief report, with an empty line below, and most columns."""
@@ -25,30 +24,40 @@ LINES, WIDTH = 30, 80
 ROWS = 12
 """Most rows of the table: of all rows the nearest to their limits."""
 
-_wrapped = partial(textwrap.wrap, width=WIDTH, max_lines=6, placeholder=" … (-v)", break_on_hyphens=False)
+NARROWEST = 60
+"""Least width, columns: a narrower table would cut numbers."""
+
+_wrap = partial(textwrap.wrap, max_lines=6, placeholder=" … (-v)", break_on_hyphens=False)
 _COMMAND = re.compile(r"`(-[^`]* [^`]*|solve [^`]*)`")
 
 
-def brief(compared: Compared, argument: str, page: Path | None = None) -> str:
-    """Report of at most ``LINES`` lines of ``WIDTH`` columns, with terminal colours.
+def brief(compared: Compared, argument: str, page: Path | None = None, width: int = WIDTH) -> str:
+    """Report of at most ``LINES`` lines of ``width`` columns, with terminal colours.
 
     Args:
         compared: the case.
         argument: name or path of the case with its parameters, as the shell takes them.
         page: written page of the case; None without a report.
+        width: of the terminal; ``NARROWEST`` and ``WIDTH`` are the limits.
     """
-    verdict = compared.verdict
-    first = _wrapped(headline(compared.question.name, verdict, verdict.because if compared.rows else verdict.sentence))
+    verdict, width = compared.verdict, min(max(width, NARROWEST), WIDTH)
+    wrapped = partial(_wrap, width=width)
+    first = wrapped(headline(compared.question.name, verdict, verdict.because if compared.rows else verdict.sentence))
     last = _next_step(argument, verdict, page)
     if isinstance(compared, OffsetComparison):
         errors = offset.error_table(compared)
-        lines = *brief_lines(errors, width=WIDTH), *_wrapped(f"{errors.title}. {errors.note}")
+        lines = *brief_lines(errors, width=width), *wrapped(f"{errors.title}. {errors.note}")
         return "\n".join((*first, "", *lines, *last))
-    rest = [theory_sentence(compared.runs, compared.rows), *dict.fromkeys(map(remedy_sentence, compared.runs.pair))]
-    last = [*_found_sizes(compared), *chain.from_iterable(map(_wrapped, rest if compared.rows else ())), *last]
+    rest = [
+        unreached_sentence(compared.runs),
+        theory_sentence(compared.runs, compared.rows),
+        *dict.fromkeys(map(remedy_sentence, compared.runs.pair)),
+    ]
+    rest = [*_found_sizes(compared), *(rest if compared.rows else ())]
+    last = [*chain.from_iterable(map(wrapped, rest)), *last]
     rows = last_rows_of_stages(compared)
     tables = (nearest_rows(compared, rows, count) for count in range(min(ROWS, len(rows)), 0, -1))
-    reports = ([*first, "", *brief_lines(table, width=WIDTH), *filter(None, (table.note,)), *last] for table in tables)
+    reports = ([*first, "", *brief_lines(table, width=width), *filter(None, (table.note,)), *last] for table in tables)
     return "\n".join(next((report for report in reports if len(report) < LINES), [*first, *last]))
 
 
@@ -133,7 +142,7 @@ def _found_sizes(compared: Comparison) -> Iterator[str]:
     found = compared.tolerances
     if found:
         yield f"N for {percent(found[0].asked)}: {', '.join(f'{each.solver} {each.n}' for each in found)}."
-    yield from (line for each in found if not each.met for line in _wrapped(each.sentence(compared.scene)))
+    yield from (each.sentence(compared.scene) for each in found if not each.met)
 
 
 def _next_step(argument: str, verdict: Verdict, page: Path | None) -> list[str]:

@@ -9,7 +9,7 @@ import io
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -70,24 +70,45 @@ _RIGID: dict[str, Any] = {"facecolor": "#b9bfc6", "alpha": 0.55, "linewidth": 0.
 
 
 @contextmanager
-def canvas(width: float, height: float) -> Iterator[Drawing]:
-    """Context with an empty drawing of ``width`` and ``height``, inches; draw and finish it inside the context."""
+def canvas(
+    width: float,
+    height: float,
+    count: int = 1,
+    columns: int = 1,
+    shared: Literal["", "x", "y", "xy"] = "",
+    heights: Sequence[float] | None = None,
+) -> Iterator[tuple[Drawing, list[Axes]]]:
+    """Context with an empty drawing and its axes; draw and finish it inside the context.
+
+    Args:
+        width, height: of the drawing, inches.
+        count: number of axes, row by row.
+        columns: number of columns.
+        shared: axes of abscissae, of ordinates or of both that have one range.
+        heights: ratios of the heights of the rows; None for equal heights.
+    """
     import matplotlib.figure
 
     with matplotlib.rc_context(_STYLE):
-        yield matplotlib.figure.Figure(figsize=(width, height), layout="constrained")
+        drawing, rows = matplotlib.figure.Figure(figsize=(width, height), layout="constrained"), -(-count // columns)
+        axes = drawing.subplots(
+            rows, columns, sharex="x" in shared, sharey="y" in shared, squeeze=False, height_ratios=heights
+        ).ravel()
+        for spare in axes[count:]:
+            spare.remove()
+        yield drawing, [*axes[:count]]
 
 
-def panels(drawing: Drawing, count: int, height: float) -> list[Axes]:
-    """Axes of ``count`` panels of a ``height``, inches, in at most two columns; the drawing takes their size."""
+def panels(count: int, height: float) -> tuple[float, float, int, int]:
+    """Arguments of :func:`canvas` for ``count`` panels of a ``height``, inches, in at most two columns."""
     columns = min(count, 2)
-    rows = -(-count // columns)
-    drawing.set_size_inches(4.2 * columns, height * rows)
-    return [drawing.add_subplot(rows, columns, place + 1) for place in range(count)]
+    return 4.2 * columns, height * -(-count // columns), count, columns
 
 
-def finished(drawing: Drawing, name: str, caption: str) -> Figure:
-    """The figure of a drawing."""
+def finished(drawing: Drawing, name: str, caption: str, legend: tuple[str, int] | None = None) -> Figure:
+    """The figure of a drawing, with a common ``legend`` at a place and with a number of columns."""
+    if legend is not None:
+        common_legend(drawing, *legend)
     layout = drawing.get_layout_engine()
     if layout is not None:  # made once, it serves both formats
         layout.execute(drawing)

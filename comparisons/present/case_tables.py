@@ -27,8 +27,7 @@ from comparisons.quantities import load_unit, norm, probe_scales, unit_of
 from comparisons.reactions import MESH_ALLOWANCE, PERTURBATION, WorkEnergyReaction, is_long
 from comparisons.stations import kept
 from comparisons.tolerances import Tolerance
-from comparisons.verdict.events import CriticalRow, Place, mechanism, released
-from comparisons.verdict.rows import ROUND_OFF
+from comparisons.verdict import ROUND_OFF, CriticalRow, Place, mechanism, other_theory, released
 from cprbm_scene import Answer, Critical, Event, Scene, Stage
 
 CRITICAL_TITLE = "Critical values: where a branch ends"
@@ -83,10 +82,12 @@ def _stage_table(scene: Scene, answer: Answer, stage: Stage) -> Table:
     """All stations of a stage, with a column for every component."""
     stations = [station for station in answer.stations if station.stage == stage.name]
     probes, scales = scene.probes_in(stage.name), probe_scales(scene, (answer,))
-    sizes = ((unit_of(scene, at, stage), norm(at.quantity, each.values[at.name])) for at in probes for each in stations)
+    sizes = (
+        (unit_of(scene, at, stage.name), norm(at.quantity, each.values[at.name])) for at in probes for each in stations
+    )
     units, columns = display_units(scene, sizes), dict([load_column(scene, stage, [at.value for at in stations])])
     for probe in probes if stations else ():
-        factor, unit = units[unit_of(scene, probe, stage)]
+        factor, unit = units[unit_of(scene, probe, stage.name)]
         floor = ROUND_OFF * scales[stage.name, probe.name]
         texts = [dict(components(probe.quantity, at.values[probe.name], factor, floor)) for at in stations]
         columns |= {
@@ -173,12 +174,11 @@ def branch_table(compared: Comparison) -> Table:
 
 def _answer_critical_table(scene: Scene, answer: Answer) -> Table:
     """Critical points of an answer, passed points first."""
-    units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
     passed = {id(one.end): f", passed: turned by {number(one.turned, 3)} rad" for one in answer.gone_over}
     columns = [
         Column[Critical]("stage", "stage"),
-        Column("at", lambda one: with_unit(scene, one.value, units[one.stage], 5)),
-        Column("±", lambda one: distance_text(scene, one.uncertainty, units[one.stage])),
+        Column("at", lambda one: with_unit(scene, one.value, load_unit(scene, one.stage), 5)),
+        Column("±", lambda one: distance_text(scene, one.uncertainty, load_unit(scene, one.stage))),
         Column("mechanism", lambda one: f"{mechanism(one)}{passed.get(id(one), '')}"),
         Column("smallest curvature", "curvature", number),
         Column("curvature left", "left", number),
@@ -214,7 +214,9 @@ def case_sections(compared: Comparison, figures: Sequence[Figure] = ()) -> tuple
         "Values at further stations": tuple(row_tables.value_table(compared, rows) for rows in stations[:-1]),
         "What the verdict rests on": (row_tables.verdict_table(last), row_tables.exact_table(compared, last)),
         "What the source claims": (claims_table(compared),),
-        "Reactions of the drives": reaction_tables(compared),
+        "Reactions of the drives": tuple(
+            _reaction_table(compared, drive, found) for drive, found in by_drive(compared.reactions).items()
+        ),
         "Other theories and formulations": (*beside, row_tables.solid_table(compared)),
         "Certificates and audit": (_certificate_table(compared),),
         "Run time": (_seconds_table(compared),),
@@ -253,13 +255,8 @@ def claims_table(compared: Comparison) -> Table:
     )
 
 
-def reaction_tables(compared: Comparison) -> tuple[Table, ...]:
-    """A table for every moved drive: the multiplier, the work–energy reaction and the finite elements' reaction."""
-    return tuple(_reaction_table(compared, drive, found) for drive, found in by_drive(compared.reactions).items())
-
-
 def _reaction_table(compared: Comparison, drive: str, found: Sequence[WorkEnergyReaction]) -> Table:
-    """Reactions of a drive at the stations that tables show."""
+    """Multiplier, work–energy reaction and the finite elements' reaction of a drive at the stations of tables."""
     scene, run = compared.scene, compared.runs.answers.get("cprbm perturbed")
     ended = "" if run is None or run.completed else f" The perturbed run ended early: {run.ending.value}."
     stations = {stage.name: kept(stage) if is_long(stage) else stage.stations for stage in scene.stages}
@@ -334,7 +331,7 @@ def _seconds_table(compared: Comparison) -> Table:
     labels = {
         "cprbm": f"CPRBM ({runs.theory})",
         "fea": f"FEA ({runs.theory})",
-        f"cprbm {runs.other_theory}": f"CPRBM ({runs.other_theory})",
+        f"cprbm {other_theory(runs.theory)}": f"CPRBM ({other_theory(runs.theory)})",
         "exact": "exact (bending)",
     }
     answers = [(label, runs.answers[name]) for name, label in labels.items() if name in runs.answers]

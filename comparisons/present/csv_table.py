@@ -3,14 +3,15 @@
 import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any, TypedDict
 
 from comparisons.case import Comparison
 from comparisons.formats import file_unit
 from comparisons.present.columns import Plain
 from comparisons.quantities import COMPONENTS, arc_lengths, load_unit, unit_of
-from cprbm_scene.answer import Answer, Array, PointForce, StationAnswer
-from cprbm_scene.statement import STRESSES, Probe, Scene
+from comparisons.writing import write
+from cprbm_scene import STRESSES, Answer, Array, PointForce, Probe, Scene, StationAnswer
 
 
 class Number(TypedDict):
@@ -50,26 +51,51 @@ _CONTACT_FORCE = (
 )
 
 
-def numbers(scene: Scene, answer: Answer) -> Iterator[Number]:
-    """Every number of an answer, station by station and probe by probe; a missing value has no record."""
-    stages = {stage.name: stage for stage in scene.stages}
-    for station in answer.stations:
-        stage = stages[station.stage]
-        for probe in scene.probes_in(station.stage):
-            for (component, arc_length), value in _parts(scene, probe, station.values[probe.name]).items():
-                yield Number(
-                    scene=scene.name,
-                    solver=answer.solver,
-                    stage=stage.name,
-                    station=station.value,
-                    branch=station.branch,
-                    probe=probe.name,
-                    component=component,
-                    arc_length=arc_length,
-                    unit=unit_of(scene, probe, stage),
-                    value=value,
-                    station_unit=load_unit(scene, stage),
-                )
+def records(scene: Scene, answer: Answer) -> list[Number]:
+    """Every number of an answer with its origin: ``pandas.DataFrame(records(scene, answer))`` is one table.
+
+    Args:
+        scene: the question.
+        answer: a solver's answer to the question.
+
+    Returns:
+        A dictionary of each number, station by station and probe by probe: ``scene``, ``solver``, ``stage``,
+        ``station``, ``branch``, ``probe``, ``component``, ``arc_length`` (m, along a beam), ``unit`` (SI) and
+        ``value``.  A missing value has no record.
+    """
+    station_units = {stage.name: load_unit(scene, stage.name) for stage in scene.stages}
+    return [
+        Number(
+            scene=scene.name,
+            solver=answer.solver,
+            stage=station.stage,
+            station=station.value,
+            branch=station.branch,
+            probe=probe.name,
+            component=component,
+            arc_length=arc_length,
+            unit=unit_of(scene, probe, station.stage),
+            value=value,
+            station_unit=station_units[station.stage],
+        )
+        for station in answer.stations
+        for probe in scene.probes_in(station.stage)
+        for (component, arc_length), value in _parts(scene, probe, station.values[probe.name]).items()
+    ]
+
+
+def write_csv(path: str | Path, scene: Scene, *answers: Answer) -> None:
+    """Write the numbers of answers as a file of comma-separated values with a line of headers.
+
+    Args:
+        path: of the file; a missing folder is made.
+        scene: the question.
+        answers: of one solver or several to the question, one below the other.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    write(Path(path), csv_of(scene, *answers))
 
 
 def _parts(scene: Scene, probe: Probe, values: Array) -> dict[tuple[str, float | None], float]:
@@ -85,23 +111,22 @@ def comparison_records(compared: Comparison) -> list[Plain]:
 
     ``difference`` and ``stated`` are norms of the probe, in ``unit``.
     """
-    scene, records = compared.scene, list[Plain]()
-    units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
+    scene, found = compared.scene, list[Plain]()
     for row in compared.rows:
         cprbm, fea = (_parts(scene, row.probe, values) for values in (row.cprbm, row.fea))
-        where = (scene.name, *row.where, units[row.stage], row.branch, row.probe.name)
+        where = (scene.name, *row.where, load_unit(scene, row.stage), row.branch, row.probe.name)
         judged = (row.difference, row.bounds and row.bounds.total, row.word.value if row.word else "")
-        records += [
+        found += [
             dict(zip(_COMPARISON, (*where, *part, row.unit, cprbm.get(part), fea.get(part), *judged), strict=True))
             for part in cprbm | fea
         ]
-    return records
+    return found
 
 
 def csv_of(scene: Scene, *answers: Answer) -> str:
     """Answers to a scene as comma-separated values in the units of the scene's file, with a line of headers."""
-    records = (number for answer in answers for number in numbers(scene, answer))
-    return csv_text([*Number.__annotations__, "arc_length_unit"], (in_file_units(scene, each) for each in records))
+    rows = (in_file_units(scene, number) for answer in answers for number in records(scene, answer))
+    return csv_text([*Number.__annotations__, "arc_length_unit"], rows)
 
 
 def csv_of_comparisons(comparisons: Sequence[Comparison]) -> str:
@@ -112,9 +137,8 @@ def csv_of_comparisons(comparisons: Sequence[Comparison]) -> str:
 
 def contact_csv(scene: Scene, answers: Sequence[Answer]) -> str:
     """Contact forces of answers as comma-separated values in the units of the scene's file, with a line of headers."""
-    units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
     lines = (
-        (scene.name, answer.solver, at.stage, at.value, units[at.stage], force.source, force.target,
+        (scene.name, answer.solver, at.stage, at.value, load_unit(scene, at.stage), force.source, force.target,
          *map(float, (force.s, *force.place)), "m", *map(float, force.force), "N")
         for answer in answers for at in answer.stations for force in pressing(scene, at)
     )  # fmt: skip

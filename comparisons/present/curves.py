@@ -16,9 +16,19 @@ from comparisons.present.csv_table import pressing
 from comparisons.quantities import UNITS, arc_lengths, load_unit
 from comparisons.reactions import ENERGY, MESH_ALLOWANCE, WorkEnergyReaction, multiplier, reaction_probe
 from comparisons.stations import begins_at, station_of
-from cprbm_scene.answer import Answer, Array, StationAnswer
+from cprbm_scene import (
+    Answer,
+    Array,
+    DisplacementDrive,
+    Force,
+    Probe,
+    Quantity,
+    RotationDrive,
+    Scene,
+    Stage,
+    StationAnswer,
+)
 from cprbm_scene.curves import unit_vector as unit
-from cprbm_scene.statement import DisplacementDrive, Force, Probe, Quantity, RotationDrive, Scene, Stage
 
 Look = Mapping[str, Any]
 """Matplotlib's keywords of a line."""
@@ -71,8 +81,7 @@ def panels_figure(
         marks: abscissa, colour and text of dotted lines across all panels.
         shared: whether all panels have the same range of abscissae.
     """
-    with canvas(_WIDTH, 0.8 + _HEIGHT * len(panels)) as drawing:
-        plots = drawing.subplots(len(panels), 1, sharex=shared, squeeze=False)[:, 0]
+    with canvas(_WIDTH, 0.8 + _HEIGHT * len(panels), len(panels), shared="x" if shared else "") as (drawing, plots):
         for axes, panel in zip(plots, panels, strict=True):
             axes.axhspan(-panel.band, panel.band, color=_BAND, linewidth=0.0, zorder=0)
             axes.axhline(0.0, color=GREY, linewidth=0.5)
@@ -133,7 +142,9 @@ def _curve(
 ) -> Figure:
     """Values of both answers against a load or drive, branch by branch, with critical points and jumps."""
     names, steps = {stage.name for stage in stages}, stages[0].steps
-    step, step_unit = axis_unit(scene, load_unit(scene, stages[0]), max(abs(x) for at in stages for x in at.stations))
+    step, step_unit = axis_unit(
+        scene, load_unit(scene, stages[0].name), max(abs(x) for at in stages for x in at.stations)
+    )
     mine = [station for answer in answers.values() for station in answer.stations if station.stage in names]
     panels = []
     for title, si, lines in ordinates:
@@ -200,7 +211,7 @@ def reaction_figures(compared: Comparison) -> Iterator[Figure]:
         if len({each.station for each in found}) < 2:
             continue
         factor, unit_name = display_unit(scene, found[0].unit, max(abs(each.multiplier) for each in found))
-        si = load_unit(scene, next(stage for stage in scene.stages if stage.name == found[0].stage))
+        si = load_unit(scene, found[0].stage)
         step, step_unit = axis_unit(scene, si, max(abs(each.station) for each in found))
         crosses = {**FEA, "linestyle": "none", "marker": "x"}
         forces = {

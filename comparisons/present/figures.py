@@ -17,7 +17,6 @@ from comparisons.present.canvas import (
     Axes,
     Drawing,
     canvas,
-    common_legend,
     draw_names,
     draw_parts,
     finished,
@@ -29,9 +28,9 @@ from comparisons.present.curves import contact_figures, curve_figures, reaction_
 from comparisons.present.picture import Bounds, Part, View, bounds_of, view_of
 from comparisons.present.row_tables import shown_stations
 from comparisons.present.strips import Coloured
+from comparisons.quantities import stage_of
 from comparisons.stations import station_of
-from cprbm_scene import Answer, FreeEnd, Scene, StationAnswer
-from cprbm_scene.answer import Array
+from cprbm_scene import Answer, Array, FreeEnd, Scene, StationAnswer
 
 QUANTITIES: Mapping[Coloured, tuple[str, str, str]] = {
     "bending_stress": ("bending stress", "Pa", "RdYlBu_r"),
@@ -86,16 +85,15 @@ def designs_figure(designs: Sequence[Comparison]) -> Figure:
     views = [view_of(each.scene, each.runs.answers["fea"].stations[-1]) for each in designs]
     limits = [bounds_of(each.scene, [view], "moment") for each, view in zip(designs, views, strict=True)]
     low, high = np.min([each.low for each in limits], axis=0), np.max([each.high for each in limits], axis=0)
-    with canvas(*_sides(low, high, _SHAPES, (0.9, 1.3))) as drawing:
-        axes = drawing.add_subplot()
+    with canvas(*_sides(low, high, _SHAPES, (0.9, 1.3))) as (drawing, (axes,)):
         for each, view, colour in zip(designs, views, cycle(_DESIGNS), strict=False):
             draw_parts(axes, view.of("body", "weld", "pin", "pivot"), colour)
             label = f"{each.scene.name}: {at_station(each.scene, view.station.stage, view.station.value)}"
             for place, strip in enumerate(view.strips.values()):
                 axes.plot(*strip.line.T, "-", color=colour, linewidth=2.0, label=None if place else label)
         _set_window(axes, designs[0].scene, low, high)
-        common_legend(drawing, "lower center", 2)
-        return finished(drawing, "designs", "Neutral lines of several designs, each at its last station.")
+        caption = "Neutral lines of several designs, each at its last station."
+        return finished(drawing, "designs", caption, ("lower center", 2))
 
 
 def shapes(scene: Scene, answers: Mapping[str, Answer], stations: Sequence[tuple[str, float]]) -> Figure:
@@ -112,18 +110,16 @@ def shapes(scene: Scene, answers: Mapping[str, Answer], stations: Sequence[tuple
     columns = 1 if alone or float(np.ptp((high - low) / max(high - low))) >= 0.6 else 2
     rows, steps = -(-len(views) // columns), {stage.name: stage.steps for stage in scene.stages}
     width, height = _sides(low, high, _SHAPES, (0.8, 0.8))
-    with canvas(columns * width, rows * height + 0.6) as drawing:
-        for place, (view, pair, (stage, value)) in enumerate(zip(views, found, stations, strict=True)):
-            axes = drawing.add_subplot(rows, columns, place + 1)
+    with canvas(columns * width, rows * height + 0.6, len(views), columns) as (drawing, plots):
+        for axes, view, pair, (stage, value) in zip(plots, views, found, stations, strict=True):
             _draw_mechanism(axes, scene, view, pair)
             if alone:
                 draw_names(axes, scene)
             _set_window(axes, scene, low, high, f"{stage}: {steps[stage]} = {load_text(scene, stage, value)}")
-        common_legend(drawing, "lower center", 2)
         where = f"at {at_station(scene, *stations[0])}" if alone else "at several stations"
         apart = " Dotted: the way of an end that is drawn apart from its pin." if scene.assembly is not None else ""
         caption = f"Neutral lines at rest and {where}, with the places of contact.{apart}"
-        return finished(drawing, "shapes" if alone else "stations", caption)
+        return finished(drawing, "shapes" if alone else "stations", caption, ("lower center", 2))
 
 
 def _draw_mechanism(axes: Axes, scene: Scene, view: View, stations: Mapping[str, StationAnswer]) -> None:
@@ -171,8 +167,7 @@ def _set_window(axes: Axes, scene: Scene, low: Array, high: Array, title: str = 
 
 def stress_picture(scene: Scene, view: View, bounds: Bounds, quantity: Coloured, kind: str, dots: float) -> bytes:
     """A view as ``png`` or ``svg``: beams at true thickness with colours of a quantity, over the beams at rest."""
-    with canvas(*_sides(bounds.low, bounds.high, _STRESS, (1.6, 1.0))) as drawing:
-        axes = drawing.add_subplot()
+    with canvas(*_sides(bounds.low, bounds.high, _STRESS, (1.6, 1.0))) as (drawing, (axes,)):
         draw_parts(axes, view.of("edge", "rest"))
         _draw_colours(drawing, axes, scene, view, bounds, quantity)
         draw_parts(axes, view.of("body", "weld", "pin", "pivot", "stop"))
@@ -183,8 +178,8 @@ def stress_picture(scene: Scene, view: View, bounds: Bounds, quantity: Coloured,
 
 def view_title(scene: Scene, view: View) -> str:
     """Stage, and load or drive at the station."""
-    stage = next(each for each in scene.stages if each.name == view.station.stage)
-    return f"{stage.name}, {stage.steps} = {load_text(scene, stage.name, view.station.value)}"
+    stage, value = view.station.stage, view.station.value
+    return f"{stage}, {stage_of(scene, stage).steps} = {load_text(scene, stage, value)}"
 
 
 def colour_unit(scene: Scene, quantity: Coloured, most: float) -> tuple[float, str]:

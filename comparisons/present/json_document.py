@@ -10,10 +10,8 @@ from comparisons.quantities import arc_lengths, unit_of
 from comparisons.reactions import WorkEnergyReaction
 from comparisons.stations import CERTIFICATE_NUMBERS
 from comparisons.tolerances import Tolerance
-from comparisons.verdict.events import CriticalRow, released
-from comparisons.verdict.rows import Row
-from cprbm_scene.answer import Answer, Array, Critical
-from cprbm_scene.statement import STRESSES, Probe, Scene
+from comparisons.verdict import CriticalRow, Row, released
+from cprbm_scene import STRESSES, Answer, Array, Critical, Probe, Scene
 
 
 def comparison(compared: Comparison) -> Plain:
@@ -56,7 +54,6 @@ def solution(
     scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = (), audited: Audit | None = None
 ) -> Plain:
     """One case of ``solve``: the shape of ``compare`` with the column of one solver and no verdict."""
-    stages = {stage.name: stage for stage in scene.stages}
     return {
         "case": scene.name,
         "solvers": {answer.solver: {**solver(answer, audited), **_search(tolerances, answer.solver)}},
@@ -66,7 +63,7 @@ def solution(
                 "stage": station.stage,
                 "station": station.value,
                 "branch": station.branch,
-                "unit": unit_of(scene, probe, stages[station.stage]),
+                "unit": unit_of(scene, probe, station.stage),
                 answer.solver: values(probe, station.values[probe.name]),
                 **_places(scene, probe),
             }

@@ -7,7 +7,7 @@ import numpy as np
 from comparisons.formats import number, percent
 from comparisons.geometry import offset_curve
 from comparisons.offset_verdict import OffsetComparison, OffsetRow, claim_of_offset
-from comparisons.present.canvas import BLUE, RED, canvas, common_legend, finished
+from comparisons.present.canvas import BLUE, RED, canvas, finished
 from comparisons.present.columns import Column, Figure, Plain, Section, Table, plain, table_of
 from cprbm_scene.offset import Shown
 
@@ -126,8 +126,7 @@ def _errors(compared: OffsetComparison) -> Figure:
     found = {(row.spacing, row.n, row.offset): 100.0 * row.difference for row in compared.rows}
     positive = [value for value in found.values() if value > 0.0] or [1.0]
     least, most = 10.0 ** np.floor(np.log10(min(positive))), 10.0 ** np.ceil(np.log10(max(positive)))
-    with canvas(5.2, 2.6 * len(spacings)) as drawing:
-        plots = drawing.subplots(len(spacings), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    with canvas(5.2, 2.6 * len(spacings), len(spacings), shared="xy") as (drawing, plots):
         for axes, spacing in zip(plots, spacings, strict=True):
             z = np.array([[max(found[spacing, n, t], least) for n in numbers] for t in offsets])
             mesh = axes.pcolormesh(
@@ -147,8 +146,7 @@ def _errors(compared: OffsetComparison) -> Figure:
 def _points(compared: OffsetComparison, shown: Shown) -> Figure:
     """The curve, its exact offsets and the calculated points, in the manner of the paper's Fig. 5."""
     question, u = compared.question, np.linspace(0.0, 1.0, 400)
-    with canvas(5.2, 3.0 * len(shown.numbers)) as drawing:
-        plots = drawing.subplots(len(shown.numbers), 1, sharex=True, squeeze=False)[:, 0]
+    with canvas(5.2, 3.0 * len(shown.numbers), len(shown.numbers), shared="x") as (drawing, plots):
         for axes, n, points in zip(plots, shown.numbers, compared.shown, strict=True):
             axes.plot(*offset_curve(question.curve, u, 0.0).T, color="black", linewidth=1.4, label="curve")
             for t, found in zip(shown.offsets, points, strict=True):
@@ -159,6 +157,5 @@ def _points(compared: OffsetComparison, shown: Shown) -> Figure:
             axes.margins(0.08)
             axes.set(title=f"N = {n}", ylabel="y, m", aspect="equal")
         plots[-1].set_xlabel("x, m")
-        common_legend(drawing, "lower center", 3)
         caption = f"Offset points on the exact offset curves, spacing {next(iter(question.spacings))}."
-        return finished(drawing, "points", caption)
+        return finished(drawing, "points", caption, ("lower center", 3))

@@ -22,7 +22,7 @@ from comparisons.present.case_tables import case_sections, claims_table
 from comparisons.present.columns import Figure, Plain, Section, Table
 from comparisons.present.csv_table import contact_csv
 from comparisons.present.figures import comparison_figures
-from comparisons.present.stepper import HEADERS, SHADES, Stepper, stepper
+from comparisons.present.stepper import HEADERS, SHADES, stations_json, stepper
 from comparisons.present.table import STYLES, html_cells
 from comparisons.writing import text_of, write
 from cprbm_scene import Question
@@ -52,7 +52,7 @@ class Chapter:
     sentence: str = ""
     glance: tuple[str, ...] = ()
     claims: tuple[tuple[str, ...], ...] = ()
-    stepper: Stepper | None = None
+    stepper: Plain | None = None
     scene: str = ""
     files: tuple[str, ...] = ()
 
@@ -190,6 +190,7 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
         "anchor": lambda name: name.replace(" ", "+"),  # an identifier has no spaces, and a name no plus
         "cells": html_cells,
         "embedded": _embedded,
+        "stations_json": stations_json,
         # a name may break behind points and underscores; the type of an escaped text marks the escape
         "breaking": lambda name: type(name)(re.sub(r"(?<=\w[._])(?=[^\W\d])", "<wbr>", name)),
         "joined": lambda sentence: sentence.replace(" %", "\u00a0%"),  # on the line of the number

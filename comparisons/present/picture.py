@@ -8,9 +8,8 @@ import numpy as np
 
 from comparisons.geometry import edge_places, is_free_on_the_left, longest
 from comparisons.present.strips import Coloured, Strip, left_of, strip_of
-from cprbm_scene.answer import Answer, Array, StationAnswer
-from cprbm_scene.curves import unit_vector as unit
-from cprbm_scene.statement import (
+from cprbm_scene import (
+    Array,
     BeamMoment,
     CircleContact,
     DisplacementDrive,
@@ -26,8 +25,10 @@ from cprbm_scene.statement import (
     RigidContact,
     Scene,
     SelfContact,
+    StationAnswer,
     TurningBody,
 )
+from cprbm_scene.curves import unit_vector as unit
 
 Kind = Literal["edge", "rest", "beam", "body", "weld", "pin", "pivot", "stop", "contact"]
 
@@ -139,11 +140,6 @@ class Bounds(NamedTuple):
         """Vector (2,), m, from the tail to the head of a drawn arrow; None for a force without an arrow."""
         most = self.force[arrow.kind]
         return ARROW * self.size / most * arrow.resultant if arrow.size > LEAST * most > 0.0 else None
-
-
-def views_of(scene: Scene, answer: Answer) -> list[View]:
-    """A view of every station."""
-    return [view_of(scene, station) for station in answer.stations]
 
 
 def view_of(scene: Scene, station: StationAnswer) -> View:

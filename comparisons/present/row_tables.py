@@ -10,12 +10,18 @@ from comparisons.geometry import bentness
 from comparisons.opinions import contact_model, thirds_of
 from comparisons.present.columns import Column, Table, columns_of, table_of
 from comparisons.quantities import norm
-from comparisons.verdict.events import Place
-from comparisons.verdict.judge import EXACT_FACTOR, error_ratios, tally, true_errors
-from comparisons.verdict.rows import ROUND_OFF, Row
-from comparisons.verdict.runs import SOLVERS
-from cprbm_scene.answer import Answer, Array
-from cprbm_scene.statement import STRESSES, Quantity, Scene
+from comparisons.verdict import (
+    EXACT_FACTOR,
+    ROUND_OFF,
+    SOLVERS,
+    Place,
+    Row,
+    error_ratios,
+    other_theory,
+    tally,
+    true_errors,
+)
+from cprbm_scene import STRESSES, Answer, Array, Quantity, Scene
 
 STRESS = "Errors in stress"
 GROUPS: Mapping[str, frozenset[Quantity]] = {
@@ -77,11 +83,6 @@ _PROBE = Column[Row]("probe", "probe.name")
 _WORD = Column("word", judgement)
 
 
-def share_columns(paths: Mapping[str, str]) -> list[Column[Row]]:
-    """Columns of sizes as shares, by header and path."""
-    return columns_of(share, paths)
-
-
 def value_columns(scene: Scene, rows: Sequence[Row], paths: Mapping[str, str]) -> list[Column[Row]]:
     """Probe, unit, and columns of values by header and path."""
     units = row_units(scene, rows)
@@ -94,7 +95,7 @@ def value_columns(scene: Scene, rows: Sequence[Row], paths: Mapping[str, str]) -
 
 def value_table(compared: Comparison, rows: Sequence[Row]) -> Table:
     """Values of one station."""
-    columns = [*value_columns(compared.scene, rows, _VALUES), *share_columns(ERROR), _WORD]
+    columns = [*value_columns(compared.scene, rows, _VALUES), *columns_of(share, ERROR), _WORD]
     return table_of(f"Values at {at_station(compared.scene, *rows[0].where)}", columns, rows)
 
 
@@ -105,7 +106,7 @@ def error_tables(compared: Comparison, last: Sequence[Row]) -> tuple[Table, ...]
     absence = f" No exact values: {runs.absences['exact']}" if "exact" in runs.absences else ""
     columns = [
         *value_columns(scene, last, _VALUES),
-        *share_columns({**ERROR, "error of max": "largest_difference"}),
+        *columns_of(share, {**ERROR, "error of max": "largest_difference"}),
         Column("t/(3R)", lambda row: percent(bentness(scene.beams[row.probe.of]) / 3.0)
                if row.probe.quantity in STRESSES else None),
         Column("largest error", lambda row: worst.get(row.probe.name), lambda found: share(*found) or ""),
@@ -144,18 +145,18 @@ def verdict_table(rows: Sequence[Row]) -> Table:
         "The difference must stay within the stated uncertainty, which follows from further discretisations of each "
         "solver. Theory: the step of the CPRBM to the other theory. Fractions as in the tables of errors."
     )
-    return table_of("Differences and stated uncertainties", [_PROBE, *share_columns(paths), _WORD], rows, note)
+    return table_of("Differences and stated uncertainties", [_PROBE, *columns_of(share, paths), _WORD], rows, note)
 
 
 def theory_table(compared: Comparison, rows: Sequence[Row]) -> Table:
     """Values of one station in both theories; without rows where the CPRBM has no value in the other theory."""
     runs = compared.runs
     paths = {
-        f"CPRBM in {runs.other_theory}": "other",
+        f"CPRBM in {other_theory(runs.theory)}": "other",
         f"CPRBM in {runs.theory}": "cprbm",
         f"FEA in {runs.theory}": "fea",
     }
-    columns = [*value_columns(compared.scene, rows, paths), *share_columns({"theory": "theory"})]
+    columns = [*value_columns(compared.scene, rows, paths), *columns_of(share, {"theory": "theory"})]
     note = "Theory: distance of the CPRBM's values in both theories, in the formulation auto."
     return table_of("Both theories", columns, [row for row in rows if row.other is not None], note)
 
@@ -222,12 +223,12 @@ def solid_table(compared: Comparison) -> Table:
         "u solid": "third.uncertainty",
         "CPRBM off": "third.cprbm",
         "FEA off": "third.fea",
-        f"CPRBM in {compared.runs.other_theory} off": "third.other",
+        f"CPRBM in {other_theory(compared.runs.theory)} off": "third.other",
     }
     values = {**BOTH, "solid": "third.solid"}
     return table_of(
         "The beam theories beside a solid, at the last station",
-        [*value_columns(compared.scene, last, values), *share_columns(off)],
+        [*value_columns(compared.scene, last, values), *columns_of(share, off)],
         last,
         "The solid's values are extrapolated from its meshes; distances are measured from these values.",
     )

@@ -12,9 +12,9 @@ X, Y    place in the picture, whose longer side is ``WIDE``; Y grows downwards
 """
 
 import json
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from itertools import groupby
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import chain, groupby
+from typing import Any
 
 import numpy as np
 import shapely
@@ -22,15 +22,14 @@ import shapely
 from comparisons.case import Comparison
 from comparisons.formats import number
 from comparisons.geometry import length, points
-from comparisons.present.columns import NOTHING, Column
+from comparisons.present.columns import NOTHING, Column, Plain, columns_of
 from comparisons.present.figures import colour_unit, view_title
 from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, names_by_place, view_of
-from comparisons.present.row_tables import BOTH, ERROR, share_columns, value_columns
+from comparisons.present.row_tables import BOTH, ERROR, share, value_columns
 from comparisons.present.strips import Strip
 from comparisons.present.table import with_minus
-from comparisons.verdict.runs import SOLVERS
-from cprbm_scene.answer import Array, StationAnswer
-from cprbm_scene.statement import STRESSES
+from comparisons.verdict import SOLVERS
+from cprbm_scene import STRESSES, Array, StationAnswer
 
 WIDE = 1000.0
 SHADES = 11
@@ -48,40 +47,28 @@ Placing = Callable[[Array], Array]
 """Function from places (k, 2), m, to places in the picture."""
 
 
-@dataclass(frozen=True, slots=True)
-class Stepper:
-    """A picture with a slider and a table.
+def stations_json(stations: Iterable[Sequence[Any]]) -> str:
+    """The ``stations`` of a stepper as JSON for a page; the cells of the table stand in a list."""
+    every = [(label, paths, places, [*chain(*cells)]) for label, paths, places, cells in stations]
+    return json.dumps(every, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
 
-    Attributes:
-        width, height: of the picture.
-        rest: data of the path of the beams at rest.
-        moving: classes of the moving paths, in the order of the stations' data.
-        points: names beside points.
-        names: probes and units of the table's lines.
-        stations: label, paths, places of the names, and cells of the table.
-        thick: beams drawn thicker than in truth.
-        span: the largest stress of the colours with the unit.
+
+def stepper(compared: Comparison) -> Plain | None:
+    """Data of a picture with a slider and a table for the common stations of both answers; None without a station.
+
+    ==============  ==================================================================
+    key             value
+    ==============  ==================================================================
+    width, height   of the picture
+    rest            data of the path of the beams at rest
+    moving          classes of the moving paths, in the order of the stations' data
+    points          names beside points
+    names           probes and units of the table's lines
+    stations        label, paths, places of the names, and cells of the table
+    thick           beams drawn thicker than in truth
+    span            the largest stress of the colours with the unit
+    ==============  ==================================================================
     """
-
-    width: float
-    height: float
-    rest: str
-    moving: tuple[str, ...]
-    points: tuple[str, ...]
-    names: tuple[tuple[str, str], ...]
-    stations: tuple[tuple[str, tuple[str, ...], tuple[str, ...], tuple[tuple[str, ...], ...]], ...]
-    thick: tuple[str, ...]
-    span: str
-
-    @property
-    def data(self) -> str:
-        """The stations as JSON for a page; the cells of the table stand in a list."""
-        every = [(label, paths, places, sum(cells, ())) for label, paths, places, cells in self.stations]
-        return json.dumps(every, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
-
-
-def stepper(compared: Comparison) -> Stepper | None:
-    """The common stations of both answers; None without a common station."""
     scene, beams = compared.scene, compared.scene.beams
     common, (cprbm, fea) = compared.runs.reached, (compared.runs.stations[solver] for solver in SOLVERS)
     if not common:
@@ -99,7 +86,7 @@ def stepper(compared: Comparison) -> Stepper | None:
     names = [probe.name for probe in scene.probes if probe.quantity not in STRESSES]
     rows = {(row.probe.name, *row.where): row for row in compared.rows}
     _, unit_of, *values = value_columns(scene, [*rows.values()], BOTH)
-    columns = [*values, *share_columns(ERROR), Column("word", "word.value")]
+    columns = [*values, *columns_of(share, ERROR), Column("word", "word.value")]
     units = {name: unit_of.cell(at) for (name, *_), at in rows.items()}
     labels = names_by_place(views[-1].points, 1.0 / scale)
     leaders = [text.partition(", ")[0] for text in labels]
@@ -112,17 +99,17 @@ def stepper(compared: Comparison) -> Stepper | None:
         stations.append((view_title(scene, view), tuple(moving.values()), spots, cells))
     rest = (points(beam.curve, np.linspace(0.0, length(beam.curve), 121)) for beam in beams.values())
     factor, unit = colour_unit(scene, "bending_stress", bounds.most)
-    return Stepper(
-        float(round(sides[0] * scale)),
-        float(round(sides[1] * scale)),
-        "".join(line(place(each)) for each in rest),
-        tuple(moving),
-        tuple(labels),
-        tuple((name, units.get(name, "")) for name in names),
-        tuple(stations),
-        tuple(name for name, beam in beams.items() if beam.thinnest * scale < _THINNEST),
-        f"{number(bounds.most / factor)} {unit}" if bounds.most else "",
-    )
+    return {
+        "width": float(round(sides[0] * scale)),
+        "height": float(round(sides[1] * scale)),
+        "rest": "".join(line(place(each)) for each in rest),
+        "moving": tuple(moving),
+        "points": tuple(labels),
+        "names": tuple((name, units.get(name, "")) for name in names),
+        "stations": tuple(stations),
+        "thick": tuple(name for name, beam in beams.items() if beam.thinnest * scale < _THINNEST),
+        "span": f"{number(bounds.most / factor)} {unit}" if bounds.most else "",
+    }
 
 
 def _moving(view: View, cprbm: StationAnswer, bounds: Bounds, place: Placing) -> Iterator[tuple[str, str]]:

@@ -21,8 +21,7 @@ from typing import Literal
 import numpy as np
 
 from comparisons.geometry import length, points
-from cprbm_scene.answer import Array, StationAnswer
-from cprbm_scene.statement import Beam, Probe, Quantity, Scene
+from cprbm_scene import Array, Beam, Probe, Quantity, Scene, StationAnswer
 
 Coloured = Literal["bending_stress", "combined_stress", "moment"]
 
@@ -63,18 +62,14 @@ class Strip:
         """Places (k, 2), m, of the neutral line at fractions ``u`` (k,) of the arc length."""
         return np.stack([np.interp(u * self.s[-1], self.s, each) for each in self.line.T], axis=1)
 
-    def layer(self, eta: float) -> Array:
-        """Places (n, 2), m, at the height η."""
-        return np.asarray(self.line + 0.5 * eta * self.thickness[:, None] * self.normal)
-
-    def rest_layer(self, eta: float) -> Array:
-        """Places (n, 2), m, at the height η of the beam at rest."""
-        return np.asarray(self.rest_line + 0.5 * eta * self.thickness[:, None] * self.rest_normal)
+    def layer(self, eta: float, *, rest: bool = False) -> Array:
+        """Places (n, 2), m, at the height η of the beam, or of the beam at ``rest``."""
+        line, normal = (self.rest_line, self.rest_normal) if rest else (self.line, self.normal)
+        return np.asarray(line + 0.5 * eta * self.thickness[:, None] * normal)
 
     def outline(self, *, rest: bool = False) -> Array:
         """Polygon (2n, 2), m, of both edges."""
-        edge = self.rest_layer if rest else self.layer
-        return np.concatenate([edge(-1.0), edge(1.0)[::-1]])
+        return np.concatenate([self.layer(-1.0, rest=rest), self.layer(1.0, rest=rest)[::-1]])
 
 
 def with_stresses(scene: Scene) -> Scene:
@@ -93,17 +88,15 @@ def strip_of(name: str, beam: Beam, station: StationAnswer) -> Strip:
     t, w, s = beam.thickness_at(u), beam.width_at(u), u * whole
     spline = CubicSpline(shape.s, np.stack([shape.x, shape.y], axis=1))
     ahead, behind = (points(beam.curve, whole * np.clip(u + step, 0.0, 1.0)) for step in (_STEP, -_STEP))
-    bending, combined = (station.values.get(f"{name}.{quantity}", np.empty(0)) for quantity in _STRESSES)
     state = station.beams.get(name)
-    if bending.size:
-        bending = np.interp(u, np.linspace(0.0, 1.0, bending.size), bending)
-    else:
-        bending = np.zeros(SECTIONS) if state is None else 6.0 * np.interp(s, state.s, state.M) / (w * t**2)
-    if combined.size:
-        combined = np.interp(u, np.linspace(0.0, 1.0, combined.size), combined)
-    else:
-        normal = np.zeros(SECTIONS) if state is None else np.interp(s, state.s, state.N) / (w * t)
-        combined = np.abs(bending) + np.abs(normal)
+    M, N = np.zeros((2, SECTIONS)) if state is None else (np.interp(s, state.s, of) for of in (state.M, state.N))
+
+    def stress(quantity: Quantity, otherwise: Array) -> Array:
+        stated = station.values.get(f"{name}.{quantity}", np.empty(0))
+        return np.interp(u, np.linspace(0.0, 1.0, stated.size), stated) if stated.size else otherwise
+
+    bending = stress("bending_stress", 6.0 * M / (w * t**2))
+    combined = stress("combined_stress", np.abs(bending) + np.abs(N / (w * t)))
     along = u * shape.s[-1]
     return Strip(s, np.asarray(spline(along)), left_of(spline(along, 1)), points(beam.curve, s),
                  left_of(ahead - behind), t, w, bending, combined)  # fmt: skip

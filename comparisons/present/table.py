@@ -7,6 +7,7 @@ in all of them.  Sentences fold between words, names fold anywhere, and numbers 
 import io
 import re
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import NamedTuple
 
 from rich import box
@@ -25,6 +26,9 @@ STYLES = {
 
 _GAP, _EDGES = 3, 1
 """Columns of the screen beside every column of a table, and beside the table."""
+
+_NAME = 8
+"""Least columns for the names of a brief table."""
 
 _LONG = 24
 """Most characters of a text with spaces without a fold."""
@@ -56,7 +60,14 @@ def screen_text(table: Table, *, width: int) -> str:
 
 
 def brief_lines(table: Table, *, width: int) -> list[str]:
-    """Lines of the table without title and note, at most ``width`` columns wide: the first column folds."""
+    """Lines of the table without title and note, at most ``width`` columns wide: the first column folds.
+
+    Where less than ``_NAME`` columns are left for the first column, the table splits as on the screen.
+    """
+    if width < _NAME + sum(
+        1 + max(map(cell_len, cells)) for cells in zip(*(row[1:] for row in (table.headers, *table.rows)), strict=True)
+    ):
+        return screen_text(replace(table, title="", note=""), width=width).splitlines()
     grid = Grid(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
     for place, header in enumerate(table.headers):
         left = place == 0 or header == "word"

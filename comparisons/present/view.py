@@ -22,10 +22,9 @@ import numpy as np
 
 from comparisons.executor import WorkerDiedError, call_fresh
 from comparisons.present.figures import QUANTITIES, TINY, colour_unit, stress_picture, view_title
-from comparisons.present.picture import Bounds, View, bounds_of, views_of
+from comparisons.present.picture import Bounds, View, bounds_of, view_of
 from comparisons.present.strips import Coloured
-from cprbm_scene import Answer, Scene
-from cprbm_scene.answer import Array, Ints
+from cprbm_scene import Answer, Array, Ints, Scene
 
 T = TypeVar("T")
 
@@ -66,7 +65,7 @@ def files(scene: Scene, answer: Answer, path: Path, kind: Kind, quantity: Colour
         ImportError: a library for the kind is not installed.
         DrawingError: VTK cannot draw here.
     """
-    views = views_of(scene, answer)[0 if kind in _MOVING else -1 :]
+    views = [view_of(scene, station) for station in answer.stations[0 if kind in _MOVING else -1 :]]
     bounds = bounds_of(scene, views, quantity)
     if kind == ".pvd":
         yield from series(scene, views, path)
@@ -75,20 +74,13 @@ def files(scene: Scene, answer: Answer, path: Path, kind: Kind, quantity: Colour
     elif kind in _DOTS:
         yield path, stress_picture(scene, views[-1], bounds, quantity, kind[1:], _DOTS[kind])
     else:
-        few = _some(views)
+        few = [views[round(place)] for place in np.linspace(0, len(views) - 1, min(_MOST, len(views)))]
         pictures = (
             space_pictures(scene, few, bounds, quantity)
             if kind.startswith(".3d")
             else [stress_picture(scene, view, bounds, quantity, "png", _MOVING_DOTS) for view in few]
         )
         yield path, pictures[0] if kind == ".3d.png" else animation(pictures, "gif" if "gif" in kind else "apng")
-
-
-def _some(views: Sequence[View]) -> Sequence[View]:
-    """All views, or ``_MOST`` evenly chosen views with the last."""
-    if len(views) <= _MOST:
-        return views
-    return [views[round(place)] for place in np.linspace(0, len(views) - 1, _MOST)]
 
 
 def animation(pictures: Sequence[bytes], kind: Literal["gif", "apng"]) -> bytes:
@@ -236,7 +228,7 @@ def beam_block(view: View) -> Block:
     blocks, eta = [], np.linspace(-1.0, 1.0, ACROSS + 1)
     for number, strip in enumerate(view.strips.values()):
         places = np.stack([strip.layer(each) for each in eta], axis=1)  # (n, ACROSS + 1, 2)
-        moved = places - np.stack([strip.rest_layer(each) for each in eta], axis=1)
+        moved = places - np.stack([strip.layer(each, rest=True) for each in eta], axis=1)
         values = {
             "displacement": np.pad(moved, ((0, 0), (0, 0), (0, 1))),
             "bending_stress": -eta * strip.bending_stress[:, None],

@@ -51,19 +51,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from comparisons.choices import Choices, check
+from comparisons.choices import Choices, check_counts
 from comparisons.geometry import bentness_on, length
 from comparisons.opinions import solid_limit
 from comparisons.pairing import in_paper
 from comparisons.quantities import direction, norm, probe_scales
 from comparisons.sentences import problem_sentences
-from comparisons.stations import last_station, station_of
+from comparisons.stations import Where, last_station, station_of, stations_of
 from comparisons.store import AnswerMemory
-from comparisons.verdict.point_forces import away_from_point_forces
-from comparisons.verdict.rows import Row, bare_row
-from comparisons.verdict.uncertainty import limit
-from cprbm_scene import Answer, Probe, Scene, Stage
-from cprbm_scene.answer import Array, Flags
+from comparisons.verdict import Row, away_from_point_forces, bare_row, limit
+from cprbm_scene import Answer, Array, Flags, Probe, Scene
 
 PARTS = ("contact", "links", "rest", "elements", "penalty")
 """Names of the parts, in the order of the sum."""
@@ -157,7 +154,7 @@ def account_of(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
     Raises:
         SceneError: a solver refuses the question.
     """
-    check(choices, scene)
+    check_counts(choices, scene)
     choices = choices.within(choices.kinematics_of(scene))
     runs = _solve(scene, choices, memory)
     solids = runs.pop("solid", [])
@@ -174,10 +171,9 @@ def account_of(scene: Scene, choices: Choices, memory: AnswerMemory) -> Account:
     paper = (beside or in_paper(scene, choices, memory.solvers)).get("cprbm paper")
     scales = probe_scales(scene, (runs["cprbm"][0], runs["fea"][0]))
     found = (
-        _budget(scene, runs, paper, () if silent else solids, probe, stage, value, scales[stage.name, probe.name])
-        for stage in scene.stages
-        for value in stage.stations
-        for probe in scene.probes_in(stage.name)
+        _budget(scene, runs, paper, () if silent else solids, probe, where, scales[where[0], probe.name])
+        for where in stations_of(scene)
+        for probe in scene.probes_in(where[0])
     )
     return Account(scene, choices, tuple(filter(None, found)), silent="".join(silent[:1]))
 
@@ -203,17 +199,16 @@ def _budget(
     paper: Answer | None,
     solids: Sequence[Answer],
     probe: Probe,
-    stage: Stage,
-    value: float,
+    where: Where,
     scale: float,
 ) -> Budget | None:
     """The budget of a probe; None where a contact is open, and where the answers are on different branches."""
-    at = {name: [station_of(each, stage.name, value) for each in answers] for name, answers in runs.items()}
+    at = {name: [station_of(each, *where) for each in answers] for name, answers in runs.items()}
     stations = [station for each in at.values() for station in each]
     every = [station.values[probe.name] for station in stations]
     if len({(station.branch, v.shape) for station, v in zip(stations, every, strict=True)}) > 1 or not np.any(every):
         return None
-    row = bare_row(scene, (at["cprbm"][0], at["fea"][0]), probe, stage, value, scale)
+    row = bare_row(scene, (at["cprbm"][0], at["fea"][0]), probe, where, scale)
     counts, K = np.ones(row.cprbm.shape, dtype=bool), None
     if row.arc_length is not None:
         counts, beam = away_from_point_forces(scene, probe.of, row.arc_length, stations), scene.beams[probe.of]

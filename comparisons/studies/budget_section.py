@@ -122,8 +122,7 @@ def budget_figures(account: Account) -> tuple[Figure, ...]:
     budgets = [each for each in account.last if each.all_parts > 0.0]
     if not budgets:
         return ()
-    with canvas(9.0, 1.9 + 0.34 * len(budgets)) as drawing:
-        axes = drawing.add_subplot()
+    with canvas(9.0, 1.9 + 0.34 * len(budgets)) as (drawing, (axes,)):
         _draw_parts(axes, budgets)
         missed = _draw_missed(axes, budgets)
         axes.axvline(0.0, color="black", linewidth=0.8)

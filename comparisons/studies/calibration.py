@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from comparisons import cases
 from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
 from comparisons.executor import ALONE, Crew
@@ -17,11 +16,8 @@ from comparisons.pairing import Solvers, exact_answer, exact_if_covered, paired
 from comparisons.present.canvas import GREY, canvas, finished
 from comparisons.present.columns import Figure, Plain, Section, Table
 from comparisons.stations import complete_part
-from comparisons.verdict import Word
-from comparisons.verdict.judge import LARGEST_MEDIAN, SHARE_WITHIN, ErrorRatio, Tally, error_ratios, tally
-from comparisons.verdict.runs import SOLVERS
-from cprbm_scene import Answer, Scene
-from cprbm_scene.frozendict import frozendict
+from comparisons.verdict import LARGEST_MEDIAN, SHARE_WITHIN, SOLVERS, ErrorRatio, Tally, Word, error_ratios, tally
+from cprbm_scene import Answer, Scene, frozendict
 
 SIZES = ((17, 40), (20, 60), (40, 80), (80, 160))
 """Links per beam of the CPRBM and finite elements per beam."""
@@ -56,11 +52,6 @@ class Calibration:
         """Trials of every case."""
         names = dict.fromkeys(trial.case for trial in self.trials)
         return {name: tuple(trial for trial in self.trials if trial.case == name) for name in names}
-
-
-def pieces() -> tuple[Scene, ...]:
-    """All built-in scenes."""
-    return tuple(scene for scene in map(cases.asked, cases.names()) if isinstance(scene, Scene))
 
 
 def with_case(
@@ -205,8 +196,7 @@ def _worst(found: Calibration) -> Table:
 
 def _stated_against_true(found: Calibration) -> Figure:
     """Stated against true errors of every row, a panel for each solver and a colour for each case."""
-    with canvas(9.6, 5.2) as drawing:
-        panels = drawing.subplots(1, 2, sharex=True, sharey=True)
+    with canvas(9.6, 5.2, 2, 2, "xy") as (drawing, panels):
         every = [size for trial in found.trials for each in trial.ratios for size in _shares(each)]
         low, high = 0.5 * min(every), 2.0 * max(every)
         for axes, solver in zip(panels, SOLVERS, strict=True):

@@ -21,11 +21,10 @@ from comparisons.present.columns import Column, Figure, Section, Table, table_of
 from comparisons.sentences import problem_sentences
 from comparisons.stations import at_shown, last_station
 from comparisons.store import AnswerMemory
-from comparisons.studies import budget_section as budgets
-from comparisons.studies import convergence_tables as tables
+from comparisons.studies import budget_section, convergence_tables
 from comparisons.studies.budget import account_of
 from comparisons.studies.families import Convergence, Family, Method, Series, critical_families, probe_families, size
-from comparisons.verdict.uncertainty import Limit
+from comparisons.verdict import Limit
 from cprbm_scene import OffsetQuestion, Question, Scene
 from cprbm_scene.offset import FEWEST, MOST
 
@@ -84,14 +83,15 @@ def convergence_section(
     memory = AnswerMemory(pool=crew.pool, solvers=solvers)
     found = convergence_of(question, sizes, choices, solvers, memory)
     account = account_of(question, replace(choices, links=found.shown, elements=2 * found.shown), memory)
-    shown = (*tables.tables_of(found), budgets.budget_table(account))
     return Section(
         "Error against N, and the error budget",
-        (*tables.sentences_of(found), *budgets.sentences_of(account)),
-        (*convergence_figures(found), *budgets.budget_figures(account)),
-        tuple(table for table in shown if table.rows),
+        (*convergence_tables.sentences_of(found), *budget_section.sentences_of(account)),
+        (*convergence_figures(found), *budget_section.budget_figures(account)),
+        tuple(
+            each for each in (*convergence_tables.tables_of(found), budget_section.budget_table(account)) if each.rows
+        ),
         "convergence",
-        {**tables.document(found), **budgets.data_of(account)},
+        {**convergence_tables.document(found), **budget_section.data_of(account)},
         found.completed and not account.missing,
     )
 
@@ -102,14 +102,13 @@ def convergence_figures(found: Convergence) -> tuple[Figure, ...]:
     if not last:
         return ()
     names = list(dict.fromkeys(family.probe for family in last))
-    with canvas(10.4, 5.6) as drawing:
-        panels = drawing.subplots(1, 2, sharey=True)
-        for axes, method, count in zip(panels, tables.NAMES, ("links", "elements"), strict=True):
+    with canvas(10.4, 5.6, 2, 2, "y") as (drawing, panels):
+        for axes, method, count in zip(panels, convergence_tables.NAMES, ("links", "elements"), strict=True):
             logarithmic(axes, found.sizes)
             for family in last:
                 if family.solver == method:
                     _draw(axes, family, names.index(family.probe))
-            axes.set(title=tables.NAMES[method], xlabel=f"{count} per beam, N")
+            axes.set(title=convergence_tables.NAMES[method], xlabel=f"{count} per beam, N")
         for axes, series in zip(panels, found.series, strict=True):
             _triangle(axes, found.sizes, series.order)
         panels[0].set_ylabel("distance from the limit / the probe's largest value")
@@ -160,10 +159,11 @@ def _offset_section(question: OffsetQuestion, sizes: tuple[int, ...], construct:
     if len(numbers) > 1:
         compared = compared_offset(question.model_copy(update={"numbers": numbers}), construct)
         completed = compared.verdict.completed
-        curves: dict[tuple[str, float], list[OffsetRow]] = {}
-        for row in compared.rows:
-            curves.setdefault((row.spacing, row.offset), []).append(row)
-        families = [_offset_family(*key, rows) for key, rows in curves.items()]
+        families = [
+            _offset_family(spacing, t, [row for row in compared.rows if (row.spacing, row.offset) == (spacing, t)])
+            for spacing in question.spacings
+            for t in question.offsets
+        ]
     return Section(
         "Error against N",
         (f"An offset question takes {FEWEST} to {MOST} springs; left out: {excluded}.",) if excluded else (),
@@ -172,7 +172,7 @@ def _offset_section(question: OffsetQuestion, sizes: tuple[int, ...], construct:
         "convergence",
         {
             "case": question.name,
-            "families": [entry for family in families for entry in tables.entries(numbers, family)],
+            "families": [entry for family in families for entry in convergence_tables.entries(numbers, family)],
             "runs": [],
         },
         completed,
@@ -217,7 +217,7 @@ def _offset_table(question: OffsetQuestion, numbers: tuple[int, ...], families: 
         return Column(f"N = {n}", lambda spacing: percent(_largest(families, spacing, n)))
 
     def order(spacing: str) -> str:
-        return tables.spread(
+        return convergence_tables.spread(
             each for family in families if family.settings["spacing"] == spacing for each in family.orders
         )
 
@@ -231,8 +231,7 @@ def _offset_table(question: OffsetQuestion, numbers: tuple[int, ...], families: 
 
 
 def _offset_figure(question: OffsetQuestion, numbers: tuple[int, ...], families: list[Family]) -> Figure:
-    with canvas(6.4, 4.2) as drawing:
-        axes = drawing.add_subplot()
+    with canvas(6.4, 4.2) as (drawing, (axes,)):
         for place, spacing in enumerate(question.spacings):
             line, marker = LINES[place % len(LINES)]
             worst = [_largest(families, spacing, n) for n in numbers]

@@ -9,7 +9,7 @@ from comparisons.present import json_document
 from comparisons.present.columns import Column, Plain, Table, plain, table_of, without_empty
 from comparisons.stations import last_station
 from comparisons.studies.families import Convergence, Family, size
-from comparisons.verdict.events import mechanism
+from comparisons.verdict import mechanism
 from cprbm_scene import Scene
 
 NAMES = {"cprbm": "CPRBM", "fea": "FEA"}

@@ -18,13 +18,18 @@ import numpy as np
 from comparisons.choices import Kinematics
 from comparisons.quantities import COMPONENTS, OPEN_AT_ZERO, arc_lengths, load_unit, probe_scales, unit_of
 from comparisons.stations import ends_at_critical, find_station, last_station, span_of, station_of
-from comparisons.verdict.events import mechanism
-from comparisons.verdict.point_forces import away_from_point_forces
-from comparisons.verdict.rows import ROUND_OFF
-from comparisons.verdict.uncertainty import OWN, STANDARD, Limit, limit, observed, orders
-from cprbm_scene.answer import Answer, Array, Critical
-from cprbm_scene.frozendict import frozendict
-from cprbm_scene.statement import CRITICAL, STRESSES, Probe, Scene, Stage
+from comparisons.verdict import (
+    OWN,
+    ROUND_OFF,
+    STANDARD,
+    Limit,
+    away_from_point_forces,
+    limit,
+    mechanism,
+    observed,
+    orders,
+)
+from cprbm_scene import CRITICAL, STRESSES, Answer, Array, Critical, Probe, Scene, Stage, frozendict
 
 _AS_LARGE = 1e-3  # share of the largest stress within which a stress counts as equal
 _BESIDE_A_KINK = 1.5  # elements: the element with the kink, and half of its neighbours
@@ -251,7 +256,7 @@ def _of_probe(
         probe=probe.name,
         stage=stage.name,
         station=value,
-        unit=unit_of(scene, probe, stage),
+        unit=unit_of(scene, probe, stage.name),
         scale=scale,
         components=components,
         values=values,
@@ -305,7 +310,7 @@ def _of_critical(
         probe=CRITICAL,
         stage=stage.name,
         station=None,
-        unit=load_unit(scene, stage),
+        unit=load_unit(scene, stage.name),
         scale=span_of(scene, stage),
         components=(stage.name,),
         values=values,

@@ -36,7 +36,7 @@ from comparisons.present.page import (
 from comparisons.store import Run, digest
 from comparisons.studies import table1
 from comparisons.studies.convergence import convergence_section
-from comparisons.verdict.runs import Runs
+from comparisons.verdict import Runs
 from comparisons.writing import write
 from cprbm_scene import OffsetQuestion, Question, Scene, SceneError
 

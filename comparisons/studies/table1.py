@@ -19,8 +19,7 @@ from comparisons.formats import number
 from comparisons.pairing import Solvers
 from comparisons.present.canvas import BLUE, RED, canvas, finished, name_rows
 from comparisons.present.columns import Column, Figure, Section, plain, records_of, table_of
-from cprbm_scene import Scene
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene import Scene, frozendict
 
 THEIR_MACHINE = "Intel Core i5-8500, MATLAB R2018b for the CPRBM, ANSYS 19.1 for the finite elements"
 
@@ -181,8 +180,7 @@ def result_of(measured: Session, cells: tuple[Cell, ...] = CELLS) -> Section:
 
 def _run_times(cells: tuple[Cell, ...], taken: Mapping[Cell, Timing]) -> Figure:
     """Our median times with their quartiles and the paper's, a line for each cell."""
-    with canvas(7.2, 1.2 + 0.26 * len(cells)) as drawing:
-        axes = drawing.add_subplot()
+    with canvas(7.2, 1.2 + 0.26 * len(cells)) as (drawing, (axes,)):
         for cell, timing in taken.items():
             low, middle, high = timing.quartiles("both")
             bars = [[middle - low], [high - middle]]

@@ -20,7 +20,7 @@ from typing import Literal
 
 from pydantic import ValidationError
 
-from comparisons.formats import file_unit
+from comparisons.formats import file_unit, joined, with_symbols
 from comparisons.quantities import COMPONENTS, unit_of
 from comparisons.sweeps.outcome import NumberRecord, Outcome
 from cprbm_scene import Mistake, Scene, SceneError
@@ -122,7 +122,7 @@ class Measure:
 
     def text(self, value: float) -> str:
         """A value with its unit."""
-        return f"{value:.6g} {self.unit}".rstrip()
+        return joined(f"{value:.6g}", with_symbols(self.unit))
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,7 +216,7 @@ def measures(scene: Scene, *, every: bool = False) -> tuple[Measure, ...]:
             component,
             every,
             len(set(stage.stations)),
-            *file_unit(scene, unit_of(scene, probe, stage)),
+            *file_unit(scene, unit_of(scene, probe, stage.name)),
         )
         for stage in scene.stages
         for probe in scene.probes_in(stage.name)

@@ -22,16 +22,18 @@ from pathlib import Path
 from threading import Lock
 
 import numpy as np
+from scipy.optimize import Bounds, NonlinearConstraint, minimize
+from scipy.stats import qmc
 
-from comparisons.formats import number
+from comparisons.formats import number, with_symbols
 from comparisons.present.columns import Column, Plain, Section, Table, plain, table_of
 from comparisons.sweeps.demands import Bound, Goal, Measure, bounds_of, measure_of, read_demands
 from comparisons.sweeps.outcome import Asked, Outcome
 from comparisons.sweeps.points import SEED, Axis, Point, in_file_units, place_text, ranges_of
 from comparisons.sweeps.running import JOURNAL, Runner, Sweep, known_outcomes, tasks_of
+from comparisons.verdict import first_met
 from comparisons.writing import append_line
-from cprbm_scene import Mistake, Scene, SceneError
-from cprbm_scene.answer import Array
+from cprbm_scene import Array, Mistake, Scene, SceneError
 
 FEASIBLE = 1e-6
 """Excess over the scale of a limit that still counts as met: the optimum often lies on a limit."""
@@ -78,8 +80,6 @@ class Problem:
 
     def starts(self, count: int) -> list[Array]:
         """Shares (d,) of ``count`` starts: the values of the file, and Sobol points."""
-        from scipy.stats import qmc
-
         own = [(self.scene.parameters[axis.name].value - axis.low) / (axis.high - axis.low) for axis in self.axes]
         others = qmc.Sobol(len(own), seed=SEED).random_base2((count - 1).bit_length())
         return [np.clip(own, 0.0, 1.0), *others[: count - 1]]
@@ -152,14 +152,14 @@ class Optimum:
     @property
     def doubt(self) -> str:
         """Why the best end is no optimum; empty for an optimum."""
-        if not self.best.feasible:
-            return "no start met all limits"
-        if not self.best.settled:
-            return "the number of solves ran out"
-        if not self.finer.completed:
-            return f"twice the links end with {self.finer.ending}"
         verdict = self.compared.verdict or self.compared.ending
-        return "" if verdict == "AGREE" else f"both solvers: {verdict} {self.compared.reason}".rstrip()
+        rules = (
+            (not self.best.feasible, "no start met all limits"),
+            (not self.best.settled, "the number of solves ran out"),
+            (not self.finer.completed, f"twice the links end with {self.finer.ending}"),
+            (verdict != "AGREE", f"both solvers: {verdict} {self.compared.reason}".rstrip()),
+        )
+        return first_met(rules, "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,8 +231,6 @@ def optimum(problem: Problem, runner: Runner, starts: int, most: int) -> Optimum
 
 def _end(problem: Problem, solver: _PointSolver, scale: float, most: int, begun: Array) -> End:
     """End of the start at the shares ``begun`` (d,)."""
-    from scipy.optimize import Bounds, NonlinearConstraint, minimize
-
     seen: dict[bytes, Array] = {}
 
     def values(u: Array) -> Array:
@@ -282,7 +280,11 @@ def _sentences(found: Optimum) -> Iterator[str]:
     yield f"{problem.scene.name}: {name} at {place_text(problem.axes, best.point)}. {value[0].upper()}{value[1:]}."
     if found.doubt:
         yield f"The point is no optimum: {found.doubt}. {found.compared.sentence}".rstrip()
-    same = sum(each.feasible and _near(problem, each.point, best.point) for each in found.ends)
+    same = sum(
+        each.feasible
+        and all(abs(each.point[a.name] - best.point[a.name]) <= _SAME * abs(a.high - a.low) for a in problem.axes)
+        for each in found.ends
+    )
     ends = [axis.name for axis in problem.axes if min(abs(best.point[axis.name] - end) for end in (axis.low, axis.high))
             <= _SAME * abs(axis.high - axis.low)]  # fmt: skip
     yield f"{same} of {len(found.ends)} starts end there." + (
@@ -290,16 +292,12 @@ def _sentences(found: Optimum) -> Iterator[str]:
     )
 
 
-def _near(problem: Problem, one: Point, other: Point) -> bool:
-    return all(abs(one[a.name] - other[a.name]) <= _SAME * abs(a.high - a.low) for a in problem.axes)
-
-
 def _starts_table(found: Optimum) -> Table:
     problem, place = found.problem, partial(place_text, found.problem.axes)
     columns = [
         Column[End]("start", "begun", place),
         Column("end", "point", place),
-        Column(f"{problem.measure}, {problem.measure.unit}", "number", partial(number, digits=6)),
+        Column(f"{problem.measure}, {with_symbols(problem.measure.unit)}", "number", partial(number, digits=6)),
         Column("limits", lambda each: "met" if each.feasible else "not met"),
         Column("solves", "solves"),
         Column("ending", "outcome.ending"),
@@ -310,7 +308,7 @@ def _starts_table(found: Optimum) -> Table:
 def _check_table(found: Optimum) -> Table:
     """Goal and limits at N and 2N links, and by the finite elements."""
     rows = tuple(
-        (name, measure.unit, *(number(value, 6) for value in _checked(found, measure)))
+        (name, with_symbols(measure.unit), *(number(value, 6) for value in _checked(found, measure)))
         for name, measure in _numbers(found.problem).items()
     )
     return Table("Best point, checked", ("number", "unit", "CPRBM", "at 2N", "FEA"), rows)

@@ -11,8 +11,8 @@ from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.executor import TimeLimitError, WorkerDiedError, call_limited
 from comparisons.pairing import Solvers, paired
-from comparisons.present.csv_table import comparison_records, numbers
-from comparisons.verdict.events import passed_by
+from comparisons.present.csv_table import comparison_records, records
+from comparisons.verdict import passed_by
 from cprbm_scene import Answer, Scene, SceneError
 
 Asked = Literal["cprbm", "fea", "compare"]
@@ -107,9 +107,9 @@ def solve(scene: Scene, choices: Choices, asked: Asked, solvers: Solvers) -> Out
         place = extract_tb(error.__traceback__)[-1]
         return Outcome(asked, "FAULT", f"{type(error).__name__}: {error} (line {place.lineno} of {place.name})")
     passed = _passed(scene, answer)
-    records = (
+    found = (
         {**number, "branch": number["branch"] + passed[number["stage"], number["station"]]}
-        for number in numbers(scene, answer)
+        for number in records(scene, answer)
     )
     return Outcome(
         asked,
@@ -117,7 +117,7 @@ def solve(scene: Scene, choices: Choices, asked: Asked, solvers: Solvers) -> Out
         "" if answer.completed else answer.sentence,
         iterations=_iterations([answer]),
         seconds=perf_counter() - begun,
-        numbers=_kept(records, {"value": "value"}),
+        numbers=_kept(found, {"value": "value"}),
     )
 
 
@@ -125,7 +125,7 @@ def _compared(scene: Scene, choices: Choices, solvers: Solvers, begun: float) ->
     compared = compare(paired(scene, choices, solvers))
     verdict, pair = compared.verdict, compared.runs.pair
     passed = _passed(scene, pair[0])
-    records = (
+    found = (
         {**each, "branch": (each["branch"] or 0) + passed[each["stage"], each["station"]]}
         for each in comparison_records(compared)
         if (each["stage"], each["station"]) in passed
@@ -140,7 +140,7 @@ def _compared(scene: Scene, choices: Choices, solvers: Solvers, begun: float) ->
         "" if verdict.reason is None else verdict.reason.value,
         iterations=_iterations(pair),
         seconds=perf_counter() - begun,
-        numbers=_kept(records, columns),
+        numbers=_kept(found, columns),
     )
 
 

@@ -9,10 +9,10 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
+from scipy.stats import qmc
 
-from comparisons.formats import file_unit
-from cprbm_scene import Mistake, Scene, SceneError
-from cprbm_scene.answer import Array
+from comparisons.formats import file_unit, joined, with_symbols
+from cprbm_scene import Array, Mistake, Scene, SceneError
 
 Point = Mapping[str, float]
 """Values of parameters by name, SI."""
@@ -59,9 +59,14 @@ class Axis:
         return [float(f"{value:.{_DIGITS}g}") for value in np.linspace(self.low, self.high, self.count)]
 
     @property
-    def label(self) -> str:
-        """Name and unit."""
+    def column(self) -> str:
+        """Name, and unit as in the scene's file."""
         return f"{self.name}, {self.unit}".rstrip(", ")
+
+    @property
+    def label(self) -> str:
+        """Name, and unit with symbols."""
+        return f"{self.name}, {with_symbols(self.unit)}".rstrip(", ")
 
     def of(self, point: Point) -> float:
         """Value of a point in the displayed unit."""
@@ -69,7 +74,7 @@ class Axis:
 
     def text(self, value: float) -> str:
         """An SI value with name and unit."""
-        return f"{self.name} = {value / self.size:.6g} {self.unit}".rstrip()
+        return f"{self.name} = {joined(f'{value / self.size:.6g}', with_symbols(self.unit))}"
 
 
 def place_text(axes: Iterable[Axis], point: Point) -> str:
@@ -120,8 +125,6 @@ def sample(text: str, axes: Sequence[Axis]) -> tuple[Point, ...]:
     Raises:
         SceneError: the text is no sample, or there is no axis.
     """
-    from scipy.stats import qmc
-
     found = re.fullmatch(r"(sobol|lhs):(\d{1,6})", text)
     if found is None or not 1 <= int(found[2]) <= MOST:
         raise _refused("--sample", repr(text), f"sobol:K or lhs:K with K from 1 to {MOST}, or a file that ends in .csv")
@@ -181,8 +184,6 @@ def in_file_units(scene: Scene, axes: Sequence[Axis]) -> tuple[Axis, ...]:
 
 def chosen_for_check(points: Sequence[Point], axes: Sequence[Axis], count: int) -> frozenset[int]:
     """Places of ``count`` points for a check: the corners first, then the points next to a Sobol sequence."""
-    from scipy.stats import qmc
-
     span = np.array([axis.high - axis.low or 1.0 for axis in axes])
     unit: Array = (np.array([[point[axis.name] for axis in axes] for point in points]) - [a.low for a in axes]) / span
     corners = list(product((0.0, 1.0), repeat=len(axes))) if len(axes) <= CORNERS else []

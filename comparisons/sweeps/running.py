@@ -12,8 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
 
-from comparisons.choices import Choices
-from comparisons.choices import check as check_choices
+from comparisons.choices import Choices, check_counts
 from comparisons.pairing import Solvers
 from comparisons.store import digest, relevant
 from comparisons.sweeps.outcome import Asked, Outcome, crashed, outcome_of, solve_limited
@@ -21,8 +20,7 @@ from comparisons.sweeps.points import Axis, Point, chosen_for_check, in_file_uni
 from comparisons.sweeps.tables import write_tables
 from comparisons.sweeps.workers import Workers, workers_on
 from comparisons.writing import append_line, whole_lines
-from cprbm_scene import Mistake, Scene, SceneError
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene import Mistake, Scene, SceneError, frozendict
 
 _LOG = logging.getLogger(__name__)
 
@@ -110,7 +108,7 @@ def tasks_of(
     Raises:
         SceneError: the scene at a point is invalid.
     """
-    check_choices(choices, scene)
+    check_counts(choices, scene)
     found, refused = [], []
     for place in range(shard[0] - 1, len(points), shard[1]):
         point = points[place]
@@ -194,7 +192,12 @@ class Runner:
             journal.unlink()
         tasks = tuple(task.known(every) for task in sweep.tasks)
         wanted = {task.key: task for task in tasks}
-        outcomes = {key: every[key] for key in wanted if key in every and not self._again(every[key])}
+        known = {key: every[key] for key in wanted if key in every}
+        outcomes = {
+            key: outcome
+            for key, outcome in known.items()
+            if not (outcome.ending == "CRASHED" or (outcome.ending == "TIME_LIMIT" and self.limit > outcome.limit))
+        }
         self.moved(len(outcomes))
         for task, outcome in self._solved([task for key, task in wanted.items() if key not in outcomes]):
             outcomes[task.key] = outcome
@@ -202,10 +205,6 @@ class Runner:
                 append_line(journal, outcome.line(task.key))
             self.moved(len(outcomes))
         return replace(sweep, tasks=tasks, outcomes=outcomes)
-
-    def _again(self, outcome: Outcome) -> bool:
-        """Whether a further solve may change the outcome."""
-        return outcome.ending == "CRASHED" or (outcome.ending == "TIME_LIMIT" and self.limit > outcome.limit)
 
     def _solved(self, tasks: Sequence[Task]) -> Iterator[tuple[Task, Outcome]]:
         """Points with outcomes in the order of their ends.
@@ -240,25 +239,48 @@ class Runner:
                 future.cancel()
 
 
-def start(
+def sweep(
     scene: Scene,
     vary: Mapping[str, Sequence[float]],
-    asked: Asked,
-    check: int,
-    choices: Choices | None,
-    executor: Executor | str | None,
-    limit: float,
-    out: Path | None,
+    solver: Asked = "cprbm",
+    check: int = 0,
+    choices: Choices | None = None,
+    executor: Executor | str | None = None,
+    at_most: float = 600.0,
+    out: str | Path | None = None,
 ) -> Sweep:
-    """The finished sweep of a grid; arguments and errors as of :func:`comparisons.sweep`."""
+    """A scene at all combinations of values of its parameters.
+
+    Points are solved in processes: a script calls this function below ``if __name__ == "__main__":``.
+
+    Args:
+        scene: the question, read from a file with parameters.
+        vary: two values or more by the name of a parameter, SI.
+        solver: solver of every point, or ``compare`` for both with a verdict.
+        check: number of points at which both solvers are compared.
+        choices: how finely, and by which variants; the standard choices if None.
+        executor: executor of the solves, as of :mod:`concurrent.futures`, or ``dask://HOST:PORT`` with the address of
+            a scheduler; None for this machine.
+        at_most: time limit of a solve, s.
+        out: folder of the tables, where a stopped sweep goes on; None for no folder.
+
+    Returns:
+        The points with their outcomes.
+
+    Raises:
+        SceneError: the scene refuses a name or a value.
+        OSError: the folder cannot be written to.
+    """
     points = tuple(dict(zip(vary, map(float, values), strict=True)) for values in product(*vary.values()))
     axes = [Axis(name, min(each), max(each), len(each)) for name, each in vary.items()]
     chosen, place = choices or Choices(), executor or f"local:{os.cpu_count() or 1}"
-    tasks = tasks_of(scene, points, asked, chosen_for_check(points, axes, check), chosen)
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
+    tasks = tasks_of(scene, points, solver, chosen_for_check(points, axes, check), chosen)
+    folder = None if out is None else Path(out)
+    if folder is not None:
+        folder.mkdir(parents=True, exist_ok=True)
     with workers_on(place) if isinstance(place, str) else nullcontext(Workers(place)) as workers:
-        sweep = Runner(workers, chosen, Solvers(), limit, out).run(Sweep(scene, in_file_units(scene, axes), tasks))
-    if out is not None:
-        write_tables(out, sweep)
-    return sweep
+        runner = Runner(workers, chosen, Solvers(), at_most, folder)
+        found = runner.run(Sweep(scene, in_file_units(scene, axes), tasks))
+    if folder is not None:
+        write_tables(folder, found)
+    return found

@@ -19,20 +19,20 @@ Physics Communications 181 (2010) 259-270, in SciPy; their intervals of 95 % con
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
+from scipy.stats import binomtest, norm, qmc, quantile_test, sobol_indices, uniform
 
 from comparisons.choices import Choices
-from comparisons.formats import number, percent, scaled_unit
+from comparisons.formats import number, percent, scaled_unit, with_symbols
 from comparisons.present.canvas import BLUE, RED, canvas, finished, panels
 from comparisons.present.columns import Figure, Plain, Section, Table, plain
 from comparisons.sweeps.demands import Bound, Measure, measures, meets
 from comparisons.sweeps.outcome import Asked, Outcome
 from comparisons.sweeps.points import SEED, axes_of, in_file_units
 from comparisons.sweeps.running import Sweep, tasks_of
-from cprbm_scene import Mistake, Scene, SceneError
-from cprbm_scene.answer import Array
+from cprbm_scene import Array, Mistake, Scene, SceneError
 
 LEVELS = (0.025, 0.5, 0.975)
 """Probabilities of the quantiles."""
@@ -52,11 +52,8 @@ _EDGE = 2.0**-32
 """Distance of a share from 0 and 1, where a normal distribution is infinite; Sobol points have 30 bits."""
 
 
-class Distribution(Protocol):
-    """Distribution of a parameter, such as a frozen distribution of :mod:`scipy.stats`."""
-
-    def ppf(self, q: Array) -> Array:
-        """Values, SI, below which the parameter lies with the probabilities ``q``."""
+Distribution: TypeAlias = Any
+"""Frozen distribution of :mod:`scipy.stats`, which has no types, of a parameter in SI."""
 
 
 def distributions_of(scene: Scene) -> dict[str, Distribution]:
@@ -65,8 +62,6 @@ def distributions_of(scene: Scene) -> dict[str, Distribution]:
     Raises:
         SceneError: no parameter has a tolerance.
     """
-    from scipy.stats import norm, uniform
-
     found: dict[str, Distribution] = {}
     for name, parameter in scene.parameters.items():
         scatter = parameter.tolerance
@@ -86,8 +81,6 @@ def drawn(distributions: Mapping[str, Distribution], count: int, *, indices: boo
     Raises:
         SceneError: indices of a single parameter.
     """
-    from scipy.stats import qmc
-
     size = len(distributions)
     if indices and size < 2:
         raise SceneError([Mistake("--sobol", "one parameter with a tolerance", "two or more: the index of one is 1")])
@@ -111,18 +104,12 @@ class Interval(NamedTuple):
     high: float
 
 
-@dataclass(frozen=True, slots=True)
-class Indices:
-    """First- and total-order indices by parameter."""
-
-    first: tuple[Interval, ...]
-    total: tuple[Interval, ...]
+Indices = tuple[tuple[Interval, ...], ...]
+"""First-order indices by parameter, and total-order indices."""
 
 
 def quantiles(values: Array) -> tuple[Interval, ...]:
     """Quantiles of ``values`` (n,) at ``LEVELS``."""
-    from scipy.stats import quantile_test
-
     found = []
     for level in LEVELS:
         ends = quantile_test(values, p=level).confidence_interval(_CONFIDENCE)
@@ -132,8 +119,6 @@ def quantiles(values: Array) -> tuple[Interval, ...]:
 
 def share(count: int, whole: int) -> Interval:
     """``count`` over ``whole``."""
-    from scipy.stats import binomtest
-
     ends = binomtest(count, whole).proportion_ci(_CONFIDENCE, method="wilson")
     return Interval(count / whole, float(ends.low), float(ends.high))
 
@@ -148,16 +133,11 @@ def indices(values: Array) -> Indices:
     rows = np.random.default_rng(SEED).integers(count, size=(_RESAMPLES, count))
     estimate = _estimates(values)
     low, high = np.quantile([_estimates(values[:, row]) for row in rows], [0.025, 0.975], axis=0)
-    first, total = (
-        tuple(map(Interval, *(each[order].tolist() for each in (estimate, low, high)))) for order in range(2)
-    )
-    return Indices(first, total)
+    return tuple(tuple(map(Interval, *(each[order].tolist() for each in (estimate, low, high)))) for order in range(2))
 
 
 def _estimates(values: Array) -> Array:
     """Estimates (2, d) of the first- and total-order indices."""
-    from scipy.stats import sobol_indices
-
     functions = {"f_A": values[None, 0], "f_B": values[None, 1], "f_AB": values[2:, None]}
     found = sobol_indices(func=functions, n=values.shape[1])
     return np.array([found.first_order, found.total_order])
@@ -313,7 +293,14 @@ def _quantile_table(scatter: Scatter, scattering: Sequence[Measure]) -> Table:
         size, unit = (1.0, measure.unit) if measure.size != 1.0 else scaled_unit(measure.unit, abs(nominal))
         values = values_of(measure, scatter.standing) / size
         cells = map(_cell, quantiles(values))
-        rows.append((str(measure), unit, *map(_plain, (nominal / size, values.mean(), values.std(ddof=1))), *cells))
+        rows.append(
+            (
+                str(measure),
+                with_symbols(unit),
+                *map(_plain, (nominal / size, values.mean(), values.std(ddof=1))),
+                *cells,
+            )
+        )
     note = "Last stations; complete answers on the branch of the nominal point. In brackets the ends of the interval."
     return Table("Quantiles", headers, tuple(rows), note)
 
@@ -327,7 +314,7 @@ def _limit_table(scatter: Scatter) -> Table:
 def _index_table(scatter: Scatter, found: dict[Measure, Indices]) -> Table:
     names = [axis.name for axis in scatter.sweep.axes]
     rows = tuple(
-        (str(measure), name, _cell(each.first[place]), _cell(each.total[place]))
+        (str(measure), name, *(_cell(order[place]) for order in each))
         for measure, each in found.items()
         for place, name in enumerate(names)
     )
@@ -345,11 +332,11 @@ def _cell(each: Interval, whole: float = 1.0) -> str:
 def _histograms(scatter: Scatter, chosen: Sequence[Measure]) -> Iterator[Figure]:
     if not chosen:
         return
-    with canvas(8.4, 2.6) as figure:
-        for axes, measure in zip(panels(figure, len(chosen), 2.6), chosen, strict=True):
+    with canvas(*panels(len(chosen), 2.6)) as (figure, plots):
+        for axes, measure in zip(plots, chosen, strict=True):
             axes.hist(values_of(measure, scatter.standing), bins="auto", color=BLUE)
             axes.axvline(measure.values(scatter.nominal)[0], color=RED, linewidth=1.0)
-            axes.set(xlabel=f"{measure}, {measure.unit}".rstrip(", "), ylabel="points")
+            axes.set(xlabel=f"{measure}, {with_symbols(measure.unit)}".rstrip(", "), ylabel="points")
         yield finished(figure, "scatter", "Numbers of points by value at the last stations. Line: nominal value.")
 
 
@@ -363,8 +350,7 @@ def _data(scatter: Scatter, scattering: Sequence[Measure], found: dict[Measure, 
             "unit": measure.unit,
             "nominal": measure.values(scatter.nominal)[0],
             "quantiles": quantiles(values_of(measure, scatter.standing)),
-            "first": found[measure].first if measure in found else [],
-            "total": found[measure].total if measure in found else [],
+            **dict(zip(("first", "total"), found.get(measure, ([], [])), strict=True)),
         }
         for measure in scattering
     ]

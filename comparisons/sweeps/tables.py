@@ -25,26 +25,19 @@ from comparisons.present.canvas import BLUE, RED, Axes, canvas, finished, panels
 from comparisons.present.columns import Figure, Section
 from comparisons.present.csv_table import csv_text, in_file_units, in_unit
 from comparisons.present.page import put_section, rendered
+from comparisons.quantities import stage_of
 from comparisons.sweeps.demands import Measure, measures
 from comparisons.sweeps.outcome import NumberRecord, Outcome
 from comparisons.sweeps.points import Axis, place_text
-from comparisons.verdict.rows import ROUND_OFF
+from comparisons.verdict import ROUND_OFF
 from comparisons.writing import write
-from cprbm_scene import Scene, Stage
-from cprbm_scene.answer import Array
+from cprbm_scene import Array, Scene, Stage
 
 if TYPE_CHECKING:
     from comparisons.sweeps.running import Sweep, Task
 
 _VALUES = ("value", "fea", "difference", "stated")
 _PLACES = ("stage", "station", "station_unit", "branch", "probe", "component", "arc_length", "arc_length_unit")
-
-
-def records(sweep: Sweep) -> Iterator[dict[str, Any]]:
-    """Every number of a sweep with its point, SI; a point without numbers has a record too."""
-    for task, outcome in sweep.points():
-        for number in outcome.numbers or ({},):
-            yield {**_point(task, outcome), **number}
 
 
 def _point(task: Task, outcome: Outcome) -> dict[str, Any]:
@@ -68,9 +61,13 @@ def write_tables(folder: Path, sweep: Sweep) -> None:
     Raises:
         OSError: a file cannot be written.
     """
-    heads = ["point", *(axis.label for axis in sweep.axes), "solver"]
+    heads = ["point", *(axis.column for axis in sweep.axes), "solver"]
     tails = ["ending", "verdict", "reason", "iterations", "seconds", "key", "sentence"]
-    long = (_in_units(sweep, record) for record in records(sweep))
+    long = (
+        _in_units(sweep, {**_point(task, outcome), **number})
+        for task, outcome in sweep.points()
+        for number in outcome.numbers or ({},)  # a point without numbers has a line too
+    )
     columns = [*heads, *_PLACES, *_VALUES, "unit", "word", *tails]
     write(folder / "numbers.csv", csv_text(columns, long))
     rows = [_wide(sweep, task, outcome) for task, outcome in sweep.points()]
@@ -93,7 +90,7 @@ def name_of(number: NumberRecord) -> str:
 def _in_units(sweep: Sweep, record: Mapping[str, Any]) -> dict[str, Any]:
     """A record with the units of the scene's file; parameters have their units in the keys."""
     row = in_file_units(sweep.scene, record) if "unit" in record else {**record}
-    return row | {axis.label: in_unit(row.pop(axis.name), axis.size) for axis in sweep.axes}
+    return row | {axis.column: in_unit(row.pop(axis.name), axis.size) for axis in sweep.axes}
 
 
 def write_netcdf(path: Path, sweep: Sweep) -> None:
@@ -206,8 +203,8 @@ def _over_parameters(sweep: Sweep, solved: Solved, shown: Sequence[Measure]) -> 
     grid, first = all(axis.count for axis in sweep.axes), sweep.axes[0]
     mapped = grid and len(sweep.axes) == 2
     failed = [task for task, outcome in sweep.points() if not outcome.completed]
-    with canvas(6.4, 4.8) as figure:
-        for axes, measure in zip(panels(figure, len(shown), 3.0), shown, strict=True):
+    with canvas(*panels(len(shown), 3.0)) as (figure, plots):
+        for axes, measure in zip(plots, shown, strict=True):
             known = [measure.last(outcome) for _, outcome in solved]
             size, label = _unit_of(sweep, [each for each in known if each is not None])
             numbers = [np.nan if each is None else each["value"] / size for each in known]
@@ -258,8 +255,8 @@ def _contours(figure: Any, axes: Axes, pair: Sequence[Axis], solved: Solved, num
 def _curves(sweep: Sweep, solved: Solved, stage: Stage, shown: Sequence[Measure]) -> Figure:
     """The curves of all points against the load or drive of a stage."""
     first, longest = sweep.axes[0], _fullest(solved)
-    with canvas(6.4, 4.8) as figure:
-        for axes, measure in zip(panels(figure, len(shown), 3.0), shown, strict=True):
+    with canvas(*panels(len(shown), 3.0)) as (figure, plots):
+        for axes, measure in zip(plots, shown, strict=True):
             whole = measure.numbers(longest)
             (size, label), (step, step_label) = _unit_of(sweep, whole[-1:]), _unit_of(sweep, whole, "station")
             axes.set(title=f"{measure.name}, {label}".rstrip(", "), xlabel=f"{stage.steps}, {step_label}")
@@ -283,7 +280,7 @@ def _slider(sweep: Sweep, solved: Solved, measure: Measure) -> Mapping[str, Any]
     curves = [measure.numbers(outcome) for _, outcome in solved]
     ends = [curve[-1] for curve in curves if curve]
     (size, unit), (step, step_unit) = _unit_of(sweep, ends), _unit_of(sweep, ends, "station")
-    steps = next(each.steps for each in sweep.scene.stages if each.name == measure.stage)
+    steps = stage_of(sweep.scene, measure.stage).steps
     return {
         "title": f"Stage {measure.stage}: {measure.name}, {unit}, against {steps}, {step_unit}",
         "curves": [
@@ -302,8 +299,7 @@ def _checked(sweep: Sweep, solved: Solved) -> Figure:
     ratios = [
         max((n["difference"] / n["stated"] for n in numbers if n["stated"]), default=np.nan) for _, numbers in checked
     ]
-    with canvas(6.4, 4.0) as figure:
-        axes = figure.add_subplot()
+    with canvas(6.4, 4.0) as (figure, (axes,)):
         axes.set(xlabel=sweep.axes[0].label, ylabel=sweep.axes[1].label if len(sweep.axes) > 1 else _RATIO)
         x, y = ([axis.of(point) for point, _ in checked] for axis in (sweep.axes * 2)[:2])
         if len(sweep.axes) > 1:

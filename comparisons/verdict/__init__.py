@@ -1,38 +1,96 @@
 """The verdict on two independent answers: AGREE, DIFFER or UNDECIDED, with a reason and a stated uncertainty."""
 
-from collections.abc import Iterable
-from enum import Enum
+from comparisons.verdict.events import (
+    MIRRORED,
+    PASSED,
+    Closing,
+    CriticalRow,
+    Place,
+    critical_rows,
+    disagree_within_a_solver,
+    far_closings,
+    mechanism,
+    passed_by,
+    released,
+)
+from comparisons.verdict.judge import (
+    EXACT_FACTOR,
+    LARGEST_MEDIAN,
+    SHARE_WITHIN,
+    ErrorRatio,
+    Tally,
+    error_ratios,
+    judge_case,
+    judge_rows,
+    tally,
+    true_errors,
+)
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.rows import ROUND_OFF, Row, Third, bare_row, rows_of
+from comparisons.verdict.runs import SOLVERS, TWICE, Runs, Uncertainties, other_theory, runs_of
+from comparisons.verdict.uncertainty import (
+    GRIDS,
+    OWN,
+    SAFETY,
+    STANDARD,
+    Error,
+    Limit,
+    error,
+    largest,
+    limit,
+    observed,
+    orders,
+)
+from comparisons.verdict.words import SEVERITY, Reason, Word, first_met, worst_of
 
-
-class Word(Enum):
-    """AGREE, DIFFER or UNDECIDED."""
-
-    AGREE = "AGREE"
-    DIFFER = "DIFFER"
-    UNDECIDED = "UNDECIDED"
-
-
-class Reason(Enum):
-    """Why a row, an event or a case does not agree; the first three belong to DIFFER, all others to UNDECIDED."""
-
-    VALUES = "VALUES"
-    EXACT = "EXACT"
-    EVENTS = "EVENTS"
-    RUN_ENDED = "RUN_ENDED"
-    AUDIT = "AUDIT"
-    UNDECLARED_CONTACT = "UNDECLARED_CONTACT"
-    BRANCH = "BRANCH"
-    EVENT = "EVENT"
-    THEORY = "THEORY"
-    COARSE = "COARSE"
-    NOT_UNIQUE = "NOT_UNIQUE"
-
-
-SEVERITY = (Word.DIFFER, Word.UNDECIDED, Word.AGREE)
-"""Words from the worst to the best."""
-
-
-def worst_of(words: Iterable[Word | None]) -> Word | None:
-    """DIFFER before UNDECIDED before AGREE; None without a word."""
-    found = set(words)
-    return next((word for word in SEVERITY if word in found), None)
+__all__ = [
+    "EXACT_FACTOR",
+    "GRIDS",
+    "LARGEST_MEDIAN",
+    "MIRRORED",
+    "OWN",
+    "PASSED",
+    "ROUND_OFF",
+    "SAFETY",
+    "SEVERITY",
+    "SHARE_WITHIN",
+    "SOLVERS",
+    "STANDARD",
+    "TWICE",
+    "Closing",
+    "CriticalRow",
+    "Error",
+    "ErrorRatio",
+    "Limit",
+    "Place",
+    "Reason",
+    "Row",
+    "Runs",
+    "Tally",
+    "Third",
+    "Uncertainties",
+    "Word",
+    "away_from_point_forces",
+    "bare_row",
+    "critical_rows",
+    "disagree_within_a_solver",
+    "error",
+    "error_ratios",
+    "far_closings",
+    "first_met",
+    "judge_case",
+    "judge_rows",
+    "largest",
+    "limit",
+    "mechanism",
+    "observed",
+    "orders",
+    "other_theory",
+    "passed_by",
+    "released",
+    "rows_of",
+    "runs_of",
+    "tally",
+    "true_errors",
+    "worst_of",
+]

@@ -41,12 +41,10 @@ import numpy as np
 
 from comparisons.quantities import deflection, load_unit
 from comparisons.stations import Where, begins_at, ends_at_critical, event_tolerance, span_of
-from comparisons.verdict import Reason, Word
 from comparisons.verdict.point_forces import active_contacts
 from comparisons.verdict.runs import SOLVERS, Bounds, Runs, solver_of
-from cprbm_scene import Answer, Critical, Loss, Scene, Stage, StationAnswer
-from cprbm_scene.answer import Shape
-from cprbm_scene.frozendict import frozendict
+from comparisons.verdict.words import Reason, Word, first_met
+from cprbm_scene import Answer, Critical, Loss, Scene, Shape, Stage, StationAnswer, frozendict
 
 BRANCH = "branch"
 PASSED = "passed critical points"
@@ -101,23 +99,19 @@ class CriticalRow:
     @property
     def judged(self) -> tuple[Word, Reason | None]:
         """Word and reason of the critical point."""
-        if disagree_within_a_solver(self.mechanisms):
-            return Word.UNDECIDED, Reason.BRANCH
-        if self.ended_before:
-            return Word.UNDECIDED, Reason.RUN_ENDED
-        if self.cprbm is None or self.fea is None or mechanism(self.cprbm) != mechanism(self.fea):
-            return Word.DIFFER, Reason.EVENTS
-        if self.bounds is None:
-            return Word.UNDECIDED, Reason.RUN_ENDED
-        if self.difference > max(self.allowed, self.bounds.total):
-            return Word.DIFFER, Reason.EVENTS
-        if self.turned:
-            return Word.UNDECIDED, Reason.BRANCH
-        if self.bounds.total > self.allowed:
-            return Word.UNDECIDED, Reason.COARSE
-        if self.theory > self.largest:
-            return Word.UNDECIDED, Reason.THEORY
-        return Word.AGREE, None
+        total = math.nan if self.bounds is None else self.bounds.total
+        pair = [one and mechanism(one) for one in (self.cprbm, self.fea)]
+        rules: tuple[tuple[bool, tuple[Word, Reason | None]], ...] = (
+            (disagree_within_a_solver(self.mechanisms), (Word.UNDECIDED, Reason.BRANCH)),
+            (self.ended_before, (Word.UNDECIDED, Reason.RUN_ENDED)),
+            (None in pair or pair[0] != pair[1], (Word.DIFFER, Reason.EVENTS)),
+            (self.bounds is None, (Word.UNDECIDED, Reason.RUN_ENDED)),
+            (self.difference > max(self.allowed, total), (Word.DIFFER, Reason.EVENTS)),
+            (bool(self.turned), (Word.UNDECIDED, Reason.BRANCH)),
+            (total > self.allowed, (Word.UNDECIDED, Reason.COARSE)),
+            (self.theory > self.largest, (Word.UNDECIDED, Reason.THEORY)),
+        )
+        return first_met(rules, (Word.AGREE, None))
 
     @property
     def word(self) -> Word:
@@ -192,7 +186,7 @@ def _critical_row(runs: Runs, stage: Stage, place: int, here: Mapping[str, Criti
     row = CriticalRow(
         stage=stage.name,
         place=place,
-        unit=load_unit(runs.scene, stage),
+        unit=load_unit(runs.scene, stage.name),
         cprbm=here["cprbm"],
         fea=here["fea"],
         span=span,

@@ -42,11 +42,11 @@ from statistics import median
 import numpy as np
 
 from comparisons.stations import ABSENT_WHILE_OPEN
-from comparisons.verdict import Reason, Word
 from comparisons.verdict.events import MIRRORED, PASSED, Place
 from comparisons.verdict.point_forces import resultant
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs import SOLVERS, Runs, Solver
+from comparisons.verdict.words import Reason, Word, first_met
 from cprbm_scene import Scene
 
 Judged = tuple[Word | None, Reason | None]
@@ -72,19 +72,22 @@ def _judge(runs: Runs, row: Row, *, faint: bool) -> Judged:
         return _without_value(scene, row)
     if bounds is None:
         return (None, None) if np.isnan(row.difference) else (Word.UNDECIDED, Reason.RUN_ENDED)
-    if any(each.pressure > 1.0 for each in true_errors(row)):
-        return Word.DIFFER, Reason.EXACT
-    if row.difference > bounds.total:
-        return _contradiction(runs, row, faint=faint)
-    limit = scene.limit(row.probe) * row.scale
-    by_theory = runs.theory == "bending" and row.theory > limit
-    if bounds.total <= limit and not by_theory:
-        return Word.AGREE, None
-    if row.shared is not None:
-        return Word.UNDECIDED, Reason.NOT_UNIQUE
-    if row.events.unsettled:
-        return Word.UNDECIDED, _event_reason(row)
-    return Word.UNDECIDED, Reason.COARSE if bounds.total > limit else Reason.THEORY
+    limit, beyond = scene.limit(row.probe) * row.scale, row.difference > bounds.total
+    by_theory, unsettled = runs.theory == "bending" and row.theory > limit, bool(row.events.unsettled)
+    event = Reason.BRANCH if row.events.unsettled & {PASSED, MIRRORED} else Reason.EVENT
+    rules: tuple[tuple[bool, Judged], ...] = (
+        (any(each.pressure > 1.0 for each in true_errors(row)), (Word.DIFFER, Reason.EXACT)),
+        (beyond and _same_resultant(runs, row), (Word.UNDECIDED, Reason.NOT_UNIQUE)),
+        (beyond and unsettled, (Word.UNDECIDED, event)),
+        (beyond and not row.events.contradictory, (Word.DIFFER, Reason.VALUES)),
+        (beyond and not faint, (Word.DIFFER, Reason.EVENTS)),
+        (beyond, (Word.UNDECIDED, Reason.EVENT)),
+        (bounds.total <= limit and not by_theory, (Word.AGREE, None)),
+        (row.shared is not None, (Word.UNDECIDED, Reason.NOT_UNIQUE)),
+        (unsettled, (Word.UNDECIDED, event)),
+        (bounds.total > limit, (Word.UNDECIDED, Reason.COARSE)),
+    )
+    return first_met(rules, (Word.UNDECIDED, Reason.THEORY))
 
 
 def judge_case(scene: Scene, rows: Sequence[Row]) -> tuple[Word, Reason | None]:
@@ -116,20 +119,6 @@ def _is_notable(runs: Runs, row: Row) -> bool:
     forces = [np.hypot(*station.forces.force.T).max(initial=0.0) for station in stations]
     moments = [np.abs(beam.M).max() / beam.s[-1] for station in stations for beam in station.beams.values()]
     return row.difference > runs.scene.limit(row.probe) * float(max(*forces, *moments))
-
-
-def _contradiction(runs: Runs, row: Row, *, faint: bool) -> Judged:
-    if _same_resultant(runs, row):
-        return Word.UNDECIDED, Reason.NOT_UNIQUE
-    if row.events.unsettled:
-        return Word.UNDECIDED, _event_reason(row)
-    if not row.events.contradictory:
-        return Word.DIFFER, Reason.VALUES
-    return (Word.UNDECIDED, Reason.EVENT) if faint else (Word.DIFFER, Reason.EVENTS)
-
-
-def _event_reason(row: Row) -> Reason:
-    return Reason.BRANCH if row.events.unsettled & {PASSED, MIRRORED} else Reason.EVENT
 
 
 def _same_resultant(runs: Runs, row: Row) -> bool:

@@ -13,8 +13,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from comparisons.geometry import length
-from cprbm_scene.answer import Array, Flags, StationAnswer
-from cprbm_scene.statement import Beam, BeamMoment, FreeEnd, Scene
+from cprbm_scene import Array, Beam, BeamMoment, Flags, FreeEnd, Scene, StationAnswer
 
 SIGNIFICANT = 1e-3
 """Least force of a source at a place, a share of the source's largest force on the beam."""

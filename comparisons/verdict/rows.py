@@ -22,14 +22,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, denominator, norm, probe_scales, unit_of
-from comparisons.stations import complete_stations
-from comparisons.verdict import Reason, Word
+from comparisons.stations import Where, complete_stations
 from comparisons.verdict.events import NO_EVENTS, Place, StationEvents, station_events
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
 from comparisons.verdict.runs import Bounds, Runs
 from comparisons.verdict.uncertainty import largest
-from cprbm_scene.answer import Array, Flags, StationAnswer
-from cprbm_scene.statement import STRESSES, Probe, Quantity, Scene, Stage
+from comparisons.verdict.words import Reason, Word
+from cprbm_scene import STRESSES, Array, Flags, Probe, Quantity, Scene, StationAnswer
 
 ROUND_OFF = 1e-9
 """Round-off of a value, and least uncertainty of an exact value, as shares of the probe's scale."""
@@ -146,7 +145,6 @@ def rows_of(runs: Runs) -> tuple[Row, ...]:
     """All rows of the stations that both compared runs reach, in the order of stations and probes."""
     scene, events, found = runs.scene, station_events(runs), list[Row]()
     scales = probe_scales(scene, runs.pair)
-    stages = {stage.name: stage for stage in scene.stages}
     opinions = [each and complete_stations(scene, each) for each in (runs.answers.get("exact"), runs.other)]
     for where in runs.reached:
         stations, branch = runs.at(where), events[where].branch
@@ -156,24 +154,21 @@ def rows_of(runs: Runs) -> tuple[Row, ...]:
         missing = tuple(name for name in runs.same_theory if name not in stations)
         for probe in scene.probes_in(where[0]):
             pair = stations["cprbm"], stations["fea"]
-            row = bare_row(scene, pair, probe, stages[where[0]], where[1], scales[where[0], probe.name])
+            row = bare_row(scene, pair, probe, where, scales[where[0], probe.name])
             shared = sharing_sources(scene, stations.values(), probe.of) if probe.quantity in SHARED else None
             row = replace(row, events=events[where], shared=shared, missing=missing)
             found.append(_measured(runs, row, stations, exact, other))
     return _with_largest_uncertainties(found)
 
 
-def bare_row(
-    scene: Scene, pair: tuple[StationAnswer, StationAnswer], probe: Probe, stage: Stage, value: float, scale: float
-) -> Row:
+def bare_row(scene: Scene, pair: tuple[StationAnswer, StationAnswer], probe: Probe, where: Where, scale: float) -> Row:
     """The values of the two compared answers, without a difference.
 
     Args:
         scene: the question.
         pair: the station of the CPRBM and of the finite elements.
         probe: the probe.
-        stage: the stage.
-        value: the station.
+        where: the stage and the station.
         scale: of the probe in the stage, :func:`comparisons.quantities.probe_scales`.
 
     Raises:
@@ -182,9 +177,9 @@ def bare_row(
     v_c, v_f = (station.values[probe.name] for station in pair)
     return Row(
         probe=probe,
-        stage=stage.name,
-        station=value,
-        unit=unit_of(scene, probe, stage),
+        stage=where[0],
+        station=where[1],
+        unit=unit_of(scene, probe, where[0]),
         cprbm=v_c,
         fea=v_f,
         scale=scale,

@@ -41,9 +41,7 @@ from typing import Literal, TypeAlias
 from comparisons.choices import Kinematics
 from comparisons.stations import Where, complete_stations, ends_at_critical, problems, stations_of
 from comparisons.verdict.uncertainty import Error, error
-from cprbm_scene import Answer, Scene, StationAnswer
-from cprbm_scene.answer import Array
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene import Answer, Array, Scene, StationAnswer, frozendict
 
 Solver = Literal["cprbm", "fea"]
 SOLVERS: tuple[Solver, ...] = ("cprbm", "fea")
@@ -105,14 +103,9 @@ class Runs:
         return self.answers["cprbm"], self.answers["fea"]
 
     @property
-    def other_theory(self) -> Kinematics:
-        """``bending``, the paper's theory; ``shear`` where the comparison is in ``bending``."""
-        return other_theory(self.theory)
-
-    @property
     def other(self) -> Answer | None:
         """The CPRBM's answer in the other theory; None without this run."""
-        return self.answers.get(f"cprbm {self.other_theory}")
+        return self.answers.get(f"cprbm {other_theory(self.theory)}")
 
     @property
     def formulations(self) -> tuple[str, str]:

@@ -61,7 +61,7 @@ from typing import Self, TypeVar
 
 import numpy as np
 
-from cprbm_scene.answer import Array, Flags
+from cprbm_scene import Array, Flags
 
 SAFETY = 1.25
 STANDARD = 2.0

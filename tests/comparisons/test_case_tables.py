@@ -10,9 +10,12 @@ from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.cli.main import run
+from comparisons.offset_verdict import compared_offset
 from comparisons.opinions import contact_model
 from comparisons.pairing import Solvers, paired
+from comparisons.present.brief import brief
 from comparisons.present.case_tables import answer_tables, branch_table, case_sections
+from comparisons.present.offset import error_table
 from comparisons.present.row_tables import paper_table
 from comparisons.verdict.events import NO_EVENTS
 from cprbm_scene import Ending
@@ -211,3 +214,15 @@ def test_several_cases_end_with_a_summary(right, capsys, tmp_path):
     assert 0.0 < float(cells["hinge"][5]) <= 1.0
     assert cells["offset"][1:5] == ["AGREE", "2000", "of", "2000"]
     assert lines[-1] == f"report: {tmp_path / 'r' / 'index.html'}"
+
+
+@pytest.mark.parametrize("width", [60, 72, 80])
+def test_a_brief_report_keeps_to_the_terminal_and_cuts_no_number(comparison, width):
+    offset = compared_offset(cases.asked("offset"))
+    for found in (comparison, offset):
+        lines = [re.sub(r"\x1b\[[0-9;]*m", "", line) for line in brief(found, "case", None, width).splitlines()]
+        assert max(map(len, lines)) <= width
+    text = "\n".join(lines)
+    table = error_table(offset)
+    assert all(cell in text for row in table.rows for cell in row)
+    assert all(re.search(rf"^ *{row[0]} ", text, re.MULTILINE) for row in table.rows)

@@ -19,7 +19,7 @@ from comparisons.pairing import Solvers, paired
 from comparisons.present import json_document
 from comparisons.present.case_tables import answer_tables
 from comparisons.present.columns import plain
-from comparisons.present.csv_table import contact_csv, csv_of, numbers
+from comparisons.present.csv_table import contact_csv, csv_of, records
 from comparisons.writing import text_of
 from cprbm_scene import Answer, Certificate, Ending, Scene, StationAnswer, scene_from
 from tests.robustness.toml import toml_of
@@ -226,7 +226,7 @@ def test_tables_and_files_are_in_the_units_of_the_scene(scene, bent):
     assert (turned["station_unit"], turned["unit"], float(turned["value"])) == ("deg", "deg", pytest.approx(45.0))
     end = [row for row in rows if row["probe"] == "leaf.bending_stress"][-1]
     assert (end["arc_length"], end["arc_length_unit"], end["unit"]) == ("100.0", "mm", "MPa")
-    record = next(record for record in numbers(scene, bent) if record["probe"] == "tip.reaction_moment")
+    record = next(record for record in records(scene, bent) if record["probe"] == "tip.reaction_moment")
     assert record["unit"] == "N·m"
 
 

@@ -13,7 +13,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.present import figures
 from comparisons.present.curves import curve_figures
-from comparisons.present.picture import bounds_of, carried, outline_of, view_of, views_of
+from comparisons.present.picture import bounds_of, carried, outline_of, view_of
 from comparisons.present.strips import left_of, with_stresses
 from comparisons.present.view import force_block
 from cprbm_scene import (
@@ -63,7 +63,7 @@ def solved():
     """The hinge with stresses at all sections, and the views of all stations."""
     scene = with_stresses(cases.opened("hinge"))
     answer = cprbm.answer(scene, cprbm.Settings(links=19))
-    return scene, answer, views_of(scene, answer)
+    return scene, answer, [view_of(scene, station) for station in answer.stations]
 
 
 @pytest.fixture(scope="module")

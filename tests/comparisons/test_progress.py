@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from comparisons.cli.main import run
-from comparisons.cli.output import Rounds, bar
+from comparisons.cli.output import Bar, bar
 from comparisons.logs import PACKAGES, RUNS, level, steps_from
 
 ROOT = Path(__file__).parents[2]
@@ -118,20 +118,24 @@ def test_steps_are_heard_from_those_alone_who_are_listened_to():
     st.floats(min_value=0.1, max_value=1.0),
 )
 def test_through_rounds_of_any_length_a_bar_never_goes_back_nor_beyond_its_item(items, share):
-    rounds, before = Rounds(share), 0.0
-    for place, each in enumerate(items):
-        assert rounds.begin(place) == place
+    moves, before = [], 0.0
+    shown = Bar(moves.append, share=share)
+    for place, each in enumerate(shown.through(items)):
+        assert moves[-1] == place
         for whole in each:
             for done in range(1, whole + 1):
-                now = rounds.at(done, whole)
-                assert before - 1e-12 <= now <= place + 1.0
-                before = now
+                shown.step(done, whole)
+                assert before - 1e-12 <= moves[-1] <= place + 1.0
+                before = moves[-1]
     assert share < 1.0 or before == len(items)
 
 
 def test_one_round_goes_evenly_to_the_end():
-    rounds = Rounds()
-    assert [rounds.at(done, 4) for done in (1, 2, 3, 4)] == [0.25, 0.5, 0.75, 1.0]
+    moves = []
+    shown = Bar(moves.append)
+    for done in (1, 2, 3, 4):
+        shown.step(done, 4)
+    assert moves == [0.25, 0.5, 0.75, 1.0]
 
 
 @pytest.mark.parametrize("shown", [True, False])

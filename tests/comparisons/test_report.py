@@ -271,10 +271,10 @@ def places(shown):
 def test_points_stand_where_the_answer_says_that_they_went(solved):
     steps = stepper.stepper(solved)
     at_rest = solved.scene.bodies["BD"].points
-    assert steps.points == ("A", "C", "B", "D")
+    assert steps["points"] == ("A", "C", "B", "D")
     fixed = np.array(solved.scene.bodies["AC"].points["A"])
     other = np.array(solved.scene.bodies["AC"].points["C"])
-    for shown, answer in zip(steps.stations, solved.runs.answers["fea"].stations, strict=True):
+    for shown, answer in zip(steps["stations"], solved.runs.answers["fea"].stations, strict=True):
         A, C, B, D = places(shown)
         scale = np.hypot(*(A - C)) / np.hypot(*(fixed - other))
         for place, name in ((B, "B"), (D, "D")):
@@ -285,26 +285,26 @@ def test_points_stand_where_the_answer_says_that_they_went(solved):
 
 def test_contact_is_drawn_where_it_is_closed(solved):
     steps = stepper.stepper(solved)
-    zone, push = (steps.moving.index(kind) for kind in ("zone", "push"))
+    zone, push = (steps["moving"].index(kind) for kind in ("zone", "push"))
     largest = max(answer.values["contact.force"][0] for answer in solved.runs.answers["fea"].stations)
-    for (_, paths, *_), answer in zip(steps.stations, solved.runs.answers["fea"].stations, strict=True):
+    for (_, paths, *_), answer in zip(steps["stations"], solved.runs.answers["fea"].stations, strict=True):
         force = answer.values["contact.force"][0]
         assert bool(paths[zone]) == (force > 0.0)
         assert bool(paths[push]) == (force > 0.02 * largest)
-    assert [bool(paths[zone]) for _, paths, *_ in steps.stations].count(True) == 6
+    assert [bool(paths[zone]) for _, paths, *_ in steps["stations"]].count(True) == 6
 
 
 def test_beams_have_their_thickness_and_the_colours_of_their_stress(solved):
     steps = stepper.stepper(solved)
-    A, C, *_ = places(steps.stations[-1])
+    A, C, *_ = places(steps["stations"][-1])
     scale = np.hypot(*(A - C)) / 0.0525
-    _, paths, *_ = steps.stations[-1]
-    areas = [areas_of(paths[steps.moving.index(f"shade{shade}")]) for shade in range(stepper.SHADES)]
+    _, paths, *_ = steps["stations"][-1]
+    areas = [areas_of(paths[steps["moving"].index(f"shade{shade}")]) for shade in range(stepper.SHADES)]
     # area of both beams: half circles of 25 mm radius, 2 mm thick
     assert sum(sum(each) for each in areas) == pytest.approx(2 * np.pi * 25e-3 * 2e-3 * scale**2, rel=0.02)
-    _, first, *_ = steps.stations[0]
-    assert not first[steps.moving.index(f"shade{stepper.SHADES - 1}")]  # the largest stress is at the last station
-    assert paths[steps.moving.index(f"shade{stepper.SHADES - 1}")]
+    _, first, *_ = steps["stations"][0]
+    assert not first[steps["moving"].index(f"shade{stepper.SHADES - 1}")]  # the largest stress is at the last station
+    assert paths[steps["moving"].index(f"shade{stepper.SHADES - 1}")]
 
 
 def areas_of(path):

@@ -16,12 +16,17 @@ from comparisons import cases
 from comparisons.cli.doctor import trouble_with
 from comparisons.cli.main import run
 from comparisons.present import view as pictures
-from comparisons.present.picture import views_of
+from comparisons.present.picture import view_of
 from comparisons.present.strips import SECTIONS, with_stresses
 from comparisons.present.view import ACROSS, beam_block, force_block, obstacle_block
 
 needs_meshio = pytest.mark.skipif(bool(trouble_with("meshio")), reason="meshio, of the extra 'view', is not there")
 needs_pyvista = pytest.mark.skipif(bool(trouble_with("pyvista")), reason="pyvista, of the extra 'view', is not there")
+
+
+def views_of(scene, answer):
+    """A view of every station."""
+    return [view_of(scene, station) for station in answer.stations]
 
 
 @pytest.fixture(scope="module")

@@ -50,7 +50,7 @@ def wrong_with(function):
     named = re.findall(r"^    (\w+): \S", told.get("Args", ""), re.MULTILINE)
     wrong = [f"argument {name}" for name in signature.parameters if name not in named]
     wrong += [f"{name} is no argument" for name in named if name not in signature.parameters]
-    if signature.return_annotation != "None" and "Returns" not in told:
+    if signature.return_annotation not in (None, "None") and "Returns" not in told:
         wrong.append("what comes back")
     arrays = [name for name, each in signature.parameters.items() if ARRAY.search(str(each.annotation))]
     for name in arrays:

@@ -49,7 +49,7 @@ def test_indices_of_a_stiffness_are_the_squares_of_the_exponents(scene):
     stiffness = np.log(1e-3 / scatter.rows(deflection))
     assert stiffness.shape == (6, 256)
     found = indices(stiffness)
-    for part in (found.first, found.total):
+    for part in found:
         for interval, exact in zip(part, (1 / 20, 1 / 20, 9 / 20, 9 / 20), strict=True):
             assert interval.low <= exact <= interval.high
             assert interval.high - interval.low < 0.3

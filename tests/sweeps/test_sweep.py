@@ -1,5 +1,6 @@
 """``cprbm sweep`` and ``comparisons.sweep``: tables, interruptions, failing points, wrong questions, the elastica."""
 
+import math
 import os
 import random
 import signal
@@ -7,6 +8,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -18,6 +20,7 @@ from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.sweeps.demands import Measure
 from comparisons.sweeps.outcome import Outcome
+from comparisons.sweeps.points import Axis
 from cprbm_scene import read
 from tests.sweeps.elastica import tip
 from tests.sweeps.scenes import CANTILEVER, table
@@ -262,3 +265,13 @@ def test_a_cantilever_follows_the_elastica_with_order_four(tmp_path):
     assert max(errors[40]) < 5e-4
     orders = [np.log2(np.divide(errors[n], errors[2 * n])) for n in (20, 40, 80)]
     np.testing.assert_allclose(orders, 4.0, atol=0.1)
+
+
+def test_texts_have_the_symbol_of_degrees_and_files_the_unit_of_the_scene():
+    degree = math.radians(1.0)
+    axis = Axis("turn", 0.0, 30.0 * degree, unit="deg", size=degree)
+    assert axis.text(axis.high) == "turn = 30°"
+    assert (axis.label, axis.column) == ("turn, °", "turn, deg")
+    measure = Measure("load", "A.rotation", "", every=False, stations=1, size=degree, unit="deg")
+    assert measure.text(12.5) == "12.5°"
+    assert replace(measure, unit="mm").text(12.5) == "12.5 mm"

@@ -188,7 +188,7 @@ def test_the_solvers_agree_on_a_circle_but_for_the_theory():
     scene = scene_from(weighed(on_a_circle(8.0), 40.0))
     found = compare(paired(scene, Choices(kinematics="bending"), Solvers()))
     assert {row.reason for row in found.rows} == {None, Reason.THEORY}, found.verdict.sentence
-    assert [load_unit(scene, stage) for stage in scene.stages] == ["N/m", "N", "N"]
+    assert [load_unit(scene, stage.name) for stage in scene.stages] == ["N/m", "N", "N"]
 
 
 def test_the_third_solver_in_contact_in_a_point():

@@ -61,11 +61,11 @@ def test_the_solvers_agree_on_a_driven_hinge_but_for_the_theory_and_its_stations
     assert {row.reason for row in found.rows} == {None, Reason.THEORY}, found.verdict.sentence
     closing = next(row for row in found.rows if row.probe.quantity == "closing_load")
     assert closing.unit == "rad"
-    assert load_unit(scene, scene.stages[0]) == "rad"
+    assert load_unit(scene, scene.stages[0].name) == "rad"
 
 
 def test_units_and_natural_scales_of_what_stages_step(scene):
-    assert [load_unit(scene, stage) for stage in scene.stages] == ["m", "rad", "N"]
+    assert [load_unit(scene, stage.name) for stage in scene.stages] == ["m", "rad", "N"]
     ell = hypot(0.09, 0.05)  # of the straight beam, m
     EI = 2.3e9 * 0.0083 * 0.0021**3 / 12.0
     natural = [natural_value(scene, "closing_load", stage, contact="") for stage in scene.stages]

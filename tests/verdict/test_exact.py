@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from comparisons import cases
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers, solvers_of
 from comparisons.present import json_document
@@ -197,7 +198,8 @@ def test_the_study_says_whose_statements_hold(hinge):
 
 
 def test_the_study_is_a_command(monkeypatch, capsys, hinge, tmp_path):
-    monkeypatch.setattr(study, "pieces", lambda: (hinge,))
+    monkeypatch.setattr(cases, "scenes", lambda: ("hinge",))
+    monkeypatch.setattr(cases, "opened", lambda name: hinge)
     solvers = Solvers(C, F, exact=EXACT)
     assert run(["study", "calibration", "--out", str(tmp_path)], solvers) == 0
     assert "Calibration" in capsys.readouterr().out

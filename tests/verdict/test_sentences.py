@@ -3,6 +3,7 @@
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from comparisons.choices import Choices
@@ -107,6 +108,20 @@ def test_runs_that_end_before_the_first_station_name_the_critical_point_and_a_re
     printed = " ".join(brief(compared(crank, *pair), "crank.toml").split())
     assert ": UNDECIDED (RUN_ENDED). No station has a row that can be compared. The branch ends in forward" in printed
     assert remedy in printed
+
+
+def test_an_agreement_up_to_a_critical_point_counts_the_unreached_stations(crank):
+    """Both solvers stop at one critical point: the rows before the point agree."""
+    found = compared(crank, Jumping("cprbm", stops=True), Jumping("fea", stops=True))
+    assert word_of(found) == "AGREE"
+    asked = sum(len(stage.stations) for stage in crank.stages)
+    left = asked - len({row.where for row in found.rows})
+    assert 0 < left < asked
+    end = found.runs.answers["cprbm"].critical[-1]
+    sentence = f"The case ends early, at forward {end.value:.6g} rad ({np.degrees(end.value):.2f}°) (fold): "
+    sentence += f"{left} of {asked} stations are not reached."
+    assert sentence in found.verdict.sentence
+    assert sentence in " ".join(brief(found, "crank.toml").split())
 
 
 def test_runs_of_one_solver_that_disagree_on_a_mechanism_are_named(crank):
