@@ -183,8 +183,8 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
             lost = _lost(march, branch, first, here, there, length)
             slipped = lost and _slipped(march, load, [*gone, Stretch(branch, here, length)], lost)
             if lost is not None and (slipped is not None or lost.uncertainty <= _WIDE * span):
-                behind = slipped is None and (lost.value - target) * onward > 0.0
-                return turn if behind else slipped or lost
+                # the march reaches a target before the end
+                return turn if slipped is None and (lost.value - target) * onward > 0.0 else slipped or lost
             # a step that long leads to another branch, or past where two nearly meet
             wide = wide if lost is None else (lost, march.saved())
             march.values, march.system = branch.at(here.value), here.system
