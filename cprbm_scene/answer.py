@@ -31,13 +31,11 @@ moment             (1,)    magnitude of the moment by which a stop holds, N·m; 
 =================  ======  ====================================================================
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -174,7 +172,7 @@ class PointForces:
     @classmethod
     def collected(
         cls, rows: Iterable[PointForce], length: float, force: float, origin: tuple[float, float] = (0.0, 0.0)
-    ) -> PointForces:
+    ) -> Self:
         """The forces of ``rows``, in units of ``length`` (m) and ``force`` (N), with places relative to ``origin``."""
         columns = tuple(zip(*rows, strict=True))
         if not columns:

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
-from cprbm_scene.curve_records import MOST_POINTS, Ellipse, Graph, Polynomial, SmoothLine, shape_of
+from cprbm_scene.curve_records import MOST_POINTS, Ellipse, Graph, SmoothLine, shape_of
 from cprbm_scene.curves import unit_vector
 from cprbm_scene.fields import Angle, Direction, Length, Name, Named, Of, Point, PositiveLength, Record
 from cprbm_scene.frozendict import frozendict
@@ -238,11 +238,6 @@ class FunctionContact(RigidContact, Graph):
     kind: Literal["beam-function"]
     side: Literal["above", "below"]
     """Free side: at a coordinate above or below f."""
-
-    @property
-    def curve(self) -> Polynomial:
-        """The edge as a neutral line."""
-        return Polynomial(kind="polynomial", axis=self.axis, coefficients=self.coefficients, range=self.range)
 
 
 class SplineContact(RigidContact, SmoothLine):

@@ -20,7 +20,7 @@ import math
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self, TypeVar
@@ -46,7 +46,17 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, SceneError, broken, in_words, mistake, shown, silent, unknown_name
+from cprbm_scene.mistakes import (
+    Mistake,
+    SceneError,
+    broken,
+    in_words,
+    mistake,
+    refuse_broken,
+    shown,
+    silent,
+    unknown_name,
+)
 from cprbm_scene.units import (
     ANGLE,
     FUNCTIONS,
@@ -104,8 +114,8 @@ class Record(BaseModel):
         if record is not data:
             record.__dict__.update(record.completed())
             # rules limit files; programs build records beyond the rules
-            if isinstance(info.context, Reading) and (mistakes := list(record.rules())):
-                raise SceneError(mistakes)
+            if isinstance(info.context, Reading):
+                refuse_broken(*record.rules())
         return record
 
     def completed(self) -> Mapping[str, object]:
@@ -225,9 +235,8 @@ class Reading:
             try:
                 found[name] = self._parameter(name, parameters[name])
             except SceneError as error:
-                mistakes += [replace(each, key=each.key or name) for each in error.mistakes]
-        if mistakes:
-            raise SceneError(mistakes)
+                mistakes += [each._replace(key=each.key or name) for each in error.mistakes]
+        refuse_broken(*mistakes)
         return frozendict(found)
 
     def _lacks(self, table: str, name: str) -> bool:
@@ -238,11 +247,16 @@ class Reading:
         number, own = self._expression(text, "")
         if self._lacks("units", "length"):
             silent()  # the unit of the file's lengths is unknown
-        if own is not None and unit is not None and own.dimension != unit.dimension:
-            raise mistake(
+        refuse_broken(
+            own is not None
+            and unit is not None
+            and own.dimension != unit.dimension
+            and Mistake(
+                "",
                 f"{text!r}, a number in {own}" if str(own) else f"{text!r}, a ratio without unit",
                 f"a number in {unit}" if str(unit) else "a number without unit",
             )
+        )
         return number if unit is None or own is not None else unit.in_si(number, self.units)
 
     def _expression(self, text: str, key: str, users: tuple[str, ...] = ()) -> Value:
@@ -259,12 +273,15 @@ class Reading:
         size, own = unit_of(given.unit, f"{name}.unit")
         span = given.range and (given.range[0] * size, given.range[1] * size)
         slack = _ROUNDED * max(map(abs, span)) if span else 0.0
-        if span and not span[0] - slack <= number <= span[1] + slack:
-            raise mistake(
+        refuse_broken(
+            span
+            and not span[0] - slack <= number <= span[1] + slack
+            and Mistake(
+                f"{name}.value",
                 f"{number / size:.9g} {given.unit}".rstrip(),
                 f"a number from {span[0] / size:g} to {span[1] / size:g} {given.unit}".rstrip(),
-                f"{name}.value",
             )
+        )
         scatter = given.tolerance and Tolerance(**{kind: each and each * size for kind, each in given.tolerance})
         return Parameter(value=number, unit=str(own if given.unit else unit or NUMBER), range=span, tolerance=scatter)
 
@@ -337,8 +354,7 @@ Point = tuple[Length, Length]
 
 
 def _nonzero(direction: tuple[float, float]) -> tuple[float, float]:
-    if direction == (0.0, 0.0):
-        raise mistake("[0, 0]", "a direction, at least one number not zero")
+    refuse_broken(direction == (0.0, 0.0) and Mistake("", "[0, 0]", "a direction, at least one number not zero"))
     return direction
 
 

@@ -25,7 +25,7 @@ from cprbm_scene.fields import (
     Units,
 )
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, broken, mistake
+from cprbm_scene.mistakes import Mistake, broken, refuse_broken
 from cprbm_scene.part_records import BeamName, BodyName, PointName
 from cprbm_scene.units import ANGLE, FORCE, LENGTH, LINE_LOAD, MOMENT, STRESS, Unit
 
@@ -215,8 +215,11 @@ def _of_stage(reading: Reading, stage: Mapping[str, Any]) -> Unit | None:
 def _of_stations(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
     """Unit of the stations of a claim's stages."""
     units = {unit for name, unit in reading.stages.items() if claim.get("stage") in (None, name)} - {None}
-    if len(units) > 1 and reading.units != Units():
-        raise mistake("a number in the unit of several stages, which step different kinds", "a stage beside it")
+    refuse_broken(
+        len(units) > 1
+        and reading.units != Units()
+        and Mistake("", "a number in the unit of several stages, which step different kinds", "a stage beside it")
+    )
     return next(iter(units), None)
 
 

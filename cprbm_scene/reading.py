@@ -7,7 +7,6 @@ between records need the reader.
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from difflib import get_close_matches
 from functools import partial
 from itertools import islice
@@ -21,7 +20,7 @@ from cprbm_scene.fields import Name, Named, Reading
 from cprbm_scene.freedoms import wrong_actions, wrong_mobility
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
-from cprbm_scene.mistakes import MOST, Mistake, SceneError, first_of, mistake, mistakes_of, unknown_name
+from cprbm_scene.mistakes import MOST, Mistake, SceneError, first_of, mistake, mistakes_of, refuse_broken, unknown_name
 from cprbm_scene.names import (
     MECHANICAL,
     repeated_contacts,
@@ -77,13 +76,14 @@ def toml_data(path: str | Path) -> dict[str, Any]:
     readable = "a readable TOML file in UTF-8"
     try:
         text = text_of(path, "TOML", readable)
-        if _DEEP_KEY.search(text):
-            raise mistake(f"a key of more than {DEEPEST} parts", "the keys of a scene")
+        refuse_broken(
+            _DEEP_KEY.search(text) and Mistake("", f"a key of more than {DEEPEST} parts", "the keys of a scene")
+        )
         return tomllib.loads(text)
     except (RecursionError, ValueError) as error:
         # nested too deeply, or an integer with too many digits
         wrong = error if isinstance(error, SceneError) else mistake(f"text that is no TOML ({error})", readable)
-        raise SceneError([replace(each, file=str(path)) for each in wrong.mistakes]) from None
+        raise SceneError(first_of(wrong.mistakes, str(path))) from None
 
 
 def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) -> Scene:
@@ -172,7 +172,7 @@ class Draft:
     def of_file(self, mistake: Mistake) -> Mistake:
         """A mistake of the present data, with the number in the file of a part of a list."""
         key = _NUMBER.sub(lambda place: f"{place[1]}[{[*self._parts[place[1]]][int(place[2])]}", mistake.key)
-        return replace(mistake, key=key)
+        return mistake._replace(key=key)
 
     def leave_out(self, key: str) -> None:
         """Leave out the part of the file with a mistake at a ``key``; a whole table if the part is unknown."""
@@ -252,7 +252,7 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
         if reading.left_out == draft.left_out:
             break
     if scene is None or found:
-        raise SceneError([replace(each, file=file) for each in first_of(found)])
+        raise SceneError(first_of(found, file))
     return scene
 
 
@@ -264,7 +264,7 @@ def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
     """
     question, found = _validated(OffsetQuestion, data, file, Reading(parameters={}))
     if question is None:
-        raise SceneError([replace(each, file=file) for each in first_of(found)])
+        raise SceneError(first_of(found, file))
     return question
 
 

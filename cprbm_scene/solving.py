@@ -17,7 +17,7 @@ from typing import Any, Literal, cast
 from cprbm_scene.answer import StationAnswer
 from cprbm_scene.clearance import overlap_at_rest
 from cprbm_scene.freedoms import Freedoms, unsupported
-from cprbm_scene.mistakes import Mistake, SceneError, broken
+from cprbm_scene.mistakes import Mistake, broken, refuse_broken
 from cprbm_scene.statement import BeamContact, CircleContact, EllipseContact, Scene, SplineContact
 
 Requirement = Literal["theory", "overlap at rest", "from", "together", "support", "edge"]
@@ -84,9 +84,8 @@ def refuse(scene: Scene, solver: str, *met: Requirement) -> None:
     Raises:
         SceneError: the scene has further requirements; the error names every key.
     """
-    found = [mistake for kind, mistake in requirements(scene) if kind not in met]
-    if found:
-        raise SceneError([Mistake(e.key, e.found, f"{e.allowed}, for {solver}", e.file) for e in found])
+    found = (mistake for kind, mistake in requirements(scene) if kind not in met)
+    refuse_broken(*(each._replace(allowed=f"{each.allowed}, for {solver}") for each in found))
 
 
 def station_reached(logger: logging.Logger, scene: Scene, reached: int, station: StationAnswer) -> None:

@@ -7,12 +7,10 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 ``joint``, or ``motion``).
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterator, Mapping
 from itertools import chain
-from typing import Annotated, Any, Literal, cast
+from typing import Annotated, Any, Literal, Self, cast
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 from pydantic.json_schema import SkipJsonSchema
@@ -254,7 +252,7 @@ class Scene(Record):
                 bodies[name] = FixedBody(motion="fixed", points=frozendict({f"{name}-point": place}))
         return {"beams": frozendict(beams), "bodies": frozendict(bodies)}
 
-    def with_parameters(self, **values: float) -> Scene:
+    def with_parameters(self, **values: float) -> Self:
         """The scene with other values of its parameters, checked as a file is checked.
 
         Args:
@@ -276,7 +274,7 @@ class Scene(Record):
         again, settings = self._reading.again, self._reading.settings
         if again is None or not self.parameters or again(parameters=settings) != self:
             raise ValueError("found a scene without parameters or altered after reading; allowed: a scene from a file")
-        return cast("Scene", again(parameters={**settings, **values}))
+        return cast("Self", again(parameters={**settings, **values}))
 
     def __repr__(self) -> str:
         """Name, and numbers of beams, contacts and probes."""

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import SceneError, mistake
+from cprbm_scene.mistakes import Mistake, SceneError, mistake, refuse_broken
 
 SMALLEST, LARGEST = 1e-50, 1e50
 """Magnitudes of numbers with a unit, in SI: a product of six such numbers stays within floating-point numbers."""
@@ -293,8 +293,7 @@ def read_points(path: Path, unit: str) -> tuple[tuple[float, float], ...]:
     columns = {
         name[1].lower(): (i, (name[2] or unit).lower().replace("µ", "u")) for i, name in enumerate(names) if name
     }
-    if set(columns) != {"x", "y"}:
-        raise mistake(f"{header[:80]!r} in {path.name}, row {first}", _HEADER)
+    refuse_broken(set(columns) != {"x", "y"} and Mistake("", f"{header[:80]!r} in {path.name}, row {first}", _HEADER))
     cells = ((row, next(csv.reader([line], delimiter=mark))) for row, line in lines[1:])
     return tuple(
         (_number(path, row, line, "x", *columns["x"], unit), _number(path, row, line, "y", *columns["y"], unit))
