@@ -10,8 +10,7 @@ from pydantic import Field
 
 from cprbm_scene.curve_records import MOST_POINTS, Ellipse, Graph, SmoothLine, shape_of
 from cprbm_scene.curves import unit_vector
-from cprbm_scene.fields import Angle, Direction, Length, Name, Named, Of, Point, PositiveLength, Record
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene.fields import Angle, Direction, Length, Name, Of, OptionalNamed, Point, PositiveLength, Record
 from cprbm_scene.mistakes import Mistake, broken, first_alone
 from cprbm_scene.part_records import BeamName, BodyName, PointName
 
@@ -75,7 +74,7 @@ class Related(Record):
 class PaperRigid(Record):
     """Joints of a beam outside the rigid shape, for the formulation ``paper``."""
 
-    related: Named[Related] = Field(default_factory=frozendict)
+    related: OptionalNamed[Related]
     """Joints with possible contact, by the names of beams; without an entry all joints."""
 
 

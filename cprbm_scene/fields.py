@@ -86,7 +86,8 @@ Title = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 
 
 Named = Annotated[Mapping[Name, T], AfterValidator(frozendict)]
-NamedByWords = Annotated[Mapping[Word, T], AfterValidator(frozendict)]
+OptionalNamed = Annotated[Named[T], Field(default_factory=frozendict)]
+"""Table that a file may leave out."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,6 @@ from collections.abc import Collection, Container, Iterator, Mapping
 import numpy as np
 
 from cprbm_scene.fields import Of, Record
-from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import LISTED, Mistake, broken, unknown_name
 from cprbm_scene.statement import (
     CRITICAL,
@@ -110,18 +109,16 @@ def repeated_contacts(scene: Scene) -> Iterator[Mistake]:
 
 MECHANICAL = ("point", "body", "beam")
 """Kinds of named parts without which a record has no place in the mechanism."""
-_KINDS: Mapping[str, tuple[str, ...]] = frozendict(
-    {
-        "material": ("materials",),
-        "point": ("points",),
-        "body": ("bodies",),
-        "beam": ("beams",),
-        "stage": ("stages",),
-        "load": ("loads",),
-        "load or drive": ("loads", "drives"),
-        "beam or contact with a rigid edge": ("beams", "edges"),
-    }
-)
+_KINDS: Mapping[str, tuple[str, ...]] = {
+    "material": ("materials",),
+    "point": ("points",),
+    "body": ("bodies",),
+    "beam": ("beams",),
+    "stage": ("stages",),
+    "load": ("loads",),
+    "load or drive": ("loads", "drives"),
+    "beam or contact with a rigid edge": ("beams", "edges"),
+}
 """Kinds of named parts, and their tables: ``points`` are of all bodies, ``edges`` the contacts with rigid edges."""
 
 
@@ -142,23 +139,21 @@ def unknown_names(scene: Scene, kinds: Collection[str] = tuple(_KINDS)) -> Itera
     )
 
 
-_OF: Mapping[Quantity, str] = frozendict(
-    {
-        "displacement": "a point of a body or of a free end, end = { joint = 'free', point = 'NAME' }",
-        "rotation": "a body",
-        "force": "a contact",
-        "centre": "a contact",
-        "ends": "a contact",
-        "closing_load": "a contact",
-        "bending_stress": "a beam",
-        "combined_stress": "a beam",
-        "reaction": "a point of a fixed body at which a beam ends, a pivot, a driven point, or a body that slides",
-        "reaction_moment": "a point of a fixed body at which a beam ends, or a body whose rotation is driven",
-        "potential_energy": f"{RESERVED!r}, the scene itself",
-        "angle": "a stop",
-        "moment": "a stop, or a contact with a line, a half-plane or a function of the body that the beam is pinned to",
-    }
-)
+_OF: Mapping[Quantity, str] = {
+    "displacement": "a point of a body or of a free end, end = { joint = 'free', point = 'NAME' }",
+    "rotation": "a body",
+    "force": "a contact",
+    "centre": "a contact",
+    "ends": "a contact",
+    "closing_load": "a contact",
+    "bending_stress": "a beam",
+    "combined_stress": "a beam",
+    "reaction": "a point of a fixed body at which a beam ends, a pivot, a driven point, or a body that slides",
+    "reaction_moment": "a point of a fixed body at which a beam ends, or a body whose rotation is driven",
+    "potential_energy": f"{RESERVED!r}, the scene itself",
+    "angle": "a stop",
+    "moment": "a stop, or a contact with a line, a half-plane or a function of the body that the beam is pinned to",
+}
 """Parts of the scene with a quantity."""
 
 _BEARERS = ("bodies", "points", "beams", "contacts", "stops")

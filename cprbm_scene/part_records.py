@@ -24,8 +24,19 @@ from cprbm_scene.curve_records import (
     with_half_waves,
 )
 from cprbm_scene.curves import SAMPLES, Array
-from cprbm_scene.fields import Direction, Length, Measured, Name, Named, Number, Of, Point, PositiveLength, Record
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene.fields import (
+    Direction,
+    Length,
+    Measured,
+    Name,
+    Named,
+    Number,
+    Of,
+    OptionalNamed,
+    Point,
+    PositiveLength,
+    Record,
+)
 from cprbm_scene.mistakes import Mistake, broken, first_broken, refuse_broken, unknown_name, written_place
 from cprbm_scene.units import NUMBER, STRESS
 
@@ -62,7 +73,7 @@ class FixedBody(Record):
     """
 
     motion: Literal["fixed"]
-    points: Named[Point] = Field(default_factory=frozendict)
+    points: OptionalNamed[Point]
     """Points of the body by name, at their initial places."""
 
 

@@ -14,8 +14,8 @@ from cprbm_scene.fields import (
     Direction,
     Measured,
     Name,
-    Named,
     Of,
+    OptionalNamed,
     Positive,
     PositiveShare,
     Reading,
@@ -24,7 +24,6 @@ from cprbm_scene.fields import (
     Text,
     Units,
 )
-from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken, refuse_broken
 from cprbm_scene.part_records import BeamName, BodyName, PointName
 from cprbm_scene.units import ANGLE, FORCE, LENGTH, LINE_LOAD, MOMENT, STRESS, Unit
@@ -41,7 +40,7 @@ class Assembly(Record):
     throughout, stops as soon as the ends are at their points.
     """
 
-    moments: Annotated[Named[Annotated[float, Measured(MOMENT)]], Of("beam")] = Field(default_factory=frozendict)
+    moments: Annotated[OptionalNamed[Annotated[float, Measured(MOMENT)]], Of("beam")]
     """Moments on pinned ends by the names of beams, counter-clockwise."""
 
 
@@ -185,22 +184,20 @@ Quantity = Literal[
 STRESSES: frozenset[Quantity] = frozenset({"bending_stress", "combined_stress"})
 """Quantities at several places along a beam."""
 
-UNITS: Mapping[str, Unit] = frozendict(
-    {
-        "displacement": LENGTH,
-        "rotation": ANGLE,
-        "force": FORCE,
-        "centre": LENGTH,
-        "ends": LENGTH,
-        "bending_stress": STRESS,
-        "combined_stress": STRESS,
-        "reaction": FORCE,
-        "reaction_moment": MOMENT,
-        "potential_energy": MOMENT,
-        "angle": ANGLE,
-        "moment": MOMENT,
-    }
-)
+UNITS: Mapping[str, Unit] = {
+    "displacement": LENGTH,
+    "rotation": ANGLE,
+    "force": FORCE,
+    "centre": LENGTH,
+    "ends": LENGTH,
+    "bending_stress": STRESS,
+    "combined_stress": STRESS,
+    "reaction": FORCE,
+    "reaction_moment": MOMENT,
+    "potential_energy": MOMENT,
+    "angle": ANGLE,
+    "moment": MOMENT,
+}
 """Units of probes; a closing load has the unit of its stage."""
 
 CRITICAL = "critical"

@@ -16,9 +16,8 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from cprbm_scene.clearance import wrong_clearance
-from cprbm_scene.fields import Name, Named, Reading
+from cprbm_scene.fields import Name, OptionalNamed, Reading
 from cprbm_scene.freedoms import wrong_actions, wrong_mobility
-from cprbm_scene.frozendict import frozendict
 from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
 from cprbm_scene.mistakes import MOST, Mistake, SceneError, first_of, mistake, mistakes_of, refuse_broken, unknown_name
 from cprbm_scene.names import (
@@ -144,9 +143,9 @@ class PartialScene(Scene):
     """A scene that may lack parts."""
 
     name: Name = "scene"
-    materials: Named[Material] = frozendict()
-    beams: Named[Beam] = frozendict()
-    bodies: Named[Body] = frozendict()
+    materials: OptionalNamed[Material]
+    beams: OptionalNamed[Beam]
+    bodies: OptionalNamed[Body]
     stages: tuple[Stage, ...] = ()
     probes: tuple[Probe, ...] = ()
 

@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterator, Mapping
 from itertools import chain
 from typing import Annotated, Any, Literal, Self, cast
 
-from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
+from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, field_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from cprbm_scene.contact_records import (
@@ -38,8 +38,8 @@ from cprbm_scene.fields import (
     NAME,
     Name,
     Named,
-    NamedByWords,
     Of,
+    OptionalNamed,
     Parameter,
     Point,
     PositiveShare,
@@ -49,6 +49,7 @@ from cprbm_scene.fields import (
     Title,
     Tolerance,
     Units,
+    Word,
 )
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
@@ -174,7 +175,7 @@ class Scene(Record):
     """Units of the numbers in the file."""
     theory: Literal["bending", "stretch", "shear"] = "shear"
     """Beam theory of the CPRBM and the finite elements: bending alone, with stretch, or with stretch and shear."""
-    parameters: NamedByWords[Parameter] = Field(default_factory=frozendict)
+    parameters: Annotated[Mapping[Word, Parameter], AfterValidator(frozendict)] = frozendict()
     """Named numbers for expressions."""
     materials: Named[Material]
     """Materials by name."""
@@ -182,15 +183,15 @@ class Scene(Record):
     """Beams by name."""
     bodies: Annotated[Named[Body], Field(max_length=256)]
     """Rigid bodies by name."""
-    loads: Named[Load] = Field(default_factory=frozendict)
+    loads: OptionalNamed[Load]
     """Loads by name."""
-    drives: Named[Drive] = Field(default_factory=frozendict)
+    drives: OptionalNamed[Drive]
     """Drives by name."""
-    contacts: Annotated[Named[Contact], Field(max_length=1000)] = Field(default_factory=frozendict)
+    contacts: Annotated[OptionalNamed[Contact], Field(max_length=1000)]
     """Contacts by name."""
-    stops: Named[Stop] = Field(default_factory=frozendict)
+    stops: OptionalNamed[Stop]
     """Stops by name."""
-    pins: Named[BodyPin] = Field(default_factory=frozendict)
+    pins: OptionalNamed[BodyPin]
     """Pins between bodies by name."""
     assembly: Assembly | None = None
     """Motion of beams to their points before the first stage."""

@@ -19,30 +19,25 @@ from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
-from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, SceneError, mistake, refuse_broken
 
 SMALLEST, LARGEST = 1e-50, 1e50
 """Magnitudes of numbers with a unit, in SI: a product of six such numbers stays within floating-point numbers."""
 
-BY_QUANTITY: Mapping[str, Mapping[str, Fraction]] = frozendict(
-    {
-        "length": {
-            "m": Fraction(1),
-            "cm": Fraction("0.01"),
-            "mm": Fraction("0.001"),
-            "um": Fraction("1e-6"),
-            "in": Fraction("0.0254"),
-        },
-        "force": {"N": Fraction(1), "kN": Fraction(10**3), "mN": Fraction(1, 10**3), "uN": Fraction(1, 10**6)},
-        "angle": {"rad": Fraction(1), "deg": Fraction(math.pi / 180.0)},
-        "stress": {"Pa": Fraction(1), "kPa": Fraction(10**3), "MPa": Fraction(10**6), "GPa": Fraction(10**9)},
-    }
-)
+BY_QUANTITY: Mapping[str, Mapping[str, Fraction]] = {
+    "length": {
+        "m": Fraction(1),
+        "cm": Fraction("0.01"),
+        "mm": Fraction("0.001"),
+        "um": Fraction("1e-6"),
+        "in": Fraction("0.0254"),
+    },
+    "force": {"N": Fraction(1), "kN": Fraction(10**3), "mN": Fraction(1, 10**3), "uN": Fraction(1, 10**6)},
+    "angle": {"rad": Fraction(1), "deg": Fraction(math.pi / 180.0)},
+    "stress": {"Pa": Fraction(1), "kPa": Fraction(10**3), "MPa": Fraction(10**6), "GPa": Fraction(10**9)},
+}
 """Sizes of units in SI, by the quantities of :class:`Unit`."""
-SIZES: Mapping[str, Fraction] = frozendict(
-    {name: size for sizes in BY_QUANTITY.values() for name, size in sizes.items()}
-)
+SIZES: Mapping[str, Fraction] = {name: size for sizes in BY_QUANTITY.values() for name, size in sizes.items()}
 
 FileUnits = Iterable[tuple[str, str]]
 """Quantities of :class:`Unit` in order, each with the file's unit."""
@@ -147,24 +142,22 @@ def _power(function: Callable[..., float], values: Sequence[Value], units: FileU
     return Value(number**exponent, unit)
 
 
-_RULES: Mapping[str, tuple[Callable[..., float], Rule, int]] = frozendict(
-    {
-        "+": (operator.add, _alike, 2),
-        "-": (operator.sub, _alike, 2),
-        "**": (operator.pow, _power, 2),
-        "*": (operator.mul, _product, 2),
-        "/": (operator.truediv, _product, 2),
-        **{name: (getattr(math, name), _of_angle, 1) for name in ("sin", "cos", "tan")},
-        "hypot": (math.hypot, _alike, 0),
-        "min": (lambda *numbers: min(numbers), _alike, 0),
-        "max": (lambda *numbers: max(numbers), _alike, 0),
-        "abs": (abs, _alike, 1),
-        "atan2": (math.atan2, _angle, 2),
-        "sqrt": (math.sqrt, _power, 1),
-    }
-)
+_RULES: Mapping[str, tuple[Callable[..., float], Rule, int]] = {
+    "+": (operator.add, _alike, 2),
+    "-": (operator.sub, _alike, 2),
+    "**": (operator.pow, _power, 2),
+    "*": (operator.mul, _product, 2),
+    "/": (operator.truediv, _product, 2),
+    **{name: (getattr(math, name), _of_angle, 1) for name in ("sin", "cos", "tan")},
+    "hypot": (math.hypot, _alike, 0),
+    "min": (lambda *numbers: min(numbers), _alike, 0),
+    "max": (lambda *numbers: max(numbers), _alike, 0),
+    "abs": (abs, _alike, 1),
+    "atan2": (math.atan2, _angle, 2),
+    "sqrt": (math.sqrt, _power, 1),
+}
 """Operators and functions, each with the rule of its unit and the number of its arguments (0: at least one)."""
-_SIGNS = frozendict({ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"})
+_SIGNS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 FUNCTIONS = tuple(name for name in _RULES if name.isidentifier())
 
 
@@ -212,13 +205,11 @@ def evaluated(text: str, named: Callable[[str], Value], units: FileUnits) -> Val
     return value
 
 
-NAMED: Mapping[str, Value] = frozendict(
-    {
-        name: Value(float(size), Unit(**{quantity: 1}))
-        for quantity, sizes in BY_QUANTITY.items()
-        for name, size in sizes.items()
-    }
-)
+NAMED: Mapping[str, Value] = {
+    name: Value(float(size), Unit(**{quantity: 1}))
+    for quantity, sizes in BY_QUANTITY.items()
+    for name, size in sizes.items()
+}
 """Units as values."""
 
 
