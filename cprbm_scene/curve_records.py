@@ -125,7 +125,7 @@ class Arc(_Curve):
     """Sense of rotation from start to end."""
 
 
-class Graph(Record):
+class Graph(_Curve):
     """Graph of a polynomial f, in either sense along its axis."""
 
     axis: Literal["x", "y"]
@@ -158,7 +158,7 @@ class Graph(Record):
 
     @first_alone
     def rules(self) -> Iterator[Mistake]:
-        """Mistakes of coefficients and ranges without a graph of finite slope."""
+        """Mistakes of coefficients and ranges without a graph of finite slope, then of the curve."""
         (first, last), count, axis = self.range, len(self.coefficients), "xy".index(self.axis)
         yield from broken(
             count > HIGHEST_DEGREE + 1
@@ -180,18 +180,13 @@ class Graph(Record):
                 f"a slope of at most {STEEPEST:g} (a steeper curve may be a function of {'yx'[axis]})",
             )
         )
+        yield from super().rules()
 
 
-class Polynomial(_Curve, Graph):
+class Polynomial(Graph):
     """Graph of a polynomial f, in either sense along its axis."""
 
     kind: Literal["polynomial"]
-
-    @first_alone
-    def rules(self) -> Iterator[Mistake]:
-        """Mistakes of the graph, then of the curve."""
-        yield from Graph.rules(self)
-        yield from _Curve.rules(self)
 
 
 class SmoothLine(_Curve):

@@ -170,10 +170,8 @@ def circular_arc(center: Point, start: Point, end: Point, *, clockwise: bool) ->
     turn = -((first - last) % tau or tau) if clockwise else (last - first) % tau or tau
 
     def q(w: Array, order: int) -> Array:
-        # a derivative is a quarter of a turn ahead
-        angle = first + turn * w
-        c, s = np.cos(angle), np.sin(angle)
-        return np.stack(((c, s), (-turn * s, turn * c), (-(turn**2) * c, -(turn**2) * s))[order], axis=-1)
+        z = (1j * turn) ** order * np.exp(1j * (first + turn * w))
+        return np.stack((z.real, z.imag), axis=-1)
 
     return Curve(center, dist(start, center), q)
 

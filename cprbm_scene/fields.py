@@ -300,9 +300,10 @@ class Reading:
     def _computed(self, name: str, given: Parameter, users: tuple[str, ...]) -> Value:
         setting = self.settings.get(name)
         if isinstance(given.value, str):
-            if given.unit or setting is not None:
-                allowed = "a number with a unit, or an expression alone; an expression takes no other value"
-                raise mistake(f"{given.value!r}, an expression", allowed, name)
+            allowed = "a number with a unit, or an expression alone; an expression takes no other value"
+            refuse_broken(
+                (given.unit or setting is not None) and Mistake(name, f"{given.value!r}, an expression", allowed)
+            )
             return self._expression(given.value, f"{name}.value", users)
         number, (size, unit) = given.value, unit_of(given.unit, f"{name}.unit")
         own, written = unit, isinstance(setting, str) and _SETTING.fullmatch(setting)
@@ -310,9 +311,14 @@ class Reading:
             number, (size, own) = float(written[1]), unit_of(written[2] or given.unit, name)
         elif setting is not None:
             number, size = math.nan if isinstance(setting, str) else setting, 1.0
-        if not math.isfinite(number * size) or own.dimension != unit.dimension:
-            found = repr(given.value if setting is None else setting)
-            raise mistake(found, f"a finite number in {given.unit or 'no unit'}, such as 1.9{given.unit}", name)
+        refuse_broken(
+            not (math.isfinite(number * size) and own.dimension == unit.dimension)
+            and Mistake(
+                name,
+                repr(given.value if setting is None else setting),
+                f"a finite number in {given.unit or 'no unit'}, such as 1.9{given.unit}",
+            )
+        )
         return Value(float(Fraction(repr(number)) * Fraction(repr(size))), unit if given.unit else None)
 
 

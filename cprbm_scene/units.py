@@ -181,8 +181,7 @@ def evaluated(text: str, named: Callable[[str], Value], units: FileUnits) -> Val
             case ast.Name(id=name):
                 return Value(math.pi) if name == "pi" else named(name)
             case ast.UnaryOp(op=ast.UAdd() | ast.USub() as sign, operand=operand):
-                number, unit = of(operand)
-                return Value(-number if isinstance(sign, ast.USub) else number, unit)
+                return _product(operator.mul, [Value(-1.0 if isinstance(sign, ast.USub) else 1.0), of(operand)], units)
             case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _SIGNS:
                 name, nodes = _SIGNS[type(sign)], [left, right]
             case ast.Call(func=ast.Name(id=name), args=nodes, keywords=[]) if name in FUNCTIONS:
