@@ -9,6 +9,7 @@ from cprbm_scene.mistakes import LISTED, Mistake, broken, unknown_name
 from cprbm_scene.statement import (
     CRITICAL,
     STRESSES,
+    UNITS,
     BeamContact,
     DisplacementDrive,
     EdgeContact,
@@ -232,7 +233,7 @@ def wrong_stages(scene: Scene) -> Iterator[Mistake]:
     """Stages with the same name, with loads of different units together, or with a drive that is free there."""
     first = {stage.name: i for i, stage in reversed(list(enumerate(scene.stages)))}
     for i, stage in enumerate(scene.stages):
-        units = sorted({str(scene.loads[load].unit) for load in stage.together if load in scene.loads})
+        units = sorted({str(UNITS[scene.loads[load].kind]) for load in stage.together if load in scene.loads})
         drive = scene.drives.get(stage.steps)
         yield from broken(
             first[stage.name] < i and Mistake(f"stages[{i}].name", f"{stage.name!r} again", "each stage's name once"),

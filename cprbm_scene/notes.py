@@ -22,7 +22,7 @@ import numpy as np
 from cprbm_scene.clearance import TOUCHING, crossing, overlap_at_rest
 from cprbm_scene.curve_records import shape_of
 from cprbm_scene.fields import Units
-from cprbm_scene.statement import Beam, BeamContact, BodyLoad, Load, Scene
+from cprbm_scene.statement import UNITS, Beam, BeamContact, BodyLoad, Load, Scene
 from cprbm_scene.units import BY_QUANTITY, SIZES
 
 LARGE = 1000.0
@@ -94,7 +94,7 @@ def _per_unit(scene: Scene, load: Load, name: str) -> float:
     beam = scene.beams[name]
     width = float(beam.width_at(beam.knots).max())
     stiffness = scene.materials[beam.material].youngs_modulus * width * beam.thickest**3 / 12.0
-    return float(shape_of(beam.curve).length ** (2 - load.unit.length) / stiffness)
+    return float(shape_of(beam.curve).length ** (2 - UNITS[load.kind].length) / stiffness)
 
 
 def _explanation(ratio: float, modulus: float, units: Units) -> str:

@@ -6,7 +6,7 @@ Stations have the unit of the stepped load or drive, values of claims the unit o
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from math import isclose
-from typing import Annotated, Any, ClassVar, Literal, cast
+from typing import Annotated, Any, Literal, cast
 
 from pydantic import Field, WithJsonSchema, create_model, model_validator
 
@@ -47,7 +47,6 @@ class Assembly(Record):
 class Moment(Record):
     """Moment on a body, counter-clockwise."""
 
-    unit: ClassVar[Unit] = MOMENT
     kind: Literal["moment"]
     body: BodyName
     """Body under the moment, counter-clockwise."""
@@ -56,7 +55,6 @@ class Moment(Record):
 class Force(Record):
     """Dead force at a point of a body."""
 
-    unit: ClassVar[Unit] = FORCE
     kind: Literal["force"]
     point: PointName
     """Point of a body under the force."""
@@ -67,7 +65,6 @@ class Force(Record):
 class BeamForce(Record):
     """Dead force at a place of a beam."""
 
-    unit: ClassVar[Unit] = FORCE
     kind: Literal["beam_force"]
     beam: BeamName
     """Beam under the load."""
@@ -80,7 +77,6 @@ class BeamForce(Record):
 class BeamMoment(Record):
     """Moment at a place of a beam, counter-clockwise."""
 
-    unit: ClassVar[Unit] = MOMENT
     kind: Literal["beam_moment"]
     beam: BeamName
     """Beam under the load."""
@@ -91,7 +87,6 @@ class BeamMoment(Record):
 class DistributedLoad(Record):
     """Dead load per length of a beam, constant along a part: a weight, not a pressure."""
 
-    unit: ClassVar[Unit] = LINE_LOAD
     kind: Literal["distributed"]
     beam: BeamName
     """Beam under the load."""
@@ -145,7 +140,6 @@ class _Drive(_From):
 class DisplacementDrive(_Drive):
     """Prescribed displacement of a point of a body along a direction."""
 
-    unit: ClassVar[Unit] = LENGTH
     kind: Literal["displacement"]
     point: PointName
     """Driven point of a body."""
@@ -156,7 +150,6 @@ class DisplacementDrive(_Drive):
 class RotationDrive(_Drive):
     """Prescribed rotation of a body, counter-clockwise."""
 
-    unit: ClassVar[Unit] = ANGLE
     kind: Literal["rotation"]
     body: BodyName
     """Body with a prescribed rotation, counter-clockwise."""
@@ -197,8 +190,11 @@ UNITS: Mapping[str, Unit] = {
     "potential_energy": MOMENT,
     "angle": ANGLE,
     "moment": MOMENT,
+    "beam_force": FORCE,
+    "beam_moment": MOMENT,
+    "distributed": LINE_LOAD,
 }
-"""Units of probes; a closing load has the unit of its stage."""
+"""Units of quantities, and of kinds of loads and drives; a closing load has the unit of its stage."""
 
 CRITICAL = "critical"
 """Name of a claim's probe for the first critical value of a stage."""

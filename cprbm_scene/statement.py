@@ -73,6 +73,7 @@ from cprbm_scene.part_records import (
 from cprbm_scene.question_records import (
     CRITICAL,
     STRESSES,
+    UNITS,
     Assembly,
     BeamForce,
     BeamMoment,
@@ -93,6 +94,7 @@ from cprbm_scene.question_records import (
 __all__ = [
     "CRITICAL",
     "STRESSES",
+    "UNITS",
     "Arc",
     "Assembly",
     "Beam",
@@ -175,7 +177,7 @@ class Scene(Record):
     """Units of the numbers in the file."""
     theory: Literal["bending", "stretch", "shear"] = "shear"
     """Beam theory of the CPRBM and the finite elements: bending alone, with stretch, or with stretch and shear."""
-    parameters: Annotated[Mapping[Word, Parameter], AfterValidator(frozendict)] = frozendict()
+    parameters: Annotated[Mapping[Word, Parameter], AfterValidator(frozendict), Field(default_factory=frozendict)]
     """Named numbers for expressions."""
     materials: Named[Material]
     """Materials by name."""
@@ -235,7 +237,7 @@ class Scene(Record):
             case "stages", tuple() as stages:
                 reading.stages = {stage.name: reading.stepped.get(stage.steps) for stage in stages}
             case _, Mapping() as parts:
-                reading.stepped |= {name: part.unit for name, part in parts.items()}
+                reading.stepped |= {name: UNITS[part.kind] for name, part in parts.items()}
         return value
 
     def completed(self) -> Mapping[str, object]:
