@@ -127,7 +127,7 @@ def wrong_clearance(scene: Scene) -> Iterator[Mistake]:
             yield from _itself(f"beams.{name}.curve", beam)
     for name, contact in scene.contacts.items():
         if isinstance(contact, BeamContact):
-            yield from (_too_deep if contact.thick else _crossing)(scene, f"contacts.{name}", contact)
+            yield from _pair(scene, f"contacts.{name}", contact)
         elif isinstance(contact, RigidContact):
             yield from _rigid(scene, f"contacts.{name}", contact)
 
@@ -147,28 +147,21 @@ def overlap_at_rest(scene: Scene, contact: BeamContact) -> float:
     return depth if depth > OVERLAP * mean else 0.0
 
 
-def _too_deep(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]:
-    """Thick beams with an overlap beyond touching."""
+def _pair(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]:
+    """Thick beams with an overlap beyond touching, and beams as lines that cross."""
     first, second = (scene.beams[beam] for beam in contact.between)
     depth, mean = overlap_at_rest(scene, contact), 0.5 * (first.thinnest + second.thinnest)
-    most = OVERLAP if first.tapered or second.tapered else TOUCHING
+    most, names = OVERLAP if first.tapered or second.tapered else TOUCHING, " and ".join(map(repr, contact.between))
+    place = "" if contact.thick else crossing(scene, *contact.between)
     return broken(
         depth > most * mean
         and Mistake(
             key,
-            f"{contact.between[0]!r} and {contact.between[1]!r} that overlap at the start by {depth:.3g} m, "
-            f"{depth / mean:.3g} of their mean thickness",
+            f"{names} that overlap at the start by {depth:.3g} m, {depth / mean:.3g} of their mean thickness",
             f"beams that touch or are apart (overlap at most {most:g} of the mean thickness)",
-        )
-    )
-
-
-def _crossing(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]:
-    """Beams as lines that cross."""
-    place, names = crossing(scene, *contact.between), " and ".join(map(repr, contact.between))
-    return broken(
+        ),
         place
-        and Mistake(key, f"{names} that cross at the start, at {place} m", "neutral lines that touch or are apart")
+        and Mistake(key, f"{names} that cross at the start, at {place} m", "neutral lines that touch or are apart"),
     )
 
 

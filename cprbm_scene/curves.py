@@ -26,8 +26,7 @@ from itertools import pairwise
 from math import atan2, dist, hypot, tau
 
 import numpy as np
-from numpy.polynomial import Polynomial
-from numpy.polynomial.legendre import leggauss
+from numpy.polynomial import Polynomial, legendre
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -35,7 +34,7 @@ Point = tuple[float, float]
 
 SAMPLES = 2001
 """Samples of a curve, between which extrema are refined: a bend of 1/1000 of the length has two samples."""
-_NODES, _WEIGHTS = leggauss(12)
+_NODES, _WEIGHTS = legendre.leggauss(12)
 _MOST_PANELS = 1 << 16
 _SETTLED = 1e-14
 """Largest change of S by a halving of all panels, a fraction of the length: a few units of round-off."""

@@ -19,7 +19,6 @@ number and then converts the number by the :class:`Reading` in pydantic's contex
 import math
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -42,7 +41,6 @@ from pydantic import (
     WrapValidator,
     model_validator,
 )
-from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from cprbm_scene.frozendict import frozendict
@@ -212,13 +210,14 @@ class Reading:
         Raises:
             SceneError: the expression has no value, or another unit.
         """
-        with suppress(OverflowError):
+        try:
             if isinstance(value, str) and value.startswith("="):
                 return self._evaluated(value, unit)
             if unit is None or isinstance(value, bool) or not isinstance(value, int | float):
                 return value
             return unit.in_si(float(value), self.units)
-        return math.inf
+        except OverflowError:
+            return math.inf
 
     def register(self, parameters: Mapping[str, Parameter]) -> Mapping[str, Parameter]:
         """The parameters in SI with the settings; the reading evaluates expressions from now on.
@@ -334,7 +333,7 @@ class Measured:
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.with_info_wrap_validator_function(self.number, handler(source))
 
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {"anyOf": [handler(schema), {"type": "string", "pattern": "^="}]}
 
     def number(self, value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:

@@ -29,8 +29,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 
 from cprbm_scene.curve_records import MEETING
-from cprbm_scene.curves import Array
-from cprbm_scene.curves import unit_vector as unit
+from cprbm_scene.curves import Array, unit_vector
 from cprbm_scene.fields import Record
 from cprbm_scene.mistakes import Mistake, broken, first_alone, first_broken, written_place
 from cprbm_scene.names import MECHANICAL, connected, references
@@ -79,7 +78,7 @@ class Freedoms:
 
     def along(self, point: str, direction: Point) -> Array:
         """Row of the displacement of a ``point`` along a direction."""
-        e, (x, y) = unit(direction), (self.places[point] - self.origin) / self.extent
+        e, (x, y) = unit_vector(direction), (self.places[point] - self.origin) / self.extent
         return np.array([e[0], e[1], x * e[1] - y * e[0]])
 
     def pivot(self, point: str) -> list[Array]:
@@ -215,7 +214,7 @@ def unsupported(freedoms: Freedoms) -> Iterator[tuple[Mistake, set[str]]]:
         return
     for name, beam in scene.beams.items():
         joints = [end.joint for _, end, _ in beam.ends if end.joint != "free"]
-        mistakes = first_broken(
+        mistakes = broken(
             not joints
             and Mistake(
                 f"beams.{name}", "two free ends", "at least one end that meets a body, or a contact that holds the beam"
@@ -281,7 +280,7 @@ def _in_words(freedoms: Freedoms, motion: Array) -> str:
     """A small motion (3,) of a body: a turn about a place, or a displacement along a direction."""
     u, v, turn = np.where(np.abs(motion) <= NEGLIGIBLE * np.abs(motion).max(), 0.0, motion)
     if turn == 0.0:
-        x, y = unit((float(u), float(v))) * np.sign(u if abs(u) > abs(v) else v)
+        x, y = unit_vector((float(u), float(v))) * np.sign(u if abs(u) > abs(v) else v)
         return f"move along [{x + 0.0:.4g}, {y + 0.0:.4g}]"
     x, y = freedoms.origin + freedoms.extent * np.array([-v, u]) / turn
     return f"turn about [{x + 0.0:.4g}, {y + 0.0:.4g}] m"
@@ -372,5 +371,5 @@ def _opposed(freedoms: Freedoms, load: BodyLoad | Drive, drive: Drive) -> bool:
         and bool(
             np.abs(freedoms.places[load.point] - freedoms.places[drive.point]).max() <= NEGLIGIBLE * freedoms.extent
         )
-        and abs(float(unit(load.direction) @ unit(drive.direction))) > NEGLIGIBLE
+        and abs(float(unit_vector(load.direction) @ unit_vector(drive.direction))) > NEGLIGIBLE
     )

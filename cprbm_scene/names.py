@@ -34,21 +34,19 @@ _TABLES = ("beams", "loads", "drives", "contacts", "stops", "pins")
 def references(value: object, key: str = "", of: Of | None = None) -> Iterator[tuple[Of, str, str]]:
     """Kinds, keys and names of all references within a ``value`` at a ``key``, itself a reference if ``of`` a kind."""
     match value:
+        case str() if of is not None:
+            yield of, key.removeprefix("."), value
         case Record():
-            fields = type(value).model_fields.items()
-            kinds = {name: next((of for of in info.metadata if isinstance(of, Of)), None) for name, info in fields}
-            inner = [(f".{(of and of.key) or name}", getattr(value, name), of) for name, of in kinds.items()]
+            for name, field in type(value).model_fields.items():
+                kind = next((each for each in field.metadata if isinstance(each, Of)), None)
+                yield from references(getattr(value, name), f"{key}.{(kind and kind.key) or name}", kind)
         case Mapping():
             # the names of a mapping with a kind are references
-            inner = [(f".{name}", name if of else each, of) for name, each in value.items()]
-        case tuple():
-            inner = [(f"[{i}]", each, of) for i, each in enumerate(value) if not isinstance(each, float)]
-        case _:
-            inner = []
-    if of is not None and isinstance(value, str):
-        yield of, key.removeprefix("."), value
-    for part, each, kind in inner:
-        yield from references(each, f"{key}{part}", kind)
+            for name, each in value.items():
+                yield from references(name if of else each, f"{key}.{name}", of)
+        case tuple() if not isinstance(next(iter(value), None), float):
+            for i, each in enumerate(value):
+                yield from references(each, f"{key}[{i}]", of)
 
 
 def repeated_names(scene: Scene) -> Iterator[Mistake]:

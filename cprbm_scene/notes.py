@@ -13,7 +13,6 @@ r        P L²/(E I), M L/(E I) or q L³/(E I): of order 1 where the deflection 
 With E I = E w t³/12, r has the power -1 of E, 1 of the force and -2 of the unit of length, for every kind of load.
 """
 
-import math
 from collections.abc import Iterator
 from itertools import combinations
 
@@ -21,8 +20,7 @@ import numpy as np
 
 from cprbm_scene.clearance import TOUCHING, crossing, overlap_at_rest
 from cprbm_scene.curve_records import shape_of
-from cprbm_scene.fields import Units
-from cprbm_scene.statement import UNITS, Beam, BeamContact, BodyLoad, Load, Scene
+from cprbm_scene.statement import UNITS, Beam, BeamContact, BodyLoad, Load, Scene, Units
 from cprbm_scene.units import BY_QUANTITY, SIZES
 
 LARGE = 1000.0
@@ -106,7 +104,7 @@ def _explanation(ratio: float, modulus: float, units: Units) -> str:
         if other != own
     )
     found = (
-        (abs(math.log10(true)), f" Is a {quantity} in {other} written as {own}?")
+        (abs(float(np.log10(true))), f" Is a {quantity} in {other} written as {own}?")
         for quantity, own, other, factor in mixed
         if (true := ratio * factor ** _POWERS[quantity]) <= LARGE
         and SOFTEST <= modulus * (factor if quantity == "stress" else 1.0) <= STIFFEST

@@ -106,10 +106,10 @@ def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) 
         (0.002, 'BD')
     """
     question = read_question(path, parameters)
-    if isinstance(question, OffsetQuestion):
-        allowed = "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it"
-        raise SceneError([Mistake("question", repr(question.question), allowed, str(path))])
-    return question
+    if isinstance(question, Scene):
+        return question
+    allowed = "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it"
+    raise SceneError([Mistake("question", repr(question.question), allowed, str(path))])
 
 
 def read_question(path: str | Path, parameters: Mapping[str, float | str] | None = None) -> Question:
@@ -128,8 +128,9 @@ def read_question(path: str | Path, parameters: Mapping[str, float | str] | None
     data = toml_data(path)
     if "question" not in data:
         return scene_from(data, file=str(path), parameters=parameters)
-    if parameters:
-        raise SceneError([Mistake("parameters", f"values of {', '.join(parameters)}", "a scene of beams", str(path))])
+    refuse_broken(
+        parameters and Mistake("parameters", f"values of {', '.join(parameters)}", "a scene of beams", str(path))
+    )
     return offset_from(data, file=str(path))
 
 

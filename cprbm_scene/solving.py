@@ -110,10 +110,9 @@ def station_reached(logger: logging.Logger, scene: Scene, reached: int, station:
 def one_thread() -> AbstractContextManager[object]:
     """Context with a single thread per loaded library of linear algebra; without effect if threadpoolctl is missing."""
     try:
-        libraries = _loaded(len(sys.modules))
+        return cast("AbstractContextManager[object]", _loaded(len(sys.modules)).limit(limits=1, user_api="blas"))
     except ImportError:
         return nullcontext()
-    return cast("AbstractContextManager[object]", libraries.limit(limits=1, user_api="blas"))
 
 
 @lru_cache(maxsize=1)
