@@ -174,17 +174,14 @@ class PointForces:
         cls, rows: Iterable[PointForce], length: float, force: float, origin: tuple[float, float] = (0.0, 0.0)
     ) -> Self:
         """The forces of ``rows``, in units of ``length`` (m) and ``force`` (N), with places relative to ``origin``."""
-        columns = tuple(zip(*rows, strict=True))
-        if not columns:
-            return cls()
-        source, target, s, place, forces, moment = columns
+        found = list(rows)
         return cls(
-            source,
-            target,
-            frozen_array(np.array(s) * length),
-            frozen_array(np.array(place) * length + origin),
-            frozen_array(np.array(forces) * force),
-            frozen_array(np.array(moment) * (force * length)),
+            tuple(row.source for row in found),
+            tuple(row.target for row in found),
+            frozen_array(np.array([row.s for row in found]) * length),
+            frozen_array(np.reshape([row.place for row in found], (-1, 2)) * length + origin),
+            frozen_array(np.reshape([row.force for row in found], (-1, 2)) * force),
+            frozen_array(np.array([row.moment for row in found]) * (force * length)),
         )
 
     def __iter__(self) -> Iterator[PointForce]:

@@ -5,7 +5,6 @@ from itertools import pairwise
 from math import dist, isnan, nan
 from typing import Annotated, ClassVar, Literal
 
-import numpy as np
 from pydantic import Field
 
 from cprbm_scene.curve_records import MOST_POINTS, Ellipse, Graph, SmoothLine, shape_of
@@ -181,6 +180,8 @@ class LineContact(RigidContact):
     @first_alone
     def rules(self) -> Iterator[Mistake]:
         """Too many points, repeated points, lines with reversals or crossings."""
+        import shapely  # scenes without rigid lines need no Shapely
+
         pieces = list(pairwise(self.points))
         yield from broken(
             len(self.points) > MOST_POINTS
@@ -199,22 +200,17 @@ class LineContact(RigidContact):
                 for i, (a, b) in corners
             )
         )
-        points = np.array(self.points)
-        low, high = np.minimum(points[:-1], points[1:]), np.maximum(points[:-1], points[1:])
-        x, y = points.T
-        dx, dy = (np.diff(places)[:, None] for places in (x, y))
-        side = dx * (y - y[:-1, None]) - dy * (x - x[:-1, None])
-        # pieces meet with ends on different sides of each other, or on the other's line, unless an extent is beside
-        apart = (side[:, :-1] * side[:, 1:] > 0.0) | (high[:, None] < low).any(axis=2)
-        meet = np.triu(~(apart | apart.T), k=2)
-        meet[0, -1] &= not self.closed
+        lines = shapely.linestrings(pieces)
+        first, second = shapely.STRtree(lines).query(lines, predicate="intersects").tolist()
+        neighbours = {(0, len(pieces) - 1)} if self.closed else set()
         yield from (
             Mistake(
                 "points",
                 f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}",
                 "a line that does not meet itself",
             )
-            for i, j in np.argwhere(meet).tolist()
+            for i, j in sorted({*zip(first, second, strict=True)} - neighbours)
+            if i + 1 < j
         )
 
 

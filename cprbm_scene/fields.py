@@ -41,7 +41,7 @@ from pydantic import (
     WrapValidator,
     model_validator,
 )
-from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+from pydantic_core import CoreSchema, core_schema
 
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import (
@@ -344,8 +344,10 @@ class Measured:
         number = info.context.in_si(value, unit)
         checked = handler(number if isinstance(value, str) else value)
         pure = unit is None or unit == NUMBER
-        if not (pure or number == 0.0 == checked or SMALLEST <= abs(number) <= LARGEST):
-            raise PydanticCustomError("range", f"zero or a magnitude between {SMALLEST:g} and {LARGEST:g} in SI units")
+        refuse_broken(
+            not (pure or number == 0.0 == checked or SMALLEST <= abs(number) <= LARGEST)
+            and Mistake("", shown(value), f"zero or a magnitude between {SMALLEST:g} and {LARGEST:g} in SI units")
+        )
         return checked if pure else number
 
 

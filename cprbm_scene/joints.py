@@ -1,7 +1,7 @@
 """Ends of beams and their points, assembly, stops: checks of the drawn places of joints."""
 
 from collections.abc import Iterator
-from math import atan2, degrees, dist, inf, pi, tau
+from math import atan2, degrees, dist, pi, tau
 
 import numpy as np
 
@@ -127,22 +127,24 @@ def wrong_stops(scene: Scene) -> Iterator[Mistake]:
             and scene.place_of(stop.towards) == scene.place_of(joint.point)
             and Mistake(f"{key}.towards", f"{stop.towards!r}, which is where the pin is", "a point away from it"),
         )
-        yield from list(mistakes) or _exceeded_as_drawn(scene, key, stop)
+        drawn = stop.end == "start" or not is_apart(scene, scene.beams[stop.beam])
+        yield from list(mistakes) or (_exceeded_as_drawn(scene, key, stop) if drawn else ())
 
 
 def _exceeded_as_drawn(scene: Scene, key: str, stop: Stop) -> Iterator[Mistake]:
-    beam = scene.beams[stop.beam]
-    if stop.end == "end" and is_apart(scene, beam):
-        return iter(())
-    start, end = shape_of(beam.curve).tangent(np.array([0.0, 1.0]))
-    tangent = start if stop.end == "start" else -end
+    """Limits that the angle of a drawn end exceeds."""
+    beam, sense = scene.beams[stop.beam], 1.0 if stop.end == "start" else -1.0
+    tangent = sense * shape_of(beam.curve).tangent(np.array([float(stop.end == "end")]))[0]
     line = np.subtract(scene.place_of(stop.towards), scene.place_of(getattr(beam, stop.end).point))
     angle = (atan2(*tangent[::-1]) - atan2(*line[::-1])) % tau
     angle -= tau if angle > pi + STRAIGHT else 0.0
-    least, most = -inf if stop.least is None else stop.least, inf if stop.most is None else stop.most
     stands = f"rad, where the beam as drawn stands at {angle:.6g} rad ({degrees(angle):.4g} degrees)"
     allowed = "limits between which the beam stands as it is drawn"
     return broken(
-        least - angle > ROUNDED and Mistake(f"{key}.least", f"{least:g} {stands}", allowed),
-        angle - most > ROUNDED and Mistake(f"{key}.most", f"{most:g} {stands}", allowed),
+        stop.least is not None
+        and stop.least - angle > ROUNDED
+        and Mistake(f"{key}.least", f"{stop.least:g} {stands}", allowed),
+        stop.most is not None
+        and angle - stop.most > ROUNDED
+        and Mistake(f"{key}.most", f"{stop.most:g} {stands}", allowed),
     )

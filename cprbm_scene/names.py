@@ -86,26 +86,6 @@ def repeated_names(scene: Scene) -> Iterator[Mistake]:
     )
 
 
-def repeated_contacts(scene: Scene) -> Iterator[Mistake]:
-    """Contacts of the same beams, or of the same beam and rigid shape."""
-    seen: dict[object, str] = {}
-    for name, contact in scene.contacts.items():
-        match contact:
-            case RigidContact():
-                # the same shape, whatever the formulation
-                shape = frozenset[object](value for value in contact if value[0] not in {"thick", "paper"})
-                what, part, same = "beam and the shape", "", shape
-            case BeamContact():
-                what, part, same = "pair", ".between", frozenset(contact.beams)
-            case _:
-                what, part, same = "beam", ".beam", frozenset(contact.beams)
-        first = seen.setdefault(same, name)
-        yield from broken(
-            first != name
-            and Mistake(f"contacts.{name}{part}", f"the {what} of contacts.{first} again", f"each {what} once")
-        )
-
-
 MECHANICAL = ("point", "body", "beam")
 """Kinds of named parts without which a record has no place in the mechanism."""
 _KINDS: Mapping[str, tuple[str, ...]] = {
@@ -246,17 +226,28 @@ def wrong_stages(scene: Scene) -> Iterator[Mistake]:
         )
 
 
-def wrong_paper(scene: Scene) -> Iterator[Mistake]:
-    """Data of contacts for the formulation ``paper`` on beams outside the contact."""
+def wrong_contacts(scene: Scene) -> Iterator[Mistake]:
+    """Contacts of the same beams or shape, and data for the formulation ``paper`` on beams outside the contact."""
+    seen: dict[object, str] = {}
     for name, contact in scene.contacts.items():
-        key, names = f"contacts.{name}.paper", ", ".join(map(repr, contact.beams))
+        match contact:
+            case RigidContact():
+                # the same shape, whatever the formulation
+                shape = frozenset[object](value for value in contact if value[0] not in {"thick", "paper"})
+                what, part, same = "beam and the shape", "", shape
+            case BeamContact():
+                what, part, same = "pair", ".between", frozenset(contact.beams)
+            case _:
+                what, part, same = "beam", ".beam", frozenset(contact.beams)
+        first, key, names = seen.setdefault(same, name), f"contacts.{name}", ", ".join(map(repr, contact.beams))
         allowed = f"one of the pair: {names}" if isinstance(contact, BeamContact) else f"the contact's beam {names}"
         boundary = contact.paper.boundary if isinstance(contact.paper, PaperContact) else contact.beams[0]
         related = contact.paper.related if contact.paper is not None else ()
         yield from broken(
-            boundary not in contact.beams and Mistake(f"{key}.boundary", repr(boundary), allowed),
+            first != name and Mistake(f"{key}{part}", f"the {what} of contacts.{first} again", f"each {what} once"),
+            boundary not in contact.beams and Mistake(f"{key}.paper.boundary", repr(boundary), allowed),
             *(
-                beam not in contact.beams and Mistake(f"{key}.related.{beam}", f"the beam {beam!r}", allowed)
+                beam not in contact.beams and Mistake(f"{key}.paper.related.{beam}", f"the beam {beam!r}", allowed)
                 for beam in related
             ),
         )

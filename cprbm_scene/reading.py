@@ -22,11 +22,10 @@ from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
 from cprbm_scene.mistakes import MOST, Mistake, SceneError, first_of, mistake, mistakes_of, refuse_broken, unknown_name
 from cprbm_scene.names import (
     MECHANICAL,
-    repeated_contacts,
     repeated_names,
     unknown_names,
     wrong_claims,
-    wrong_paper,
+    wrong_contacts,
     wrong_probes,
     wrong_stages,
 )
@@ -34,7 +33,7 @@ from cprbm_scene.offset import OffsetQuestion
 from cprbm_scene.statement import Beam, Body, Material, Probe, Scene, Stage
 from cprbm_scene.units import text_of
 
-_BY_NAME = (repeated_names, unknown_names, repeated_contacts, wrong_paper, wrong_stages, wrong_probes, wrong_claims)
+_BY_NAME = (repeated_names, unknown_names, wrong_contacts, wrong_stages, wrong_probes, wrong_claims)
 _BY_PLACE = (
     distant_ends,
     wrong_assembly,

@@ -272,19 +272,19 @@ def read_points(path: Path, unit: str) -> tuple[tuple[float, float], ...]:
     text = text_of(
         path, "points", "a table of points in UTF-8, with a path from the scene's folder", f"{str(path)!r}, "
     )
-    lines = [
+    (first, header), *lines = [
         (row, line)
         for row, line in enumerate(text.splitlines(), start=1)
         if line.strip(" \t,;#") and not line.lstrip().startswith("#")
     ] or [(1, "")]
-    first, header = lines[0]
     mark = next((mark for mark in ";\t" if mark in header), ",")
-    names = [_COLUMN.fullmatch(name.strip("\"' ")) for name in header.split(mark)]
     columns = {
-        name[1].lower(): (i, (name[2] or unit).lower().replace("µ", "u")) for i, name in enumerate(names) if name
+        name[1].lower(): (i, (name[2] or unit).lower().replace("µ", "u"))
+        for i, title in enumerate(header.split(mark))
+        if (name := _COLUMN.fullmatch(title.strip("\"' ")))
     }
     refuse_broken(set(columns) != {"x", "y"} and Mistake("", f"{header[:80]!r} in {path.name}, row {first}", _HEADER))
-    cells = ((row, next(csv.reader([line], delimiter=mark))) for row, line in lines[1:])
+    cells = ((row, next(csv.reader([line], delimiter=mark))) for row, line in lines)
     return tuple(
         (_number(path, row, line, "x", *columns["x"], unit), _number(path, row, line, "y", *columns["y"], unit))
         for row, line in cells
