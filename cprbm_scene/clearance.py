@@ -142,8 +142,7 @@ def overlap_at_rest(scene: Scene, contact: BeamContact) -> float:
     mean, largest = 0.5 * (first.thinnest + second.thinnest), 0.5 * (first.thickest + second.thickest)
     depth = -beam_gap(first, second, *_apart(scene, beams, JOINED * largest))[0] if contact.thick else 0.0
     if OVERLAP * mean < depth <= TOUCHING * mean:
-        beside = _apart(scene, beams, JOINED * largest, SIDE_BY_SIDE * largest)
-        depth = -beam_gap(first, second, *beside)[0]
+        depth = -beam_gap(first, second, *_apart(scene, beams, JOINED * largest, SIDE_BY_SIDE * largest))[0]
     return depth if depth > OVERLAP * mean else 0.0
 
 

@@ -81,8 +81,7 @@ class Curve:
 
     def speed(self, w: Array) -> Array:
         """|q'|, a pure number, at parameters of any shape."""
-        along = self._q(w, 1)
-        return np.asarray(np.hypot(along[..., 0], along[..., 1]))
+        return np.asarray(np.hypot(*np.moveaxis(self._q(w, 1), -1, 0)))
 
     def place(self, w: Array) -> Array:
         """Points (n, 2), m, at parameters ``w`` (n,)."""

@@ -250,9 +250,8 @@ class Scene(Record):
         for name, each in self.bodies.items():
             if not each.points:
                 edges = (e for e in self.contacts.values() if isinstance(e, RigidContact) and e.body == name)
-                curves = (beam.curve.start for beam in beams.values())
-                place = next(chain((measures(edge)[0][0] for edge in edges), curves), (0.0, 0.0))
-                bodies[name] = FixedBody(motion="fixed", points=frozendict({f"{name}-point": place}))
+                places = chain((measures(e)[0][0] for e in edges), (beam.curve.start for beam in beams.values()))
+                bodies[name] = FixedBody(motion="fixed", points=frozendict({f"{name}-point": next(places, (0.0, 0.0))}))
         return {"beams": frozendict(beams), "bodies": frozendict(bodies)}
 
     def with_parameters(self, **values: float) -> Self:

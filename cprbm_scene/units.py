@@ -183,14 +183,12 @@ def evaluated(text: str, named: Callable[[str], Value], units: FileUnits) -> Val
             case ast.UnaryOp(op=ast.UAdd() | ast.USub() as sign, operand=operand):
                 return _product(operator.mul, [Value(-1.0 if isinstance(sign, ast.USub) else 1.0), of(operand)], units)
             case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _SIGNS:
-                name, nodes = _SIGNS[type(sign)], [left, right]
-            case ast.Call(func=ast.Name(id=name), args=nodes, keywords=[]) if name in FUNCTIONS:
-                pass
-            case _:
-                raise ExpressionError(f"{ast.unparse(node)!r}, which is no arithmetic")
-        function, rule, count = _RULES[name]
-        _refuse(len(nodes) != (count or max(len(nodes), 1)), f"{name} of {len(nodes)} numbers")
-        return rule(function, [of(each) for each in nodes], units)
+                return of(ast.Call(ast.Name(_SIGNS[type(sign)]), [left, right], []))
+            case ast.Call(func=ast.Name(id=name), args=nodes, keywords=[]) if name in _RULES:
+                function, rule, count = _RULES[name]
+                _refuse(len(nodes) != (count or max(len(nodes), 1)), f"{name} of {len(nodes)} numbers")
+                return rule(function, [of(each) for each in nodes], units)
+        raise ExpressionError(f"{ast.unparse(node)!r}, which is no arithmetic")
 
     try:
         value = of(ast.parse(text.strip(), mode="eval").body)
