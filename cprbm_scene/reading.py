@@ -15,10 +15,9 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from cprbm_scene.clearance import wrong_clearance
+from cprbm_scene.clearance import distant_ends, wrong_assembly, wrong_clearance, wrong_stops
 from cprbm_scene.fields import Name, OptionalNamed, Reading
 from cprbm_scene.freedoms import wrong_actions, wrong_mobility
-from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
 from cprbm_scene.mistakes import MOST, Mistake, SceneError, first_of, mistake, mistakes_of, refuse_broken, unknown_name
 from cprbm_scene.names import (
     MECHANICAL,
