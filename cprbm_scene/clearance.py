@@ -25,7 +25,6 @@ leave a gap without digits.
 
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from itertools import product
 from math import atan2, degrees, dist, pi, tau
 
 import numpy as np
@@ -117,8 +116,7 @@ def beam_gap(
         chosen = np.argmin(gaps, axis=0), np.arange(len(u))
         return gaps[chosen] - _half(first, u, thick=thick), places[chosen]
 
-    bound = 2.0 * (one.length + two.length) / _SAMPLES
-    value, place = least(lambda u: nearest(u)[0], samples, refined_below=bound)
+    value, place = least(lambda u: nearest(u)[0], samples, refined_below=2.0 * (one.length + two.length) / _SAMPLES)
     return value, place, float(nearest(np.array([place]))[1][0])
 
 
@@ -188,7 +186,7 @@ def _apart(scene: Scene, beams: Sequence[Beam], left_out: float, near: float = 0
     """
     lengths = [shape_of(beam.curve).length for beam in beams]
     cut, owners, meeting = [WHOLE, WHOLE], scene.owners, MEETING * max(lengths)
-    for ends in product(*(beam.ends for beam in beams)):
+    for ends in ((one, other) for one in beams[0].ends for other in beams[1].ends):
         bodies = {owners[joint.point] if isinstance(joint, WeldedEnd) else joint for _, joint, _ in ends}
         welded = len(bodies) == 1 and isinstance(ends[0][1], WeldedEnd)
         if dist(ends[0][2], ends[1][2]) <= (max(meeting, near) if welded else meeting):
@@ -248,8 +246,7 @@ def _rigid(scene: Scene, key: str, contact: Rigid) -> Iterator[Mistake]:
     samples = np.union1d(np.linspace(*WHOLE, 2 * _SAMPLES - 1), beam.knots)
     depth = -least(lambda u: distance(contact, shape.point(u)) - _half(beam, u, thick=contact.thick), samples)[0]
     measure, of = (beam.thinnest, "its thickness") if contact.thick else (shape.length, "its length")
-    own = scene.bodies[contact.body].points
-    held = not circle and any(joint.point in own for _, joint, _ in beam.ends)
+    held = not circle and any(joint.point in scene.bodies[contact.body].points for _, joint, _ in beam.ends)
     what = "that overlaps the circle" if circle else "on the wrong side of the edge, or overlapping the edge,"
     side = f"circle from {getattr(contact, 'side', '')}" if circle else "edge from the free side"
     yield from broken(
@@ -293,11 +290,11 @@ def _distance(scene: Scene, beam: Beam, side: str) -> float:
 
 def wrong_assembly(scene: Scene) -> Iterator[Mistake]:
     """An assembly without distant ends, moments on other ends, beams too short for their points."""
-    if scene.assembly is None:
-        return
     apart = [name for name, beam in scene.beams.items() if is_apart(scene, beam)]
+    moments = scene.assembly.moments if scene.assembly is not None and apart else ()
     yield from broken(
-        not apart
+        scene.assembly is not None
+        and not apart
         and scene.whole()
         and Mistake(
             "assembly",
@@ -311,7 +308,7 @@ def wrong_assembly(scene: Scene) -> Iterator[Mistake]:
                 f"a moment on {name!r}, whose end is where it belongs",
                 f"a beam whose end is drawn apart: {', '.join(map(repr, apart))}",
             )
-            for name in (scene.assembly.moments if apart else ())
+            for name in moments
         ),
     )
     for name in apart:

@@ -236,10 +236,8 @@ def least(
 
     values = function(samples)
     fence = np.pad(values, 1, constant_values=np.inf)
-    minima = np.flatnonzero((values <= fence[:-2]) & (values <= fence[2:]))
-    found = [(float(np.min(values)), float(samples[np.argmin(values)]))]
-    if found[0][0] > refined_below:
-        return found[0]
+    minima = np.flatnonzero((values <= fence[:-2]) & (values <= fence[2:]) & (values.min() <= refined_below))
+    found = [(float(values.min()), float(samples[values.argmin()]))]
     for i in minima[np.argsort(values[minima], kind="stable")[:_LOWEST]]:
         # the tolerance of the place is a share of the variable: the variable is zero at the sample
         beside = samples[max(i - 1, 0)] - samples[i], samples[min(i + 1, len(samples) - 1)] - samples[i]

@@ -282,8 +282,12 @@ class Reading:
                 f"a number from {span[0] / size:g} to {span[1] / size:g} {given.unit}".rstrip(),
             )
         )
-        scatter = given.tolerance and Tolerance(**{kind: each and each * size for kind, each in given.tolerance})
-        return Parameter(value=number, unit=str(own if given.unit else unit or NUMBER), range=span, tolerance=scatter)
+        return Parameter(
+            value=number,
+            unit=str(own if given.unit else unit or NUMBER),
+            range=span,
+            tolerance=given.tolerance and Tolerance(**{kind: each and each * size for kind, each in given.tolerance}),
+        )
 
     def _named(self, name: str, users: tuple[str, ...] = ()) -> Value:
         """Value of a parameter that its ``users`` refer to, from the first parameter to the last."""

@@ -264,7 +264,7 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
         *(drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)),
         *(name for name, body in scene.bodies.items() if isinstance(body, SlidingBody)),
     )
-    turned = [drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive)]
+    turned = (drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive))
     edges = [name for name, each in scene.contacts.items() if isinstance(each, EdgeContact) and _pinned(scene, each)]
     return {
         _OF["displacement"]: list(scene.owners),

@@ -59,8 +59,9 @@ def notes(scene: Scene) -> Iterator[str]:
 def _load_notes(scene: Scene) -> Iterator[str]:
     """Sentences on implausible loads."""
     for name, load in scene.loads.items():
-        stages = (stage for stage in scene.stages if name in stage.stepped)
-        largest = max((abs(value) for stage in stages for value in stage.stations), default=0.0)
+        largest = max(
+            (abs(value) for stage in scene.stages if name in stage.stepped for value in stage.stations), default=0.0
+        )
         beams = scene.beams if isinstance(load, BodyLoad) else [load.beam]
         ratio, beam = min((largest * _per_unit(scene, load, beam), beam) for beam in beams)
         if ratio > LARGE:

@@ -195,9 +195,10 @@ def _names(table: str, part: str, item: object) -> Iterator[tuple[str, str]]:
             yield from (("points", f"{point}") for point in points)
         case "beams", dict():
             # an end with another joint may be a free end with a mistake
-            ends = [item.get(side) for side in ("start", "end")]
             new = [
-                end.get("point") for end in ends if isinstance(end, dict) and end.get("joint") not in ("weld", "pin")
+                end.get("point")
+                for end in (item.get("start"), item.get("end"))
+                if isinstance(end, dict) and end.get("joint") not in ("weld", "pin")
             ]
             yield from (key for point in new for key in (("points", f"{point}"), ("bodies", f"{point}-body")))
         case "stages", {"name": name}:

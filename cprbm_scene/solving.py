@@ -84,8 +84,13 @@ def refuse(scene: Scene, solver: str, *met: Requirement) -> None:
     Raises:
         SceneError: the scene has further requirements; the error names every key.
     """
-    found = (mistake for kind, mistake in requirements(scene) if kind not in met)
-    refuse_broken(*(each._replace(allowed=f"{each.allowed}, for {solver}") for each in found))
+    refuse_broken(
+        *(
+            mistake._replace(allowed=f"{mistake.allowed}, for {solver}")
+            for kind, mistake in requirements(scene)
+            if kind not in met
+        )
+    )
 
 
 def station_reached(logger: logging.Logger, scene: Scene, reached: int, station: StationAnswer) -> None:

@@ -9,7 +9,6 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 
 import re
 from collections.abc import Collection, Iterator, Mapping
-from itertools import chain
 from typing import Annotated, Any, Literal, Self, cast
 
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, field_validator
@@ -250,8 +249,12 @@ class Scene(Record):
         for name, each in self.bodies.items():
             if not each.points:
                 edges = (e for e in self.contacts.values() if isinstance(e, RigidContact) and e.body == name)
-                places = chain((measures(e)[0][0] for e in edges), (beam.curve.start for beam in beams.values()))
-                bodies[name] = FixedBody(motion="fixed", points=frozendict({f"{name}-point": next(places, (0.0, 0.0))}))
+                places = [
+                    *(measures(e)[0][0] for e in edges),
+                    *(beam.curve.start for beam in beams.values()),
+                    (0.0, 0.0),
+                ]
+                bodies[name] = FixedBody(motion="fixed", points=frozendict({f"{name}-point": places[0]}))
         return {"beams": frozendict(beams), "bodies": frozendict(bodies)}
 
     def with_parameters(self, **values: float) -> Self:

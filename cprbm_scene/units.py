@@ -282,10 +282,10 @@ def read_points(path: Path, unit: str) -> tuple[tuple[float, float], ...]:
         if (name := _COLUMN.fullmatch(title.strip("\"' ")))
     }
     refuse_broken(set(columns) != {"x", "y"} and Mistake("", f"{header[:80]!r} in {path.name}, row {first}", _HEADER))
-    cells = ((row, next(csv.reader([line], delimiter=mark))) for row, line in lines)
     return tuple(
-        (_number(path, row, line, "x", *columns["x"], unit), _number(path, row, line, "y", *columns["y"], unit))
-        for row, line in cells
+        (_number(path, row, cells, "x", *columns["x"], unit), _number(path, row, cells, "y", *columns["y"], unit))
+        for row, line in lines
+        for cells in csv.reader([line], delimiter=mark)
     )
 
 
