@@ -381,12 +381,11 @@ def openings(scene: Scene, stations: Sequence[StationAnswer]) -> tuple[Event, ..
 
     Between two stages the interval begins where the stepped load or drive stands before the later stage.
     """
-    found, reached = [], dict.fromkeys((*scene.loads, *scene.drives), 0.0)
-    steps = {stage.name: stage.steps for stage in scene.stages}
+    found, steps = list[Event](), {stage.name: stage.steps for stage in scene.stages}
     for before, after in pairwise(stations):
-        reached[steps[before.stage]] = before.value
         if before.branch == after.branch:
-            low, high = sorted((reached[steps[after.stage]], after.value))
+            standing = scene.values_at(before.stage, before.value)
+            low, high = sorted((standing.get(steps[after.stage], 0.0), after.value))
             found += [
                 Event(after.stage, name, "opens", 0.5 * (low + high), (low, high))
                 for name, contact in before.contacts.items()

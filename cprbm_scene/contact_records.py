@@ -197,12 +197,11 @@ class LineContact(RigidContact):
             ),
         )
         tau = [unit_vector((b[0] - a[0], b[1] - a[1])) for a, b in pieces]
-        corners = enumerate(pairwise([*tau, tau[0]] if self.closed else tau), start=1)
         yield from broken(
             *(
                 1.0 + a @ b < BACKWARDS
                 and Mistake(f"points[{i}]", "a point at which the line turns back on itself", "a line that goes on")
-                for i, (a, b) in corners
+                for i, (a, b) in enumerate(pairwise([*tau, tau[0]] if self.closed else tau), start=1)
             )
         )
         lines = shapely.linestrings(pieces)

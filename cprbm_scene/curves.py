@@ -187,12 +187,11 @@ def graph(coefficients: Sequence[float], first: float, last: float, *, along: in
         # a steep graph has its sharpest bend where the graph is level
         level = slope.roots() if np.all(np.isfinite(g.coef)) else np.zeros(0)
         value = float(Polynomial(coefficients)(first))
-        x = Polynomial([0.0, sense])
-        axes = [(each, each.deriv(), each.deriv(2)) for each in ((g, x) if along else (x, g))]
+        axes = [(each, each.deriv(), each.deriv(2)) for each in (Polynomial([0.0, sense]), g)]
     level = level.real[(np.abs(level.imag) < _REAL) & (level.real > 0.0) & (level.real < 1.0)]
 
     def q(w: Array, order: int) -> Array:
-        return np.stack([np.asarray(each[order](w), dtype=np.float64) for each in axes], axis=-1)
+        return np.stack([np.asarray(each[order](w), dtype=np.float64) for each in axes[:: -1 if along else 1]], axis=-1)
 
     samples = np.union1d(np.linspace(0.0, 1.0, SAMPLES), level)
     return Curve((value, first) if along else (first, value), extent, q, np.linspace(0.0, 1.0, _PANELS + 1), samples)

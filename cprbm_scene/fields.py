@@ -303,9 +303,13 @@ class Reading:
     def _computed(self, name: str, given: Parameter, users: tuple[str, ...]) -> Value:
         setting = self.settings.get(name)
         if isinstance(given.value, str):
-            allowed = "a number with a unit, or an expression alone; an expression takes no other value"
             refuse_broken(
-                (given.unit or setting is not None) and Mistake(name, f"{given.value!r}, an expression", allowed)
+                (given.unit or setting is not None)
+                and Mistake(
+                    name,
+                    f"{given.value!r}, an expression",
+                    "a number with a unit, or an expression alone; an expression takes no other value",
+                )
             )
             return self._expression(given.value, f"{name}.value", users)
         number, (size, unit) = given.value, unit_of(given.unit, f"{name}.unit")

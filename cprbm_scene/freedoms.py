@@ -259,9 +259,12 @@ def _loose(freedoms: Freedoms) -> Iterator[Mistake]:
     """Bodies with a motion in the null space of B; of a scene without pins, contacts and stops may hold their parts."""
     scene = freedoms.scene
     held = set[str]().union(*map(freedoms.parts_of, (*scene.contacts.values(), *scene.stops.values())))
-    rows = (freedoms.wide({name: row}) for name in (() if scene.pins else held) for row in np.eye(3))
-    constraints = (row for _, row in freedoms.constraints(freedoms.drives))
-    _, values, motions = np.linalg.svd(np.array([*rows, *constraints, *freedoms.joints()]))
+    rows = [
+        *(freedoms.wide({name: row}) for name in (() if scene.pins else held) for row in np.eye(3)),
+        *(row for _, row in freedoms.constraints(freedoms.drives)),
+        *freedoms.joints(),
+    ]
+    _, values, motions = np.linalg.svd(np.array(rows))
     null_space = motions[np.count_nonzero(values > NEGLIGIBLE) :]
     for i, name in enumerate(scene.bodies):
         own = [motion for motion in null_space[:, 3 * i : 3 * i + 3] if np.abs(motion).max() > NEGLIGIBLE]

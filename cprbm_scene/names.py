@@ -178,10 +178,9 @@ def wrong_probes(scene: Scene) -> Iterator[Mistake]:
 def wrong_claims(scene: Scene) -> Iterator[Mistake]:
     """Claims on unknown probes, stages or stations, and a single value for a probe of several numbers."""
     probes = {probe.name: probe for probe in scene.probes}
-    stages = [stage.name for stage in scene.stages]
     for i, claim in enumerate(scene.claims):
         key, probe, critical = f"claims[{i}]", probes.get(claim.probe), claim.probe == CRITICAL
-        unasked = claim.stage in stages and probe is not None and not probe.asked_in(claim.stage)
+        unasked = any(probe and not probe.asked_in(each.name) for each in scene.stages if each.name == claim.stage)
         own = [value for stage in scene.stages if claim.in_stage(stage.name) for value in stage.stations]
         yield from broken(
             not (probe or critical or scene.lacks(claim.probe, "probes"))

@@ -40,8 +40,7 @@ def notes(scene: Scene) -> Iterator[str]:
     known = {*map(frozenset, scene.may_cross), *(frozenset(contact.beams) for contact in scene.contacts.values())}
     boxes = {name: _box(beam) for name, beam in scene.beams.items()}
     for first, second in combinations(scene.beams, 2):
-        (low, high), (least, most) = boxes[first], boxes[second]
-        beside = np.any(low > most) or np.any(least > high)
+        beside = any(np.any(boxes[one][0] > boxes[other][1]) for one, other in ((first, second), (second, first)))
         meeting = "" if beside or {first, second} in known else _meeting(scene, first, second)
         if meeting:
             yield (

@@ -11,7 +11,7 @@ from difflib import get_close_matches
 from functools import partial
 from itertools import islice
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from pydantic import ValidationError
 
@@ -104,10 +104,16 @@ def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) 
         (0.002, 'BD')
     """
     question = read_question(path, parameters)
-    if isinstance(question, Scene):
-        return question
-    allowed = "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it"
-    raise SceneError([Mistake("question", repr(question.question), allowed, str(path))])
+    refuse_broken(
+        isinstance(question, OffsetQuestion)
+        and Mistake(
+            "question",
+            repr(question.question),
+            "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it",
+            str(path),
+        )
+    )
+    return cast("Scene", question)
 
 
 def read_question(path: str | Path, parameters: Mapping[str, float | str] | None = None) -> Question:

@@ -26,7 +26,6 @@ Requirement = Literal["theory", "overlap at rest", "from", "together", "support"
 def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
     """Kinds of requirements, with keys, values found, and values for a solver without the feature."""
     first, file, contacts = scene.stages[0].name, scene.file, [*scene.contacts.items()]
-    overlaps = ((name, overlap_at_rest(scene, each)) for name, each in contacts if isinstance(each, BeamContact))
     rules: dict[Requirement, Iterator[Mistake]] = {
         "theory": broken(scene.theory != "bending" and Mistake("theory", repr(scene.theory), "'bending'", file)),
         "from": (
@@ -66,8 +65,8 @@ def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
                 "beams that touch or are apart",
                 file,
             )
-            for name, overlap in overlaps
-            if overlap
+            for name, each in contacts
+            if isinstance(each, BeamContact) and (overlap := overlap_at_rest(scene, each))
         ),
     }
     return ((kind, mistake) for kind, mistakes in rules.items() for mistake in mistakes)
