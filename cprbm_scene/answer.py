@@ -384,8 +384,7 @@ def openings(scene: Scene, stations: Sequence[StationAnswer]) -> tuple[Event, ..
     found, steps = list[Event](), {stage.name: stage.steps for stage in scene.stages}
     for before, after in pairwise(stations):
         if before.branch == after.branch:
-            standing = scene.values_at(before.stage, before.value)
-            low, high = sorted((standing.get(steps[after.stage], 0.0), after.value))
+            low, high = sorted((scene.values_at(before.stage, before.value).get(steps[after.stage], 0.0), after.value))
             found += [
                 Event(after.stage, name, "opens", 0.5 * (low + high), (low, high))
                 for name, contact in before.contacts.items()

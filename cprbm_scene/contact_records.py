@@ -12,7 +12,7 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
-from cprbm_scene.curve_records import MOST_POINTS, Ellipse, Graph, SmoothLine, shape_of
+from cprbm_scene.curve_records import MOST_POINTS, Ellipse, Graph, Polynomial, SmoothLine, shape_of
 from cprbm_scene.curves import Array, Curve, unit_vector
 from cprbm_scene.fields import Angle, Direction, Length, Name, Of, OptionalNamed, Point, PositiveLength, Record
 from cprbm_scene.mistakes import Mistake, broken, first_alone
@@ -206,15 +206,14 @@ class LineContact(RigidContact):
         )
         lines = shapely.linestrings(pieces)
         first, second = shapely.STRtree(lines).query(lines, predicate="intersects").tolist()
-        neighbours = {(0, len(pieces) - 1)} if self.closed else set()
         yield from (
             Mistake(
                 "points",
                 f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}",
                 "a line that does not meet itself",
             )
-            for i, j in sorted({*zip(first, second, strict=True)} - neighbours)
-            if i + 1 < j
+            for i, j in sorted(zip(first, second, strict=True))
+            if i + 1 < j and not (self.closed and j - i == len(pieces) - 1)
         )
 
 
@@ -237,6 +236,11 @@ class FunctionContact(RigidContact, Graph):
     kind: Literal["beam-function"]
     side: Literal["above", "below"]
     """Free side: at a coordinate above or below f."""
+
+    @property
+    def curve(self) -> Polynomial:
+        """The edge as a neutral line."""
+        return Polynomial(kind="polynomial", axis=self.axis, coefficients=self.coefficients, range=self.range)
 
 
 class SplineContact(RigidContact, SmoothLine):
