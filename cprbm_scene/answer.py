@@ -31,13 +31,11 @@ moment             (1,)    magnitude of the moment by which a stop holds, N·m; 
 =================  ======  ====================================================================
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -174,19 +172,16 @@ class PointForces:
     @classmethod
     def collected(
         cls, rows: Iterable[PointForce], length: float, force: float, origin: tuple[float, float] = (0.0, 0.0)
-    ) -> PointForces:
+    ) -> Self:
         """The forces of ``rows``, in units of ``length`` (m) and ``force`` (N), with places relative to ``origin``."""
-        columns = tuple(zip(*rows, strict=True))
-        if not columns:
-            return cls()
-        source, target, s, place, forces, moment = columns
+        found = list(rows)
         return cls(
-            source,
-            target,
-            frozen_array(np.array(s) * length),
-            frozen_array(np.array(place) * length + origin),
-            frozen_array(np.array(forces) * force),
-            frozen_array(np.array(moment) * (force * length)),
+            tuple(row.source for row in found),
+            tuple(row.target for row in found),
+            frozen_array(np.array([row.s for row in found]) * length),
+            frozen_array(np.reshape([row.place for row in found], (-1, 2)) * length + origin),
+            frozen_array(np.reshape([row.force for row in found], (-1, 2)) * force),
+            frozen_array(np.array([row.moment for row in found]) * (force * length)),
         )
 
     def __iter__(self) -> Iterator[PointForce]:
@@ -386,12 +381,10 @@ def openings(scene: Scene, stations: Sequence[StationAnswer]) -> tuple[Event, ..
 
     Between two stages the interval begins where the stepped load or drive stands before the later stage.
     """
-    found, reached = [], dict.fromkeys((*scene.loads, *scene.drives), 0.0)
-    steps = {stage.name: stage.steps for stage in scene.stages}
+    found, steps = list[Event](), {stage.name: stage.steps for stage in scene.stages}
     for before, after in pairwise(stations):
-        reached[steps[before.stage]] = before.value
         if before.branch == after.branch:
-            low, high = sorted((reached[steps[after.stage]], after.value))
+            low, high = sorted((scene.values_at(before.stage, before.value).get(steps[after.stage], 0.0), after.value))
             found += [
                 Event(after.stage, name, "opens", 0.5 * (low + high), (low, high))
                 for name, contact in before.contacts.items()

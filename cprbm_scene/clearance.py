@@ -1,4 +1,4 @@
-"""Clearance as drawn: between two beams, of a beam from itself, and of a beam from a rigid shape.
+"""Gaps as drawn: of ends and their points, stops and limits, a beam and itself, another beam or a rigid shape.
 
 =======  ================================================================
 symbol   meaning
@@ -21,39 +21,40 @@ axis by ∫ cos φ dφ/κ > 3.8 T.
 
 Bounds on rigid shapes are dimensionless: 1e-6 ≤ r/L ≤ 1e6, and L ≥ 1e-6 of all coordinates; larger or farther shapes
 leave a gap without digits.
-
-A place is behind a rigid line if the nearest place of the line is no end of the line and the place lies opposite to the
-line's normal towards the free side.
 """
 
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from itertools import product
-from math import dist
+from math import atan2, degrees, dist, pi, tau
 
 import numpy as np
 
-from cprbm_scene.contact_records import Rigid, measures
+from cprbm_scene.contact_records import Rigid, distance, measures
 from cprbm_scene.curve_records import MEETING, SHORTEST, shape_of
-from cprbm_scene.curves import Array, Curve, least, unit_vector
-from cprbm_scene.mistakes import Mistake, broken, first_alone, written_place
+from cprbm_scene.curves import Array, least
+from cprbm_scene.mistakes import Mistake, broken, first_alone, first_broken, written_place
 from cprbm_scene.statement import (
     Arc,
     Beam,
     BeamContact,
     CircleContact,
-    EllipseContact,
-    FunctionContact,
-    HalfPlaneContact,
-    LineContact,
+    PinnedEnd,
     RigidContact,
     Scene,
     Spline,
+    Stop,
+    TurningBody,
     WeldedEnd,
 )
 
 Range = tuple[float, float]
 
+TAUT = 1e-6
+"""Share of the length by which a beam must exceed the distance of its points: a taut beam is straight."""
+ROUNDED = 1e-6
+"""Angle, rad, by which a stop's angle as drawn may exceed a limit: coordinates are rounded."""
+STRAIGHT = 1e-9
+"""Distance, rad, from −π within which an angle counts as π: rounded coordinates yield both."""
 OVERLAP = 1e-6
 """Overlap that counts as round-off, of the mean thickness where both beams are thinnest."""
 TOUCHING = 1e-3
@@ -115,8 +116,7 @@ def beam_gap(
         chosen = np.argmin(gaps, axis=0), np.arange(len(u))
         return gaps[chosen] - _half(first, u, thick=thick), places[chosen]
 
-    bound = 2.0 * (one.length + two.length) / _SAMPLES
-    value, place = least(lambda u: nearest(u)[0], samples, refined_below=bound)
+    value, place = least(lambda u: nearest(u)[0], samples, refined_below=2.0 * (one.length + two.length) / _SAMPLES)
     return value, place, float(nearest(np.array([place]))[1][0])
 
 
@@ -127,7 +127,7 @@ def wrong_clearance(scene: Scene) -> Iterator[Mistake]:
             yield from _itself(f"beams.{name}.curve", beam)
     for name, contact in scene.contacts.items():
         if isinstance(contact, BeamContact):
-            yield from (_too_deep if contact.thick else _crossing)(scene, f"contacts.{name}", contact)
+            yield from _pair(scene, f"contacts.{name}", contact)
         elif isinstance(contact, RigidContact):
             yield from _rigid(scene, f"contacts.{name}", contact)
 
@@ -142,33 +142,25 @@ def overlap_at_rest(scene: Scene, contact: BeamContact) -> float:
     mean, largest = 0.5 * (first.thinnest + second.thinnest), 0.5 * (first.thickest + second.thickest)
     depth = -beam_gap(first, second, *_apart(scene, beams, JOINED * largest))[0] if contact.thick else 0.0
     if OVERLAP * mean < depth <= TOUCHING * mean:
-        beside = _apart(scene, beams, JOINED * largest, SIDE_BY_SIDE * largest)
-        depth = -beam_gap(first, second, *beside)[0]
+        depth = -beam_gap(first, second, *_apart(scene, beams, JOINED * largest, SIDE_BY_SIDE * largest))[0]
     return depth if depth > OVERLAP * mean else 0.0
 
 
-def _too_deep(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]:
-    """Thick beams with an overlap beyond touching."""
+def _pair(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]:
+    """Thick beams with an overlap beyond touching, and beams as lines that cross."""
     first, second = (scene.beams[beam] for beam in contact.between)
     depth, mean = overlap_at_rest(scene, contact), 0.5 * (first.thinnest + second.thinnest)
-    most = OVERLAP if first.tapered or second.tapered else TOUCHING
+    most, names = OVERLAP if first.tapered or second.tapered else TOUCHING, " and ".join(map(repr, contact.between))
+    place = "" if contact.thick else crossing(scene, *contact.between)
     return broken(
         depth > most * mean
         and Mistake(
             key,
-            f"{contact.between[0]!r} and {contact.between[1]!r} that overlap at the start by {depth:.3g} m, "
-            f"{depth / mean:.3g} of their mean thickness",
+            f"{names} that overlap at the start by {depth:.3g} m, {depth / mean:.3g} of their mean thickness",
             f"beams that touch or are apart (overlap at most {most:g} of the mean thickness)",
-        )
-    )
-
-
-def _crossing(scene: Scene, key: str, contact: BeamContact) -> Iterator[Mistake]:
-    """Beams as lines that cross."""
-    place, names = crossing(scene, *contact.between), " and ".join(map(repr, contact.between))
-    return broken(
+        ),
         place
-        and Mistake(key, f"{names} that cross at the start, at {place} m", "neutral lines that touch or are apart")
+        and Mistake(key, f"{names} that cross at the start, at {place} m", "neutral lines that touch or are apart"),
     )
 
 
@@ -194,7 +186,7 @@ def _apart(scene: Scene, beams: Sequence[Beam], left_out: float, near: float = 0
     """
     lengths = [shape_of(beam.curve).length for beam in beams]
     cut, owners, meeting = [WHOLE, WHOLE], scene.owners, MEETING * max(lengths)
-    for ends in product(*(beam.ends for beam in beams)):
+    for ends in ((one, other) for one in beams[0].ends for other in beams[1].ends):
         bodies = {owners[joint.point] if isinstance(joint, WeldedEnd) else joint for _, joint, _ in ends}
         welded = len(bodies) == 1 and isinstance(ends[0][1], WeldedEnd)
         if dist(ends[0][2], ends[1][2]) <= (max(meeting, near) if welded else meeting):
@@ -254,8 +246,7 @@ def _rigid(scene: Scene, key: str, contact: Rigid) -> Iterator[Mistake]:
     samples = np.union1d(np.linspace(*WHOLE, 2 * _SAMPLES - 1), beam.knots)
     depth = -least(lambda u: distance(contact, shape.point(u)) - _half(beam, u, thick=contact.thick), samples)[0]
     measure, of = (beam.thinnest, "its thickness") if contact.thick else (shape.length, "its length")
-    own = scene.bodies[contact.body].points
-    held = not circle and any(joint.point in own for _, joint, _ in beam.ends)
+    held = not circle and any(joint.point in scene.bodies[contact.body].points for _, joint, _ in beam.ends)
     what = "that overlaps the circle" if circle else "on the wrong side of the edge, or overlapping the edge,"
     side = f"circle from {getattr(contact, 'side', '')}" if circle else "edge from the free side"
     yield from broken(
@@ -268,56 +259,134 @@ def _rigid(scene: Scene, key: str, contact: Rigid) -> Iterator[Mistake]:
     )
 
 
-_ON_EDGE = 257
-"""Samples of a curve, from the nearest of which Newton's method starts."""
-_STEPS = 20
+def distant_ends(scene: Scene) -> Iterator[Mistake]:
+    """Ends of beams away from their points, unless an assembly brings them together."""
+    for name, beam in scene.beams.items():
+        for side, joint, place in beam.ends:
+            apart, point = _distance(scene, beam, side), str(joint.point)
+            yield from broken(
+                apart > 0.0
+                and not (side == "end" and (is_apart(scene, beam) or scene.lacks("", "assembly")))
+                and Mistake(
+                    f"beams.{name}.{side}",
+                    f"a beam end that meets no body: the curve's {side} is at {written_place(place)} m, the point "
+                    f"{point!r} at {written_place(scene.place_of(point))} m, {apart:.3g} m apart",
+                    f"at most {MEETING:g} of the beam's length between them",
+                )
+            )
 
 
-def distance(contact: Rigid, p: Array) -> Array:
-    """The distances D (k,), m, of places ``p`` (k, 2), m, from a rigid shape."""
-    sign = 1.0 if getattr(contact, "side", "") in ("outside", "left", "above") else -1.0
-    match contact:
-        case CircleContact():
-            return np.asarray(sign * (np.hypot(*(p - np.array(contact.center)).T) - contact.radius))
-        case LineContact():
-            return _from_line(np.array(contact.points), sign, p, closed=contact.closed)
-        case HalfPlaneContact():
-            return np.asarray((p - np.array(contact.point)) @ unit_vector(contact.normal))
-        case FunctionContact():
-            sign *= 1.0 if (contact.range[0] < contact.range[1]) == (contact.axis == "x") else -1.0
-        case EllipseContact():
-            sign = -sign  # the curve runs counter-clockwise, with the inside on the left
-    return _from_curve(shape_of(contact), sign, p, closed=isinstance(contact, EllipseContact))
+def is_apart(scene: Scene, beam: Beam) -> bool:
+    """True if an assembly brings the beam's end to the point."""
+    return scene.assembly is not None and isinstance(beam.end, PinnedEnd) and _distance(scene, beam, "end") > 0.0
 
 
-def _from_line(points: Array, sign: float, p: Array, *, closed: bool) -> Array:
-    along = np.diff(points, axis=0)
-    length = np.hypot(*along.T)
-    tau = along / length[:, None]
-    r = p[:, None, :] - points[None, :-1]
-    t = np.clip((r * tau).sum(axis=2), 0.0, length)
-    away = r - t[:, :, None] * tau
-    nearest, every = np.hypot(away[:, :, 0], away[:, :, 1]).argmin(axis=1), np.arange(len(p))
-    away, t = away[every, nearest], t[every, nearest]
-    # at a corner the directions of both pieces decide the side; no place is behind an end of an open line
-    around = np.vstack((tau[-1:], tau, tau[:1])) if closed else np.pad(tau, ((1, 1), (0, 0)), constant_values=np.nan)
-    towards = tau[nearest] + around[nearest + 1 + (t >= length[nearest]) - (t <= 0.0)]
-    behind = sign * (towards[:, 0] * away[:, 1] - towards[:, 1] * away[:, 0]) < 0.0
-    return np.asarray(np.where(behind, -1.0, 1.0) * np.hypot(*away.T))
+def _distance(scene: Scene, beam: Beam, side: str) -> float:
+    """Distance of an end from the point, m; zero if the end meets the point or has none."""
+    point = getattr(beam, side).point
+    apart = dist(getattr(beam.curve, side), scene.place_of(point)) if point in scene.owners else 0.0
+    return apart if apart > MEETING * shape_of(beam.curve).length else 0.0
 
 
-def _from_curve(curve: Curve, sign: float, p: Array, *, closed: bool) -> Array:
-    samples = curve.samples[:: max(1, len(curve.samples) // _ON_EDGE)]
-    samples = samples if closed else np.append(samples, 1.0)
-    places = curve.place(samples)
-    w = samples[((places[:, 0] - p[:, :1]) ** 2 + (places[:, 1] - p[:, 1:]) ** 2).argmin(axis=1)]
-    for _ in range(_STEPS):
-        away, along = curve.place(w) - p, curve.derivative(w, 1)
-        slope, bent = (away * along).sum(axis=1), (along**2 + away * curve.derivative(w, 2)).sum(axis=1)
-        # beyond the centre of curvature the distance has a maximum: the sample stays
-        w = w - np.where(bent > 0.0, slope / np.where(bent > 0.0, bent, 1.0), 0.0)
-        w = w % 1.0 if closed else np.clip(w, 0.0, 1.0)
-    away, along = p - curve.place(w), curve.derivative(w, 1)
-    slope, side = (away * along).sum(axis=1), sign * (along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0])
-    beyond = ((w <= 0.0) & (slope < 0.0)) | ((w >= 1.0) & (slope > 0.0))
-    return np.asarray(np.where((beyond & (not closed)) | (side >= 0.0), 1.0, -1.0) * np.hypot(*away.T))
+def wrong_assembly(scene: Scene) -> Iterator[Mistake]:
+    """An assembly without distant ends, moments on other ends, beams too short for their points."""
+    apart = [name for name, beam in scene.beams.items() if is_apart(scene, beam)]
+    moments = scene.assembly.moments if scene.assembly is not None and apart else ()
+    yield from broken(
+        scene.assembly is not None
+        and not apart
+        and scene.whole()
+        and Mistake(
+            "assembly",
+            "no beam with an end to be brought to its point",
+            "a beam whose pinned end is drawn apart from its point, or no assembly",
+        ),
+        *(
+            name not in apart
+            and Mistake(
+                f"assembly.moments.{name}",
+                f"a moment on {name!r}, whose end is where it belongs",
+                f"a beam whose end is drawn apart: {', '.join(map(repr, apart))}",
+            )
+            for name in moments
+        ),
+    )
+    for name in apart:
+        beam = scene.beams[name]
+        point, length = str(beam.end.point), shape_of(beam.curve).length
+        reach = dist(beam.curve.start, scene.place_of(point))
+        yield from broken(
+            not isinstance(beam.start, WeldedEnd)
+            and Mistake(
+                f"beams.{name}.start",
+                f"a {beam.start.joint!r} at the start of a beam whose end is to be brought to its point",
+                "a weld: the beam has to stand by itself before it is assembled",
+            ),
+            isinstance(beam.start, WeldedEnd)
+            and _stays(scene, beam.start.point)
+            and _stays(scene, point)
+            and reach >= (1.0 - TAUT) * length
+            and Mistake(
+                f"beams.{name}.end",
+                f"a beam too short to reach {point!r}: {length:.6g} m long, on a way of {reach:.6g} m",
+                "a beam that is longer than the way between its two points",
+            ),
+        )
+
+
+def _stays(scene: Scene, point: str | None) -> bool:
+    """True if a point is at rest without loads and with all drives at zero."""
+    name = scene.body_of(str(point))
+    body, turned = scene.bodies[name], [getattr(drive, "body", None) for drive in scene.drives.values()]
+    return body.motion == "fixed" or (isinstance(body, TurningBody) and (body.about == point or name in turned))
+
+
+def wrong_stops(scene: Scene) -> Iterator[Mistake]:
+    """Stops of an end without pin or with another stop, without direction, or with limits exceeded in the drawing."""
+    taken, owners = dict[tuple[str, str], str](), scene.owners
+    for name, stop in scene.stops.items():
+        key, first = f"stops.{name}", taken.setdefault((stop.beam, stop.end), name)
+        joint = getattr(scene.beams[stop.beam], stop.end)
+        body, other = owners.get(joint.point), owners[stop.towards]
+        yield from broken(
+            first != name
+            and Mistake(key, f"the {stop.end} of {stop.beam!r}, which stops.{first} limits", "one stop for each end")
+        )
+        mistakes = first_broken(
+            not isinstance(joint, PinnedEnd)
+            and Mistake(
+                f"{key}.end",
+                f"the {stop.end} of {stop.beam!r}, whose joint is {joint.joint!r}",
+                "an end whose joint is 'pin'",
+            ),
+            body != other
+            and Mistake(
+                f"{key}.towards",
+                f"{stop.towards!r}, a point of {other!r}",
+                f"a point of {body!r}, to which the end is pinned",
+            ),
+            body == other
+            and scene.place_of(stop.towards) == scene.place_of(joint.point)
+            and Mistake(f"{key}.towards", f"{stop.towards!r}, which is where the pin is", "a point away from it"),
+        )
+        drawn = stop.end == "start" or not is_apart(scene, scene.beams[stop.beam])
+        yield from list(mistakes) or (_exceeded_as_drawn(scene, key, stop) if drawn else ())
+
+
+def _exceeded_as_drawn(scene: Scene, key: str, stop: Stop) -> Iterator[Mistake]:
+    """Limits that the angle of a drawn end exceeds."""
+    beam, sense = scene.beams[stop.beam], 1.0 if stop.end == "start" else -1.0
+    tangent = sense * shape_of(beam.curve).tangent(np.array([float(stop.end == "end")]))[0]
+    line = np.subtract(scene.place_of(stop.towards), scene.place_of(getattr(beam, stop.end).point))
+    angle = (atan2(*tangent[::-1]) - atan2(*line[::-1])) % tau
+    angle -= tau if angle > pi + STRAIGHT else 0.0
+    stands = f"rad, where the beam as drawn stands at {angle:.6g} rad ({degrees(angle):.4g} degrees)"
+    allowed = "limits between which the beam stands as it is drawn"
+    return broken(
+        stop.least is not None
+        and stop.least - angle > ROUNDED
+        and Mistake(f"{key}.least", f"{stop.least:g} {stands}", allowed),
+        stop.most is not None
+        and angle - stop.most > ROUNDED
+        and Mistake(f"{key}.most", f"{stop.most:g} {stands}", allowed),
+    )

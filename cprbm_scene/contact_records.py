@@ -1,4 +1,8 @@
-"""Records of stops and contacts: two beams, a beam with itself, a beam with a rigid circle or edge."""
+"""Records of stops and contacts: two beams, a beam with itself, a beam with a rigid shape; distances from rigid shapes.
+
+A place is behind a rigid line if the nearest place of the line is no end of the line and the place lies opposite to the
+line's normal towards the free side.
+"""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -9,9 +13,8 @@ import numpy as np
 from pydantic import Field
 
 from cprbm_scene.curve_records import MOST_POINTS, Ellipse, Graph, Polynomial, SmoothLine, shape_of
-from cprbm_scene.curves import unit_vector
-from cprbm_scene.fields import Angle, Direction, Length, Name, Named, Of, Point, PositiveLength, Record
-from cprbm_scene.frozendict import frozendict
+from cprbm_scene.curves import Array, Curve, unit_vector
+from cprbm_scene.fields import Angle, Direction, Length, Name, Of, OptionalNamed, Point, PositiveLength, Record
 from cprbm_scene.mistakes import Mistake, broken, first_alone
 from cprbm_scene.part_records import BeamName, BodyName, PointName
 
@@ -75,7 +78,7 @@ class Related(Record):
 class PaperRigid(Record):
     """Joints of a beam outside the rigid shape, for the formulation ``paper``."""
 
-    related: Named[Related] = Field(default_factory=frozendict)
+    related: OptionalNamed[Related]
     """Joints with possible contact, by the names of beams; without an entry all joints."""
 
 
@@ -182,6 +185,8 @@ class LineContact(RigidContact):
     @first_alone
     def rules(self) -> Iterator[Mistake]:
         """Too many points, repeated points, lines with reversals or crossings."""
+        import shapely  # scenes without rigid lines need no Shapely
+
         pieces = list(pairwise(self.points))
         yield from broken(
             len(self.points) > MOST_POINTS
@@ -192,30 +197,23 @@ class LineContact(RigidContact):
             ),
         )
         tau = [unit_vector((b[0] - a[0], b[1] - a[1])) for a, b in pieces]
-        corners = enumerate(pairwise([*tau, tau[0]] if self.closed else tau), start=1)
         yield from broken(
             *(
                 1.0 + a @ b < BACKWARDS
                 and Mistake(f"points[{i}]", "a point at which the line turns back on itself", "a line that goes on")
-                for i, (a, b) in corners
+                for i, (a, b) in enumerate(pairwise([*tau, tau[0]] if self.closed else tau), start=1)
             )
         )
-        points = np.array(self.points)
-        low, high = np.minimum(points[:-1], points[1:]), np.maximum(points[:-1], points[1:])
-        x, y = points.T
-        dx, dy = (np.diff(places)[:, None] for places in (x, y))
-        side = dx * (y - y[:-1, None]) - dy * (x - x[:-1, None])
-        # pieces meet with ends on different sides of each other, or on the other's line, unless an extent is beside
-        apart = (side[:, :-1] * side[:, 1:] > 0.0) | (high[:, None] < low).any(axis=2)
-        meet = np.triu(~(apart | apart.T), k=2)
-        meet[0, -1] &= not self.closed
+        lines = shapely.linestrings(pieces)
+        first, second = shapely.STRtree(lines).query(lines, predicate="intersects").tolist()
         yield from (
             Mistake(
                 "points",
                 f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}",
                 "a line that does not meet itself",
             )
-            for i, j in np.argwhere(meet).tolist()
+            for i, j in sorted(zip(first, second, strict=True))
+            if i + 1 < j and not (self.closed and j - i == len(pieces) - 1)
         )
 
 
@@ -285,6 +283,61 @@ def measures(contact: Rigid) -> tuple[tuple[Point, ...], list[tuple[str, float]]
             return (contact.start, contact.end), [(key, shape_of(contact).length)]
         case HalfPlaneContact(point=point):
             return (point,), []
+
+
+_ON_EDGE = 257
+"""Samples of a curve, from the nearest of which Newton's method starts."""
+_STEPS = 20
+
+
+def distance(contact: Rigid, p: Array) -> Array:
+    """The distances D (k,), m, of places ``p`` (k, 2), m, from a rigid shape."""
+    sign = 1.0 if getattr(contact, "side", "") in ("outside", "left", "above") else -1.0
+    match contact:
+        case CircleContact():
+            return np.asarray(sign * (np.hypot(*(p - np.array(contact.center)).T) - contact.radius))
+        case LineContact():
+            return _from_line(np.array(contact.points), sign, p, closed=contact.closed)
+        case HalfPlaneContact():
+            return np.asarray((p - np.array(contact.point)) @ unit_vector(contact.normal))
+        case FunctionContact():
+            sign *= 1.0 if (contact.range[0] < contact.range[1]) == (contact.axis == "x") else -1.0
+        case EllipseContact():
+            sign = -sign  # the curve runs counter-clockwise, with the inside on the left
+    return _from_curve(shape_of(contact), sign, p, closed=isinstance(contact, EllipseContact))
+
+
+def _from_line(points: Array, sign: float, p: Array, *, closed: bool) -> Array:
+    along = np.diff(points, axis=0)
+    length = np.hypot(*along.T)
+    tau = along / length[:, None]
+    r = p[:, None, :] - points[None, :-1]
+    t = np.clip((r * tau).sum(axis=2), 0.0, length)
+    away = r - t[:, :, None] * tau
+    nearest, every = np.hypot(away[:, :, 0], away[:, :, 1]).argmin(axis=1), np.arange(len(p))
+    away, t = away[every, nearest], t[every, nearest]
+    # at a corner the directions of both pieces decide the side; no place is behind an end of an open line
+    around = np.vstack((tau[-1:], tau, tau[:1])) if closed else np.pad(tau, ((1, 1), (0, 0)), constant_values=np.nan)
+    towards = tau[nearest] + around[nearest + 1 + (t >= length[nearest]) - (t <= 0.0)]
+    behind = sign * (towards[:, 0] * away[:, 1] - towards[:, 1] * away[:, 0]) < 0.0
+    return np.asarray(np.where(behind, -1.0, 1.0) * np.hypot(*away.T))
+
+
+def _from_curve(curve: Curve, sign: float, p: Array, *, closed: bool) -> Array:
+    samples = curve.samples[:: max(1, len(curve.samples) // _ON_EDGE)]
+    samples = samples if closed else np.append(samples, 1.0)
+    places = curve.place(samples)
+    w = samples[((places[:, 0] - p[:, :1]) ** 2 + (places[:, 1] - p[:, 1:]) ** 2).argmin(axis=1)]
+    for _ in range(_STEPS):
+        away, along = curve.place(w) - p, curve.derivative(w, 1)
+        slope, bent = (away * along).sum(axis=1), (along**2 + away * curve.derivative(w, 2)).sum(axis=1)
+        # beyond the centre of curvature the distance has a maximum: the sample stays
+        w = w - np.where(bent > 0.0, slope / np.where(bent > 0.0, bent, 1.0), 0.0)
+        w = w % 1.0 if closed else np.clip(w, 0.0, 1.0)
+    away, along = p - curve.place(w), curve.derivative(w, 1)
+    slope, side = (away * along).sum(axis=1), sign * (along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0])
+    beyond = ((w <= 0.0) & (slope < 0.0)) | ((w >= 1.0) & (slope > 0.0))
+    return np.asarray(np.where((beyond & (not closed)) | (side >= 0.0), 1.0, -1.0) * np.hypot(*away.T))
 
 
 Contact = Annotated[

@@ -8,11 +8,10 @@ Bounds are on dimensionless numbers:
   respect to the distance: at a lower speed the spline has a cusp.
 """
 
-import operator
 from collections.abc import Iterator
 from functools import lru_cache, reduce
 from itertools import accumulate, pairwise, repeat
-from math import cos, dist, inf, isfinite, sin
+from math import cos, dist, inf, sin
 from typing import Annotated, Literal, cast
 
 import numpy as np
@@ -125,7 +124,7 @@ class Arc(_Curve):
     """Sense of rotation from start to end."""
 
 
-class Graph(Record):
+class Graph(_Curve):
     """Graph of a polynomial f, in either sense along its axis."""
 
     axis: Literal["x", "y"]
@@ -153,12 +152,12 @@ class Graph(Record):
     def largest_term(self) -> float:
         """Largest term |c_k v^k| of f in the range, m; not finite beyond the range of floating-point numbers."""
         variable = max(abs(v) for v in self.range)
-        powers = accumulate(repeat(variable, len(self.coefficients) - 1), operator.mul, initial=1.0)
+        powers = accumulate(repeat(variable, len(self.coefficients) - 1), lambda power, v: power * v, initial=1.0)
         return max(abs(c) * power if c else 0.0 for c, power in zip(self.coefficients, powers, strict=True))
 
     @first_alone
     def rules(self) -> Iterator[Mistake]:
-        """Mistakes of coefficients and ranges without a graph of finite slope."""
+        """Mistakes of coefficients and ranges without a graph of finite slope, then of the curve."""
         (first, last), count, axis = self.range, len(self.coefficients), "xy".index(self.axis)
         yield from broken(
             count > HIGHEST_DEGREE + 1
@@ -166,12 +165,9 @@ class Graph(Record):
             first == last
             and Mistake("range", f"a range from {first:g} m to the same {last:g} m", "two different values"),
         )
-        slope = inf
-        if isfinite(self.largest_term) and isfinite(last - first):
-            with np.errstate(over="ignore", invalid="ignore"):
-                slope = np.max(np.abs(shape_of(self).derivative(shape_of(self).samples, 1)[:, 1 - axis])) / abs(
-                    last - first
-                )
+        with np.errstate(all="ignore"):
+            slopes = shape_of(self).derivative(shape_of(self).samples, 1)[:, 1 - axis] / (last - first)
+            slope = float(np.nan_to_num(np.max(np.abs(slopes)), nan=inf, posinf=inf))
         yield from broken(
             not slope <= STEEPEST
             and Mistake(
@@ -180,18 +176,13 @@ class Graph(Record):
                 f"a slope of at most {STEEPEST:g} (a steeper curve may be a function of {'yx'[axis]})",
             )
         )
+        yield from super().rules()
 
 
-class Polynomial(_Curve, Graph):
+class Polynomial(Graph):
     """Graph of a polynomial f, in either sense along its axis."""
 
     kind: Literal["polynomial"]
-
-    @first_alone
-    def rules(self) -> Iterator[Mistake]:
-        """Mistakes of the graph, then of the curve."""
-        yield from Graph.rules(self)
-        yield from _Curve.rules(self)
 
 
 class SmoothLine(_Curve):

@@ -26,8 +26,7 @@ from itertools import pairwise
 from math import atan2, dist, hypot, tau
 
 import numpy as np
-from numpy.polynomial import Polynomial
-from numpy.polynomial.legendre import leggauss
+from numpy.polynomial import Polynomial, legendre
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -35,7 +34,7 @@ Point = tuple[float, float]
 
 SAMPLES = 2001
 """Samples of a curve, between which extrema are refined: a bend of 1/1000 of the length has two samples."""
-_NODES, _WEIGHTS = leggauss(12)
+_NODES, _WEIGHTS = legendre.leggauss(12)
 _MOST_PANELS = 1 << 16
 _SETTLED = 1e-14
 """Largest change of S by a halving of all panels, a fraction of the length: a few units of round-off."""
@@ -82,8 +81,7 @@ class Curve:
 
     def speed(self, w: Array) -> Array:
         """|q'|, a pure number, at parameters of any shape."""
-        along = self._q(w, 1)
-        return np.asarray(np.hypot(along[..., 0], along[..., 1]))
+        return np.asarray(np.hypot(*np.moveaxis(self._q(w, 1), -1, 0)))
 
     def place(self, w: Array) -> Array:
         """Points (n, 2), m, at parameters ``w`` (n,)."""
@@ -170,10 +168,8 @@ def circular_arc(center: Point, start: Point, end: Point, *, clockwise: bool) ->
     turn = -((first - last) % tau or tau) if clockwise else (last - first) % tau or tau
 
     def q(w: Array, order: int) -> Array:
-        # a derivative is a quarter of a turn ahead
-        angle = first + turn * w
-        c, s = np.cos(angle), np.sin(angle)
-        return np.stack(((c, s), (-turn * s, turn * c), (-(turn**2) * c, -(turn**2) * s))[order], axis=-1)
+        z = (1j * turn) ** order * np.exp(1j * (first + turn * w))
+        return np.stack((z.real, z.imag), axis=-1)
 
     return Curve(center, dist(start, center), q)
 
@@ -191,12 +187,11 @@ def graph(coefficients: Sequence[float], first: float, last: float, *, along: in
         # a steep graph has its sharpest bend where the graph is level
         level = slope.roots() if np.all(np.isfinite(g.coef)) else np.zeros(0)
         value = float(Polynomial(coefficients)(first))
-        derivatives = ((Polynomial([0.0, sense]), g), (Polynomial([sense]), g.deriv()), (Polynomial([0.0]), g.deriv(2)))
+        axes = [(each, each.deriv(), each.deriv(2)) for each in (Polynomial([0.0, sense]), g)]
     level = level.real[(np.abs(level.imag) < _REAL) & (level.real > 0.0) & (level.real < 1.0)]
 
     def q(w: Array, order: int) -> Array:
-        x, y = (np.asarray(each(w), dtype=np.float64) for each in derivatives[order])
-        return np.stack((y, x) if along else (x, y), axis=-1)
+        return np.stack([np.asarray(each[order](w), dtype=np.float64) for each in axes[:: -1 if along else 1]], axis=-1)
 
     samples = np.union1d(np.linspace(0.0, 1.0, SAMPLES), level)
     return Curve((value, first) if along else (first, value), extent, q, np.linspace(0.0, 1.0, _PANELS + 1), samples)
@@ -240,10 +235,8 @@ def least(
 
     values = function(samples)
     fence = np.pad(values, 1, constant_values=np.inf)
-    minima = np.flatnonzero((values <= fence[:-2]) & (values <= fence[2:]))
-    found = [(float(np.min(values)), float(samples[np.argmin(values)]))]
-    if found[0][0] > refined_below:
-        return found[0]
+    minima = np.flatnonzero((values <= fence[:-2]) & (values <= fence[2:]) & (values.min() <= refined_below))
+    found = [(float(values.min()), float(samples[values.argmin()]))]
     for i in minima[np.argsort(values[minima], kind="stable")[:_LOWEST]]:
         # the tolerance of the place is a share of the variable: the variable is zero at the sample
         beside = samples[max(i - 1, 0)] - samples[i], samples[min(i + 1, len(samples) - 1)] - samples[i]

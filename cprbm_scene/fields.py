@@ -19,8 +19,7 @@ number and then converts the number by the :class:`Reading` in pydantic's contex
 import math
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self, TypeVar
@@ -42,11 +41,20 @@ from pydantic import (
     WrapValidator,
     model_validator,
 )
-from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+from pydantic_core import CoreSchema, core_schema
 
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, SceneError, broken, in_words, mistake, shown, silent, unknown_name
+from cprbm_scene.mistakes import (
+    Mistake,
+    SceneError,
+    broken,
+    in_words,
+    mistake,
+    refuse_broken,
+    shown,
+    silent,
+    unknown_name,
+)
 from cprbm_scene.units import (
     ANGLE,
     FUNCTIONS,
@@ -76,7 +84,8 @@ Title = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 
 
 Named = Annotated[Mapping[Name, T], AfterValidator(frozendict)]
-NamedByWords = Annotated[Mapping[Word, T], AfterValidator(frozendict)]
+OptionalNamed = Annotated[Named[T], Field(default_factory=frozendict)]
+"""Table that a file may leave out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,8 +113,8 @@ class Record(BaseModel):
         if record is not data:
             record.__dict__.update(record.completed())
             # rules limit files; programs build records beyond the rules
-            if isinstance(info.context, Reading) and (mistakes := list(record.rules())):
-                raise SceneError(mistakes)
+            if isinstance(info.context, Reading):
+                refuse_broken(*record.rules())
         return record
 
     def completed(self) -> Mapping[str, object]:
@@ -201,13 +210,14 @@ class Reading:
         Raises:
             SceneError: the expression has no value, or another unit.
         """
-        with suppress(OverflowError):
+        try:
             if isinstance(value, str) and value.startswith("="):
                 return self._evaluated(value, unit)
             if unit is None or isinstance(value, bool) or not isinstance(value, int | float):
                 return value
             return unit.in_si(float(value), self.units)
-        return math.inf
+        except OverflowError:
+            return math.inf
 
     def register(self, parameters: Mapping[str, Parameter]) -> Mapping[str, Parameter]:
         """The parameters in SI with the settings; the reading evaluates expressions from now on.
@@ -225,9 +235,8 @@ class Reading:
             try:
                 found[name] = self._parameter(name, parameters[name])
             except SceneError as error:
-                mistakes += [replace(each, key=each.key or name) for each in error.mistakes]
-        if mistakes:
-            raise SceneError(mistakes)
+                mistakes += [each._replace(key=each.key or name) for each in error.mistakes]
+        refuse_broken(*mistakes)
         return frozendict(found)
 
     def _lacks(self, table: str, name: str) -> bool:
@@ -238,11 +247,16 @@ class Reading:
         number, own = self._expression(text, "")
         if self._lacks("units", "length"):
             silent()  # the unit of the file's lengths is unknown
-        if own is not None and unit is not None and own.dimension != unit.dimension:
-            raise mistake(
+        refuse_broken(
+            own is not None
+            and unit is not None
+            and own.dimension != unit.dimension
+            and Mistake(
+                "",
                 f"{text!r}, a number in {own}" if str(own) else f"{text!r}, a ratio without unit",
                 f"a number in {unit}" if str(unit) else "a number without unit",
             )
+        )
         return number if unit is None or own is not None else unit.in_si(number, self.units)
 
     def _expression(self, text: str, key: str, users: tuple[str, ...] = ()) -> Value:
@@ -259,14 +273,21 @@ class Reading:
         size, own = unit_of(given.unit, f"{name}.unit")
         span = given.range and (given.range[0] * size, given.range[1] * size)
         slack = _ROUNDED * max(map(abs, span)) if span else 0.0
-        if span and not span[0] - slack <= number <= span[1] + slack:
-            raise mistake(
+        refuse_broken(
+            span
+            and not span[0] - slack <= number <= span[1] + slack
+            and Mistake(
+                f"{name}.value",
                 f"{number / size:.9g} {given.unit}".rstrip(),
                 f"a number from {span[0] / size:g} to {span[1] / size:g} {given.unit}".rstrip(),
-                f"{name}.value",
             )
-        scatter = given.tolerance and Tolerance(**{kind: each and each * size for kind, each in given.tolerance})
-        return Parameter(value=number, unit=str(own if given.unit else unit or NUMBER), range=span, tolerance=scatter)
+        )
+        return Parameter(
+            value=number,
+            unit=str(own if given.unit else unit or NUMBER),
+            range=span,
+            tolerance=given.tolerance and Tolerance(**{kind: each and each * size for kind, each in given.tolerance}),
+        )
 
     def _named(self, name: str, users: tuple[str, ...] = ()) -> Value:
         """Value of a parameter that its ``users`` refer to, from the first parameter to the last."""
@@ -282,9 +303,14 @@ class Reading:
     def _computed(self, name: str, given: Parameter, users: tuple[str, ...]) -> Value:
         setting = self.settings.get(name)
         if isinstance(given.value, str):
-            if given.unit or setting is not None:
-                allowed = "a number with a unit, or an expression alone; an expression takes no other value"
-                raise mistake(f"{given.value!r}, an expression", allowed, name)
+            refuse_broken(
+                (given.unit or setting is not None)
+                and Mistake(
+                    name,
+                    f"{given.value!r}, an expression",
+                    "a number with a unit, or an expression alone; an expression takes no other value",
+                )
+            )
             return self._expression(given.value, f"{name}.value", users)
         number, (size, unit) = given.value, unit_of(given.unit, f"{name}.unit")
         own, written = unit, isinstance(setting, str) and _SETTING.fullmatch(setting)
@@ -292,9 +318,14 @@ class Reading:
             number, (size, own) = float(written[1]), unit_of(written[2] or given.unit, name)
         elif setting is not None:
             number, size = math.nan if isinstance(setting, str) else setting, 1.0
-        if not math.isfinite(number * size) or own.dimension != unit.dimension:
-            found = repr(given.value if setting is None else setting)
-            raise mistake(found, f"a finite number in {given.unit or 'no unit'}, such as 1.9{given.unit}", name)
+        refuse_broken(
+            not (math.isfinite(number * size) and own.dimension == unit.dimension)
+            and Mistake(
+                name,
+                repr(given.value if setting is None else setting),
+                f"a finite number in {given.unit or 'no unit'}, such as 1.9{given.unit}",
+            )
+        )
         return Value(float(Fraction(repr(number)) * Fraction(repr(size))), unit if given.unit else None)
 
 
@@ -310,7 +341,7 @@ class Measured:
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.with_info_wrap_validator_function(self.number, handler(source))
 
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {"anyOf": [handler(schema), {"type": "string", "pattern": "^="}]}
 
     def number(self, value: object, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
@@ -321,8 +352,10 @@ class Measured:
         number = info.context.in_si(value, unit)
         checked = handler(number if isinstance(value, str) else value)
         pure = unit is None or unit == NUMBER
-        if not (pure or number == 0.0 == checked or SMALLEST <= abs(number) <= LARGEST):
-            raise PydanticCustomError("range", f"zero or a magnitude between {SMALLEST:g} and {LARGEST:g} in SI units")
+        refuse_broken(
+            not (pure or number == 0.0 == checked or SMALLEST <= abs(number) <= LARGEST)
+            and Mistake("", shown(value), f"zero or a magnitude between {SMALLEST:g} and {LARGEST:g} in SI units")
+        )
         return checked if pure else number
 
 
@@ -337,8 +370,7 @@ Point = tuple[Length, Length]
 
 
 def _nonzero(direction: tuple[float, float]) -> tuple[float, float]:
-    if direction == (0.0, 0.0):
-        raise mistake("[0, 0]", "a direction, at least one number not zero")
+    refuse_broken(direction == (0.0, 0.0) and Mistake("", "[0, 0]", "a direction, at least one number not zero"))
     return direction
 
 

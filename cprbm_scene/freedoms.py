@@ -62,7 +62,7 @@ AXES = ((1.0, 0.0), (0.0, 1.0))
 
 
 class Freedoms:
-    """Rows of the parts of a scene; ``owners`` are the names of bodies by point.
+    """Rows of the parts of a scene; ``owners`` are the names of bodies by point, ``drives`` hold from the start.
 
     A row (3,) is that of a single part.  A wide row (3·parts,) has the freedoms of all bodies and then of all beams.
     """
@@ -75,6 +75,8 @@ class Freedoms:
             max((float(np.hypot(*(place - self.origin))) for place in self.places.values()), default=0.0) or 1.0
         )
         self.parts = [*scene.bodies, *scene.beams]
+        later = {stage.name for stage in scene.stages[1:]}
+        self.drives = {name: drive for name, drive in scene.drives.items() if drive.begins not in later}
 
     def along(self, point: str, direction: Point) -> Array:
         """Row of the displacement of a ``point`` along a direction."""
@@ -208,13 +210,12 @@ def unsupported(freedoms: Freedoms) -> Iterator[tuple[Mistake, set[str]]]:
     Beside each mistake stand the names of the bodies and beams that move together.
     """
     scene = freedoms.scene
-    drives = [drive for drive in scene.drives.values() if scene.holds(drive, scene.stages[0].name)]
-    if all(body.motion == "free" for body in scene.bodies.values()) and not drives:
+    if all(body.motion == "free" for body in scene.bodies.values()) and not freedoms.drives:
         yield Mistake("bodies", "no fixed body", 'at least one body with motion = "fixed"'), set()
         return
     for name, beam in scene.beams.items():
         joints = [end.joint for _, end, _ in beam.ends if end.joint != "free"]
-        mistakes = first_broken(
+        mistakes = broken(
             not joints
             and Mistake(
                 f"beams.{name}", "two free ends", "at least one end that meets a body, or a contact that holds the beam"
@@ -231,7 +232,7 @@ def unsupported(freedoms: Freedoms) -> Iterator[tuple[Mistake, set[str]]]:
     for name, body in scene.bodies.items():
         together, reached = connected({name}, met.values()), any(name in bodies for bodies in met.values())
         guides = [row for each in together for row in freedoms.guide(each)]
-        driven = [freedoms.row(drive) for drive in drives if freedoms.owner(drive) in together]
+        driven = [freedoms.row(drive) for drive in freedoms.drives.values() if freedoms.owner(drive) in together]
         if sum(independent(guides + driven)) < FREEDOMS:
             yield (
                 Mistake(
@@ -249,21 +250,21 @@ def unsupported(freedoms: Freedoms) -> Iterator[tuple[Mistake, set[str]]]:
 def _acted_on(freedoms: Freedoms, names: set[str]) -> bool:
     """True if a contact with other parts, a load or a drive may hold the bodies and beams of the ``names``."""
     scene = freedoms.scene
-    acting = (*scene.loads.values(), *scene.drives.values())
+    acting = (freedoms.parts_of(each) | {""} for each in (*scene.loads.values(), *scene.drives.values()))
     touching = map(freedoms.parts_of, scene.contacts.values())
-    return any(names & freedoms.parts_of(each) for each in acting) or any(
-        parts & names and parts - names for parts in touching
-    )
+    return any(parts & names and parts - names for parts in (*acting, *touching))
 
 
 def _loose(freedoms: Freedoms) -> Iterator[Mistake]:
     """Bodies with a motion in the null space of B; of a scene without pins, contacts and stops may hold their parts."""
     scene = freedoms.scene
-    drives = {name: drive for name, drive in scene.drives.items() if scene.holds(drive, scene.stages[0].name)}
     held = set[str]().union(*map(freedoms.parts_of, (*scene.contacts.values(), *scene.stops.values())))
-    rows = (freedoms.wide({name: row}) for name in (() if scene.pins else held) for row in np.eye(3))
-    constraints = (row for _, row in freedoms.constraints(drives))
-    _, values, motions = np.linalg.svd(np.array([*rows, *constraints, *freedoms.joints()]))
+    rows = [
+        *(freedoms.wide({name: row}) for name in (() if scene.pins else held) for row in np.eye(3)),
+        *(row for _, row in freedoms.constraints(freedoms.drives)),
+        *freedoms.joints(),
+    ]
+    _, values, motions = np.linalg.svd(np.array(rows))
     null_space = motions[np.count_nonzero(values > NEGLIGIBLE) :]
     for i, name in enumerate(scene.bodies):
         own = [motion for motion in null_space[:, 3 * i : 3 * i + 3] if np.abs(motion).max() > NEGLIGIBLE]

@@ -3,9 +3,7 @@
 ``types.MappingProxyType`` has no hash and cannot be pickled.  Python 3.15 has a built-in ``frozendict``.
 """
 
-from __future__ import annotations
-
-from typing import NoReturn, TypeVar
+from typing import NoReturn, Self, TypeVar
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -29,7 +27,7 @@ class frozendict(dict[K, V]):  # noqa: N801 - lower case, as the built-in mappin
         """Hash of the items without their order: equal mappings have equal hashes."""
         return hash(frozenset(self.items()))
 
-    def __reduce__(self) -> tuple[type[frozendict[K, V]], tuple[dict[K, V]]]:
+    def __reduce__(self) -> tuple[type[Self], tuple[dict[K, V]]]:
         """Pickle of all items at once: the pickle of a ``dict`` would set items one after the other."""
         return type(self), (dict(self),)
 

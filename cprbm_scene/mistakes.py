@@ -1,13 +1,10 @@
 """Mistakes of a question, with the key, the value found and the values allowed; errors of pydantic as mistakes."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from itertools import islice
-from typing import Any, NoReturn, get_args
+from typing import Any, NamedTuple, NoReturn, get_args
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
@@ -31,8 +28,7 @@ _MEANT = {
 _NOT_MODELLED = re.compile("friction|temperature|thermal|plastic|yield|damping|density|mass|viscos", re.IGNORECASE)
 
 
-@dataclass(frozen=True, slots=True)
-class Mistake:
+class Mistake(NamedTuple):
     """A mistake of a problem statement.
 
     Attributes:
@@ -52,6 +48,18 @@ class Mistake:
         return f"{where}: found {self.found}; allowed: {self.allowed}"
 
 
+MOST = 100
+"""Largest number of mistakes in an error: a larger number repeats a single mistake."""
+
+
+class SceneError(ValueError):
+    """A wrong question: all different mistakes, up to :data:`MOST`."""
+
+    def __init__(self, mistakes: list[Mistake] | tuple[Mistake, ...]) -> None:
+        self.mistakes = tuple(dict.fromkeys(mistakes))
+        super().__init__("\n".join(str(mistake) for mistake in self.mistakes))
+
+
 def mistake(found: str, allowed: str, key: str = "") -> SceneError:
     """An error of a validator with both halves of a mistake's sentence, at a ``key`` below the validated field."""
     return SceneError([Mistake(key, found, allowed)])
@@ -67,9 +75,14 @@ def broken(*rules: object) -> Iterator[Mistake]:
     return (rule for rule in rules if isinstance(rule, Mistake))
 
 
-def first_broken(*rules: object) -> Iterator[Mistake]:
-    """The mistake of the first broken rule, if any."""
-    return islice(broken(*rules), 1)
+def refuse_broken(*rules: object) -> None:
+    """Raise an error with the mistakes of all broken rules, if any.
+
+    Raises:
+        SceneError: a rule is broken.
+    """
+    if mistakes := list(broken(*rules)):
+        raise SceneError(mistakes)
 
 
 def first_alone(rules: Callable[..., Iterator[Mistake]]) -> Callable[..., Iterator[Mistake]]:
@@ -77,21 +90,13 @@ def first_alone(rules: Callable[..., Iterator[Mistake]]) -> Callable[..., Iterat
     return lambda *given: islice(rules(*given), 1)
 
 
-MOST = 100
-"""Largest number of mistakes in an error: a larger number repeats a single mistake."""
-
-
-class SceneError(ValueError):
-    """A wrong question: all different mistakes, up to :data:`MOST`."""
-
-    def __init__(self, mistakes: list[Mistake] | tuple[Mistake, ...]) -> None:
-        self.mistakes = tuple(dict.fromkeys(mistakes))
-        super().__init__("\n".join(str(mistake) for mistake in self.mistakes))
+first_broken = first_alone(broken)
+"""The mistake of the first broken rule, if any."""
 
 
 def first_of(found: Iterable[Mistake], file: str = "") -> list[Mistake]:
-    """The first :data:`MOST` mistakes, and a note if there are more."""
-    some = list(islice(found, MOST + 1))
+    """The first :data:`MOST` mistakes of a ``file``, and a note if there are more."""
+    some = [each._replace(file=file) for each in islice(found, MOST + 1)]
     return some if len(some) <= MOST else [*some[:MOST], Mistake("", "more mistakes", "none; mend these first", file)]
 
 
@@ -171,7 +176,7 @@ def in_words(error: ValidationError, data: object, fields: Mapping[str, FieldInf
         if not short and not (kind == "missing" and f" (is {details['loc'][-1]!r} meant?)" in meant):
             key = _key(details["loc"], data, own=kind in ("missing", "extra_forbidden"))
             own = getattr(context.get("error"), "mistakes", None) or [_mistake(details, fields)]
-            yield from (replace(each, key=f"{key}.{each.key}".strip(".")) for each in own)
+            yield from (each._replace(key=f"{key}.{each.key}".strip(".")) for each in own)
 
 
 def _mistake(details: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Mistake:

@@ -5,11 +5,11 @@ from collections.abc import Collection, Container, Iterator, Mapping
 import numpy as np
 
 from cprbm_scene.fields import Of, Record
-from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import LISTED, Mistake, broken, unknown_name
 from cprbm_scene.statement import (
     CRITICAL,
     STRESSES,
+    UNITS,
     BeamContact,
     DisplacementDrive,
     EdgeContact,
@@ -34,21 +34,19 @@ _TABLES = ("beams", "loads", "drives", "contacts", "stops", "pins")
 def references(value: object, key: str = "", of: Of | None = None) -> Iterator[tuple[Of, str, str]]:
     """Kinds, keys and names of all references within a ``value`` at a ``key``, itself a reference if ``of`` a kind."""
     match value:
+        case str() if of is not None:
+            yield of, key.removeprefix("."), value
         case Record():
-            fields = type(value).model_fields.items()
-            kinds = {name: next((of for of in info.metadata if isinstance(of, Of)), None) for name, info in fields}
-            inner = [(f".{(of and of.key) or name}", getattr(value, name), of) for name, of in kinds.items()]
+            for name, field in type(value).model_fields.items():
+                kind = next((each for each in field.metadata if isinstance(each, Of)), None)
+                yield from references(getattr(value, name), f"{key}.{(kind and kind.key) or name}", kind)
         case Mapping():
             # the names of a mapping with a kind are references
-            inner = [(f".{name}", name if of else each, of) for name, each in value.items()]
-        case tuple():
-            inner = [(f"[{i}]", each, of) for i, each in enumerate(value) if not isinstance(each, float)]
-        case _:
-            inner = []
-    if of is not None and isinstance(value, str):
-        yield of, key.removeprefix("."), value
-    for part, each, kind in inner:
-        yield from references(each, f"{key}{part}", kind)
+            for name, each in value.items():
+                yield from references(name if of else each, f"{key}.{name}", of)
+        case tuple() if not isinstance(next(iter(value), None), float):
+            for i, each in enumerate(value):
+                yield from references(each, f"{key}[{i}]", of)
 
 
 def repeated_names(scene: Scene) -> Iterator[Mistake]:
@@ -88,40 +86,18 @@ def repeated_names(scene: Scene) -> Iterator[Mistake]:
     )
 
 
-def repeated_contacts(scene: Scene) -> Iterator[Mistake]:
-    """Contacts of the same beams, or of the same beam and rigid shape."""
-    seen: dict[object, str] = {}
-    for name, contact in scene.contacts.items():
-        match contact:
-            case RigidContact():
-                # the same shape, whatever the formulation
-                shape = frozenset[object](value for value in contact if value[0] not in {"thick", "paper"})
-                what, part, same = "beam and the shape", "", shape
-            case BeamContact():
-                what, part, same = "pair", ".between", frozenset(contact.beams)
-            case _:
-                what, part, same = "beam", ".beam", frozenset(contact.beams)
-        first = seen.setdefault(same, name)
-        yield from broken(
-            first != name
-            and Mistake(f"contacts.{name}{part}", f"the {what} of contacts.{first} again", f"each {what} once")
-        )
-
-
 MECHANICAL = ("point", "body", "beam")
 """Kinds of named parts without which a record has no place in the mechanism."""
-_KINDS: Mapping[str, tuple[str, ...]] = frozendict(
-    {
-        "material": ("materials",),
-        "point": ("points",),
-        "body": ("bodies",),
-        "beam": ("beams",),
-        "stage": ("stages",),
-        "load": ("loads",),
-        "load or drive": ("loads", "drives"),
-        "beam or contact with a rigid edge": ("beams", "edges"),
-    }
-)
+_KINDS: Mapping[str, tuple[str, ...]] = {
+    "material": ("materials",),
+    "point": ("points",),
+    "body": ("bodies",),
+    "beam": ("beams",),
+    "stage": ("stages",),
+    "load": ("loads",),
+    "load or drive": ("loads", "drives"),
+    "beam or contact with a rigid edge": ("beams", "edges"),
+}
 """Kinds of named parts, and their tables: ``points`` are of all bodies, ``edges`` the contacts with rigid edges."""
 
 
@@ -142,23 +118,21 @@ def unknown_names(scene: Scene, kinds: Collection[str] = tuple(_KINDS)) -> Itera
     )
 
 
-_OF: Mapping[Quantity, str] = frozendict(
-    {
-        "displacement": "a point of a body or of a free end, end = { joint = 'free', point = 'NAME' }",
-        "rotation": "a body",
-        "force": "a contact",
-        "centre": "a contact",
-        "ends": "a contact",
-        "closing_load": "a contact",
-        "bending_stress": "a beam",
-        "combined_stress": "a beam",
-        "reaction": "a point of a fixed body at which a beam ends, a pivot, a driven point, or a body that slides",
-        "reaction_moment": "a point of a fixed body at which a beam ends, or a body whose rotation is driven",
-        "potential_energy": f"{RESERVED!r}, the scene itself",
-        "angle": "a stop",
-        "moment": "a stop, or a contact with a line, a half-plane or a function of the body that the beam is pinned to",
-    }
-)
+_OF: Mapping[Quantity, str] = {
+    "displacement": "a point of a body or of a free end, end = { joint = 'free', point = 'NAME' }",
+    "rotation": "a body",
+    "force": "a contact",
+    "centre": "a contact",
+    "ends": "a contact",
+    "closing_load": "a contact",
+    "bending_stress": "a beam",
+    "combined_stress": "a beam",
+    "reaction": "a point of a fixed body at which a beam ends, a pivot, a driven point, or a body that slides",
+    "reaction_moment": "a point of a fixed body at which a beam ends, or a body whose rotation is driven",
+    "potential_energy": f"{RESERVED!r}, the scene itself",
+    "angle": "a stop",
+    "moment": "a stop, or a contact with a line, a half-plane or a function of the body that the beam is pinned to",
+}
 """Parts of the scene with a quantity."""
 
 _BEARERS = ("bodies", "points", "beams", "contacts", "stops")
@@ -204,10 +178,9 @@ def wrong_probes(scene: Scene) -> Iterator[Mistake]:
 def wrong_claims(scene: Scene) -> Iterator[Mistake]:
     """Claims on unknown probes, stages or stations, and a single value for a probe of several numbers."""
     probes = {probe.name: probe for probe in scene.probes}
-    stages = [stage.name for stage in scene.stages]
     for i, claim in enumerate(scene.claims):
         key, probe, critical = f"claims[{i}]", probes.get(claim.probe), claim.probe == CRITICAL
-        unasked = claim.stage in stages and probe is not None and not probe.asked_in(claim.stage)
+        unasked = any(probe and not probe.asked_in(each.name) for each in scene.stages if each.name == claim.stage)
         own = [value for stage in scene.stages if claim.in_stage(stage.name) for value in stage.stations]
         yield from broken(
             not (probe or critical or scene.lacks(claim.probe, "probes"))
@@ -237,7 +210,7 @@ def wrong_stages(scene: Scene) -> Iterator[Mistake]:
     """Stages with the same name, with loads of different units together, or with a drive that is free there."""
     first = {stage.name: i for i, stage in reversed(list(enumerate(scene.stages)))}
     for i, stage in enumerate(scene.stages):
-        units = sorted({str(scene.loads[load].unit) for load in stage.together if load in scene.loads})
+        units = sorted({str(UNITS[scene.loads[load].kind]) for load in stage.together if load in scene.loads})
         drive = scene.drives.get(stage.steps)
         yield from broken(
             first[stage.name] < i and Mistake(f"stages[{i}].name", f"{stage.name!r} again", "each stage's name once"),
@@ -252,17 +225,28 @@ def wrong_stages(scene: Scene) -> Iterator[Mistake]:
         )
 
 
-def wrong_paper(scene: Scene) -> Iterator[Mistake]:
-    """Data of contacts for the formulation ``paper`` on beams outside the contact."""
+def wrong_contacts(scene: Scene) -> Iterator[Mistake]:
+    """Contacts of the same beams or shape, and data for the formulation ``paper`` on beams outside the contact."""
+    seen: dict[object, str] = {}
     for name, contact in scene.contacts.items():
-        key, names = f"contacts.{name}.paper", ", ".join(map(repr, contact.beams))
+        match contact:
+            case RigidContact():
+                # the same shape, whatever the formulation
+                shape = frozenset[object](value for value in contact if value[0] not in {"thick", "paper"})
+                what, part, same = "beam and the shape", "", shape
+            case BeamContact():
+                what, part, same = "pair", ".between", frozenset(contact.beams)
+            case _:
+                what, part, same = "beam", ".beam", frozenset(contact.beams)
+        first, key, names = seen.setdefault(same, name), f"contacts.{name}", ", ".join(map(repr, contact.beams))
         allowed = f"one of the pair: {names}" if isinstance(contact, BeamContact) else f"the contact's beam {names}"
         boundary = contact.paper.boundary if isinstance(contact.paper, PaperContact) else contact.beams[0]
         related = contact.paper.related if contact.paper is not None else ()
         yield from broken(
-            boundary not in contact.beams and Mistake(f"{key}.boundary", repr(boundary), allowed),
+            first != name and Mistake(f"{key}{part}", f"the {what} of contacts.{first} again", f"each {what} once"),
+            boundary not in contact.beams and Mistake(f"{key}.paper.boundary", repr(boundary), allowed),
             *(
-                beam not in contact.beams and Mistake(f"{key}.related.{beam}", f"the beam {beam!r}", allowed)
+                beam not in contact.beams and Mistake(f"{key}.paper.related.{beam}", f"the beam {beam!r}", allowed)
                 for beam in related
             ),
         )
@@ -279,7 +263,7 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
         *(drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)),
         *(name for name, body in scene.bodies.items() if isinstance(body, SlidingBody)),
     )
-    turned = [drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive)]
+    turned = (drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive))
     edges = [name for name, each in scene.contacts.items() if isinstance(each, EdgeContact) and _pinned(scene, each)]
     return {
         _OF["displacement"]: list(scene.owners),

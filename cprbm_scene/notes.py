@@ -13,7 +13,6 @@ r        P L²/(E I), M L/(E I) or q L³/(E I): of order 1 where the deflection 
 With E I = E w t³/12, r has the power -1 of E, 1 of the force and -2 of the unit of length, for every kind of load.
 """
 
-import math
 from collections.abc import Iterator
 from itertools import combinations
 
@@ -21,8 +20,7 @@ import numpy as np
 
 from cprbm_scene.clearance import TOUCHING, crossing, overlap_at_rest
 from cprbm_scene.curve_records import shape_of
-from cprbm_scene.fields import Units
-from cprbm_scene.statement import Beam, BeamContact, BodyLoad, Load, Scene
+from cprbm_scene.statement import UNITS, Beam, BeamContact, BodyLoad, Load, Scene, Units
 from cprbm_scene.units import BY_QUANTITY, SIZES
 
 LARGE = 1000.0
@@ -42,8 +40,7 @@ def notes(scene: Scene) -> Iterator[str]:
     known = {*map(frozenset, scene.may_cross), *(frozenset(contact.beams) for contact in scene.contacts.values())}
     boxes = {name: _box(beam) for name, beam in scene.beams.items()}
     for first, second in combinations(scene.beams, 2):
-        (low, high), (least, most) = boxes[first], boxes[second]
-        beside = np.any(low > most) or np.any(least > high)
+        beside = any(np.any(boxes[one][0] > boxes[other][1]) for one, other in ((first, second), (second, first)))
         meeting = "" if beside or {first, second} in known else _meeting(scene, first, second)
         if meeting:
             yield (
@@ -61,8 +58,9 @@ def notes(scene: Scene) -> Iterator[str]:
 def _load_notes(scene: Scene) -> Iterator[str]:
     """Sentences on implausible loads."""
     for name, load in scene.loads.items():
-        stages = (stage for stage in scene.stages if name in stage.stepped)
-        largest = max((abs(value) for stage in stages for value in stage.stations), default=0.0)
+        largest = max(
+            (abs(value) for stage in scene.stages if name in stage.stepped for value in stage.stations), default=0.0
+        )
         beams = scene.beams if isinstance(load, BodyLoad) else [load.beam]
         ratio, beam = min((largest * _per_unit(scene, load, beam), beam) for beam in beams)
         if ratio > LARGE:
@@ -94,7 +92,7 @@ def _per_unit(scene: Scene, load: Load, name: str) -> float:
     beam = scene.beams[name]
     width = float(beam.width_at(beam.knots).max())
     stiffness = scene.materials[beam.material].youngs_modulus * width * beam.thickest**3 / 12.0
-    return float(shape_of(beam.curve).length ** (2 - load.unit.length) / stiffness)
+    return float(shape_of(beam.curve).length ** (2 - UNITS[load.kind].length) / stiffness)
 
 
 def _explanation(ratio: float, modulus: float, units: Units) -> str:
@@ -106,7 +104,7 @@ def _explanation(ratio: float, modulus: float, units: Units) -> str:
         if other != own
     )
     found = (
-        (abs(math.log10(true)), f" Is a {quantity} in {other} written as {own}?")
+        (abs(float(np.log10(true))), f" Is a {quantity} in {other} written as {own}?")
         for quantity, own, other, factor in mixed
         if (true := ratio * factor ** _POWERS[quantity]) <= LARGE
         and SOFTEST <= modulus * (factor if quantity == "stress" else 1.0) <= STIFFEST

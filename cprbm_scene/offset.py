@@ -83,13 +83,16 @@ class OffsetQuestion(Record):
 
     def rules(self) -> Iterator[Mistake]:
         """Repeated values, claims on numbers without a run, and offset curves that are no graph over the other axis."""
-        most, shown = max(self.numbers), self.shown.offsets if self.shown else ()
         yield from broken(
             len(set(self.offsets)) < len(self.offsets) and Mistake("offsets", "a value twice", "each once"),
             len(set(self.numbers)) < len(self.numbers) and Mistake("numbers", "a value twice", "each once"),
             *(
-                claim.numbers_from > most
-                and Mistake(f"claims[{i}].numbers_from", f"{claim.numbers_from}, beyond all numbers", f"at most {most}")
+                claim.numbers_from > max(self.numbers)
+                and Mistake(
+                    f"claims[{i}].numbers_from",
+                    f"{claim.numbers_from}, beyond all numbers",
+                    f"at most {max(self.numbers)}",
+                )
                 for i, claim in enumerate(self.claims)
             ),
         )
@@ -99,7 +102,7 @@ class OffsetQuestion(Record):
         normals = self.sign * np.column_stack((-tangents[:, 1], tangents[:, 0]))
         places = [
             (f"{part}[{i}]", t)
-            for part, own in (("offsets", self.offsets), ("shown.offsets", shown))
+            for part, own in (("offsets", self.offsets), ("shown.offsets", self.shown.offsets if self.shown else ()))
             for i, t in enumerate(own)
         ]
         parallel = bool(np.min(np.abs(across)) < _ACROSS or np.ptp(np.sign(across)) > 0.0)

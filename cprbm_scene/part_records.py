@@ -8,7 +8,6 @@ Bounds are on dimensionless numbers, with thickness t, arc length L and curvatur
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from itertools import pairwise
 from typing import Annotated, Literal
 
@@ -25,9 +24,20 @@ from cprbm_scene.curve_records import (
     with_half_waves,
 )
 from cprbm_scene.curves import SAMPLES, Array
-from cprbm_scene.fields import Direction, Length, Measured, Name, Named, Number, Of, Point, PositiveLength, Record
-from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, SceneError, broken, first_broken, unknown_name, written_place
+from cprbm_scene.fields import (
+    Direction,
+    Length,
+    Measured,
+    Name,
+    Named,
+    Number,
+    Of,
+    OptionalNamed,
+    Point,
+    PositiveLength,
+    Record,
+)
+from cprbm_scene.mistakes import Mistake, broken, first_broken, refuse_broken, unknown_name, written_place
 from cprbm_scene.units import NUMBER, STRESS
 
 THINNEST, THICKEST = 1e-5, 0.2
@@ -63,7 +73,7 @@ class FixedBody(Record):
     """
 
     motion: Literal["fixed"]
-    points: Named[Point] = Field(default_factory=frozendict)
+    points: OptionalNamed[Point]
     """Points of the body by name, at their initial places."""
 
 
@@ -267,8 +277,7 @@ class Beam(Record):
         if self.imperfection is None:
             return {}
         curve = with_half_waves(self.curve, self.imperfection.amplitude, self.imperfection.half_waves)
-        if spoiled := list(curve.rules()):
-            raise SceneError([replace(each, key=f"curve.{each.key}".rstrip(".")) for each in spoiled])
+        refuse_broken(*(each._replace(key=f"curve.{each.key}".rstrip(".")) for each in curve.rules()))
         return {"curve": curve, "imperfection": None}
 
     @property

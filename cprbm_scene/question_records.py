@@ -6,7 +6,7 @@ Stations have the unit of the stepped load or drive, values of claims the unit o
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from math import isclose
-from typing import Annotated, Any, ClassVar, Literal, cast
+from typing import Annotated, Any, Literal, cast
 
 from pydantic import Field, WithJsonSchema, create_model, model_validator
 
@@ -14,8 +14,8 @@ from cprbm_scene.fields import (
     Direction,
     Measured,
     Name,
-    Named,
     Of,
+    OptionalNamed,
     Positive,
     PositiveShare,
     Reading,
@@ -24,8 +24,7 @@ from cprbm_scene.fields import (
     Text,
     Units,
 )
-from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import Mistake, broken, mistake
+from cprbm_scene.mistakes import Mistake, broken, refuse_broken
 from cprbm_scene.part_records import BeamName, BodyName, PointName
 from cprbm_scene.units import ANGLE, FORCE, LENGTH, LINE_LOAD, MOMENT, STRESS, Unit
 
@@ -41,14 +40,13 @@ class Assembly(Record):
     throughout, stops as soon as the ends are at their points.
     """
 
-    moments: Annotated[Named[Annotated[float, Measured(MOMENT)]], Of("beam")] = Field(default_factory=frozendict)
+    moments: Annotated[OptionalNamed[Annotated[float, Measured(MOMENT)]], Of("beam")]
     """Moments on pinned ends by the names of beams, counter-clockwise."""
 
 
 class Moment(Record):
     """Moment on a body, counter-clockwise."""
 
-    unit: ClassVar[Unit] = MOMENT
     kind: Literal["moment"]
     body: BodyName
     """Body under the moment, counter-clockwise."""
@@ -57,7 +55,6 @@ class Moment(Record):
 class Force(Record):
     """Dead force at a point of a body."""
 
-    unit: ClassVar[Unit] = FORCE
     kind: Literal["force"]
     point: PointName
     """Point of a body under the force."""
@@ -68,7 +65,6 @@ class Force(Record):
 class BeamForce(Record):
     """Dead force at a place of a beam."""
 
-    unit: ClassVar[Unit] = FORCE
     kind: Literal["beam_force"]
     beam: BeamName
     """Beam under the load."""
@@ -81,7 +77,6 @@ class BeamForce(Record):
 class BeamMoment(Record):
     """Moment at a place of a beam, counter-clockwise."""
 
-    unit: ClassVar[Unit] = MOMENT
     kind: Literal["beam_moment"]
     beam: BeamName
     """Beam under the load."""
@@ -92,7 +87,6 @@ class BeamMoment(Record):
 class DistributedLoad(Record):
     """Dead load per length of a beam, constant along a part: a weight, not a pressure."""
 
-    unit: ClassVar[Unit] = LINE_LOAD
     kind: Literal["distributed"]
     beam: BeamName
     """Beam under the load."""
@@ -146,7 +140,6 @@ class _Drive(_From):
 class DisplacementDrive(_Drive):
     """Prescribed displacement of a point of a body along a direction."""
 
-    unit: ClassVar[Unit] = LENGTH
     kind: Literal["displacement"]
     point: PointName
     """Driven point of a body."""
@@ -157,7 +150,6 @@ class DisplacementDrive(_Drive):
 class RotationDrive(_Drive):
     """Prescribed rotation of a body, counter-clockwise."""
 
-    unit: ClassVar[Unit] = ANGLE
     kind: Literal["rotation"]
     body: BodyName
     """Body with a prescribed rotation, counter-clockwise."""
@@ -185,23 +177,24 @@ Quantity = Literal[
 STRESSES: frozenset[Quantity] = frozenset({"bending_stress", "combined_stress"})
 """Quantities at several places along a beam."""
 
-UNITS: Mapping[str, Unit] = frozendict(
-    {
-        "displacement": LENGTH,
-        "rotation": ANGLE,
-        "force": FORCE,
-        "centre": LENGTH,
-        "ends": LENGTH,
-        "bending_stress": STRESS,
-        "combined_stress": STRESS,
-        "reaction": FORCE,
-        "reaction_moment": MOMENT,
-        "potential_energy": MOMENT,
-        "angle": ANGLE,
-        "moment": MOMENT,
-    }
-)
-"""Units of probes; a closing load has the unit of its stage."""
+UNITS: Mapping[str, Unit] = {
+    "displacement": LENGTH,
+    "rotation": ANGLE,
+    "force": FORCE,
+    "centre": LENGTH,
+    "ends": LENGTH,
+    "bending_stress": STRESS,
+    "combined_stress": STRESS,
+    "reaction": FORCE,
+    "reaction_moment": MOMENT,
+    "potential_energy": MOMENT,
+    "angle": ANGLE,
+    "moment": MOMENT,
+    "beam_force": FORCE,
+    "beam_moment": MOMENT,
+    "distributed": LINE_LOAD,
+}
+"""Units of quantities, and of kinds of loads and drives; a closing load has the unit of its stage."""
 
 CRITICAL = "critical"
 """Name of a claim's probe for the first critical value of a stage."""
@@ -215,8 +208,11 @@ def _of_stage(reading: Reading, stage: Mapping[str, Any]) -> Unit | None:
 def _of_stations(reading: Reading, claim: Mapping[str, Any]) -> Unit | None:
     """Unit of the stations of a claim's stages."""
     units = {unit for name, unit in reading.stages.items() if claim.get("stage") in (None, name)} - {None}
-    if len(units) > 1 and reading.units != Units():
-        raise mistake("a number in the unit of several stages, which step different kinds", "a stage beside it")
+    refuse_broken(
+        len(units) > 1
+        and reading.units != Units()
+        and Mistake("", "a number in the unit of several stages, which step different kinds", "a stage beside it")
+    )
     return next(iter(units), None)
 
 

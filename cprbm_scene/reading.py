@@ -7,28 +7,24 @@ between records need the reader.
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from difflib import get_close_matches
 from functools import partial
 from itertools import islice
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from pydantic import ValidationError
 
-from cprbm_scene.clearance import wrong_clearance
-from cprbm_scene.fields import Name, Named, Reading
+from cprbm_scene.clearance import distant_ends, wrong_assembly, wrong_clearance, wrong_stops
+from cprbm_scene.fields import Name, OptionalNamed, Reading
 from cprbm_scene.freedoms import wrong_actions, wrong_mobility
-from cprbm_scene.frozendict import frozendict
-from cprbm_scene.joints import distant_ends, wrong_assembly, wrong_stops
-from cprbm_scene.mistakes import MOST, Mistake, SceneError, first_of, mistake, mistakes_of, unknown_name
+from cprbm_scene.mistakes import MOST, Mistake, SceneError, first_of, mistake, mistakes_of, refuse_broken, unknown_name
 from cprbm_scene.names import (
     MECHANICAL,
-    repeated_contacts,
     repeated_names,
     unknown_names,
     wrong_claims,
-    wrong_paper,
+    wrong_contacts,
     wrong_probes,
     wrong_stages,
 )
@@ -36,7 +32,7 @@ from cprbm_scene.offset import OffsetQuestion
 from cprbm_scene.statement import Beam, Body, Material, Probe, Scene, Stage
 from cprbm_scene.units import text_of
 
-_BY_NAME = (repeated_names, unknown_names, repeated_contacts, wrong_paper, wrong_stages, wrong_probes, wrong_claims)
+_BY_NAME = (repeated_names, unknown_names, wrong_contacts, wrong_stages, wrong_probes, wrong_claims)
 _BY_PLACE = (
     distant_ends,
     wrong_assembly,
@@ -77,13 +73,14 @@ def toml_data(path: str | Path) -> dict[str, Any]:
     readable = "a readable TOML file in UTF-8"
     try:
         text = text_of(path, "TOML", readable)
-        if _DEEP_KEY.search(text):
-            raise mistake(f"a key of more than {DEEPEST} parts", "the keys of a scene")
+        refuse_broken(
+            _DEEP_KEY.search(text) and Mistake("", f"a key of more than {DEEPEST} parts", "the keys of a scene")
+        )
         return tomllib.loads(text)
     except (RecursionError, ValueError) as error:
         # nested too deeply, or an integer with too many digits
         wrong = error if isinstance(error, SceneError) else mistake(f"text that is no TOML ({error})", readable)
-        raise SceneError([replace(each, file=str(path)) for each in wrong.mistakes]) from None
+        raise SceneError(first_of(wrong.mistakes, str(path))) from None
 
 
 def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) -> Scene:
@@ -107,10 +104,16 @@ def read(path: str | Path, parameters: Mapping[str, float | str] | None = None) 
         (0.002, 'BD')
     """
     question = read_question(path, parameters)
-    if isinstance(question, OffsetQuestion):
-        allowed = "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it"
-        raise SceneError([Mistake("question", repr(question.question), allowed, str(path))])
-    return question
+    refuse_broken(
+        isinstance(question, OffsetQuestion)
+        and Mistake(
+            "question",
+            repr(question.question),
+            "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it",
+            str(path),
+        )
+    )
+    return cast("Scene", question)
 
 
 def read_question(path: str | Path, parameters: Mapping[str, float | str] | None = None) -> Question:
@@ -129,8 +132,9 @@ def read_question(path: str | Path, parameters: Mapping[str, float | str] | None
     data = toml_data(path)
     if "question" not in data:
         return scene_from(data, file=str(path), parameters=parameters)
-    if parameters:
-        raise SceneError([Mistake("parameters", f"values of {', '.join(parameters)}", "a scene of beams", str(path))])
+    refuse_broken(
+        parameters and Mistake("parameters", f"values of {', '.join(parameters)}", "a scene of beams", str(path))
+    )
     return offset_from(data, file=str(path))
 
 
@@ -144,9 +148,9 @@ class PartialScene(Scene):
     """A scene that may lack parts."""
 
     name: Name = "scene"
-    materials: Named[Material] = frozendict()
-    beams: Named[Beam] = frozendict()
-    bodies: Named[Body] = frozendict()
+    materials: OptionalNamed[Material]
+    beams: OptionalNamed[Beam]
+    bodies: OptionalNamed[Body]
     stages: tuple[Stage, ...] = ()
     probes: tuple[Probe, ...] = ()
 
@@ -172,7 +176,7 @@ class Draft:
     def of_file(self, mistake: Mistake) -> Mistake:
         """A mistake of the present data, with the number in the file of a part of a list."""
         key = _NUMBER.sub(lambda place: f"{place[1]}[{[*self._parts[place[1]]][int(place[2])]}", mistake.key)
-        return replace(mistake, key=key)
+        return mistake._replace(key=key)
 
     def leave_out(self, key: str) -> None:
         """Leave out the part of the file with a mistake at a ``key``; a whole table if the part is unknown."""
@@ -197,9 +201,10 @@ def _names(table: str, part: str, item: object) -> Iterator[tuple[str, str]]:
             yield from (("points", f"{point}") for point in points)
         case "beams", dict():
             # an end with another joint may be a free end with a mistake
-            ends = [item.get(side) for side in ("start", "end")]
             new = [
-                end.get("point") for end in ends if isinstance(end, dict) and end.get("joint") not in ("weld", "pin")
+                end.get("point")
+                for end in (item.get("start"), item.get("end"))
+                if isinstance(end, dict) and end.get("joint") not in ("weld", "pin")
             ]
             yield from (key for point in new for key in (("points", f"{point}"), ("bodies", f"{point}-body")))
         case "stages", {"name": name}:
@@ -252,7 +257,7 @@ def scene_from(data: dict[str, Any], *, file: str = "", parameters: Mapping[str,
         if reading.left_out == draft.left_out:
             break
     if scene is None or found:
-        raise SceneError([replace(each, file=file) for each in first_of(found)])
+        raise SceneError(first_of(found, file))
     return scene
 
 
@@ -264,7 +269,7 @@ def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
     """
     question, found = _validated(OffsetQuestion, data, file, Reading(parameters={}))
     if question is None:
-        raise SceneError([replace(each, file=file) for each in first_of(found)])
+        raise SceneError(first_of(found, file))
     return question
 
 

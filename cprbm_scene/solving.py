@@ -17,7 +17,7 @@ from typing import Any, Literal, cast
 from cprbm_scene.answer import StationAnswer
 from cprbm_scene.clearance import overlap_at_rest
 from cprbm_scene.freedoms import Freedoms, unsupported
-from cprbm_scene.mistakes import Mistake, SceneError, broken
+from cprbm_scene.mistakes import Mistake, broken, refuse_broken
 from cprbm_scene.statement import BeamContact, CircleContact, EllipseContact, Scene, SplineContact
 
 Requirement = Literal["theory", "overlap at rest", "from", "together", "support", "edge"]
@@ -26,7 +26,6 @@ Requirement = Literal["theory", "overlap at rest", "from", "together", "support"
 def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
     """Kinds of requirements, with keys, values found, and values for a solver without the feature."""
     first, file, contacts = scene.stages[0].name, scene.file, [*scene.contacts.items()]
-    overlaps = ((name, overlap_at_rest(scene, each)) for name, each in contacts if isinstance(each, BeamContact))
     rules: dict[Requirement, Iterator[Mistake]] = {
         "theory": broken(scene.theory != "bending" and Mistake("theory", repr(scene.theory), "'bending'", file)),
         "from": (
@@ -66,8 +65,8 @@ def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
                 "beams that touch or are apart",
                 file,
             )
-            for name, overlap in overlaps
-            if overlap
+            for name, each in contacts
+            if isinstance(each, BeamContact) and (overlap := overlap_at_rest(scene, each))
         ),
     }
     return ((kind, mistake) for kind, mistakes in rules.items() for mistake in mistakes)
@@ -84,9 +83,13 @@ def refuse(scene: Scene, solver: str, *met: Requirement) -> None:
     Raises:
         SceneError: the scene has further requirements; the error names every key.
     """
-    found = [mistake for kind, mistake in requirements(scene) if kind not in met]
-    if found:
-        raise SceneError([Mistake(e.key, e.found, f"{e.allowed}, for {solver}", e.file) for e in found])
+    refuse_broken(
+        *(
+            mistake._replace(allowed=f"{mistake.allowed}, for {solver}")
+            for kind, mistake in requirements(scene)
+            if kind not in met
+        )
+    )
 
 
 def station_reached(logger: logging.Logger, scene: Scene, reached: int, station: StationAnswer) -> None:
@@ -111,10 +114,9 @@ def station_reached(logger: logging.Logger, scene: Scene, reached: int, station:
 def one_thread() -> AbstractContextManager[object]:
     """Context with a single thread per loaded library of linear algebra; without effect if threadpoolctl is missing."""
     try:
-        libraries = _loaded(len(sys.modules))
+        return cast("AbstractContextManager[object]", _loaded(len(sys.modules)).limit(limits=1, user_api="blas"))
     except ImportError:
         return nullcontext()
-    return cast("AbstractContextManager[object]", libraries.limit(limits=1, user_api="blas"))
 
 
 @lru_cache(maxsize=1)

@@ -7,14 +7,11 @@ Kinds are tagged unions: a new curve, joint, body, load, drive or contact is a n
 ``joint``, or ``motion``).
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterator, Mapping
-from itertools import chain
-from typing import Annotated, Any, Literal, cast
+from typing import Annotated, Any, Literal, Self, cast
 
-from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
+from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, field_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from cprbm_scene.contact_records import (
@@ -40,8 +37,8 @@ from cprbm_scene.fields import (
     NAME,
     Name,
     Named,
-    NamedByWords,
     Of,
+    OptionalNamed,
     Parameter,
     Point,
     PositiveShare,
@@ -51,6 +48,7 @@ from cprbm_scene.fields import (
     Title,
     Tolerance,
     Units,
+    Word,
 )
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, broken
@@ -74,6 +72,7 @@ from cprbm_scene.part_records import (
 from cprbm_scene.question_records import (
     CRITICAL,
     STRESSES,
+    UNITS,
     Assembly,
     BeamForce,
     BeamMoment,
@@ -94,6 +93,7 @@ from cprbm_scene.question_records import (
 __all__ = [
     "CRITICAL",
     "STRESSES",
+    "UNITS",
     "Arc",
     "Assembly",
     "Beam",
@@ -176,7 +176,7 @@ class Scene(Record):
     """Units of the numbers in the file."""
     theory: Literal["bending", "stretch", "shear"] = "shear"
     """Beam theory of the CPRBM and the finite elements: bending alone, with stretch, or with stretch and shear."""
-    parameters: NamedByWords[Parameter] = Field(default_factory=frozendict)
+    parameters: Annotated[Mapping[Word, Parameter], AfterValidator(frozendict), Field(default_factory=frozendict)]
     """Named numbers for expressions."""
     materials: Named[Material]
     """Materials by name."""
@@ -184,15 +184,15 @@ class Scene(Record):
     """Beams by name."""
     bodies: Annotated[Named[Body], Field(max_length=256)]
     """Rigid bodies by name."""
-    loads: Named[Load] = Field(default_factory=frozendict)
+    loads: OptionalNamed[Load]
     """Loads by name."""
-    drives: Named[Drive] = Field(default_factory=frozendict)
+    drives: OptionalNamed[Drive]
     """Drives by name."""
-    contacts: Annotated[Named[Contact], Field(max_length=1000)] = Field(default_factory=frozendict)
+    contacts: Annotated[OptionalNamed[Contact], Field(max_length=1000)]
     """Contacts by name."""
-    stops: Named[Stop] = Field(default_factory=frozendict)
+    stops: OptionalNamed[Stop]
     """Stops by name."""
-    pins: Named[BodyPin] = Field(default_factory=frozendict)
+    pins: OptionalNamed[BodyPin]
     """Pins between bodies by name."""
     assembly: Assembly | None = None
     """Motion of beams to their points before the first stage."""
@@ -236,7 +236,7 @@ class Scene(Record):
             case "stages", tuple() as stages:
                 reading.stages = {stage.name: reading.stepped.get(stage.steps) for stage in stages}
             case _, Mapping() as parts:
-                reading.stepped |= {name: part.unit for name, part in parts.items()}
+                reading.stepped |= {name: UNITS[part.kind] for name, part in parts.items()}
         return value
 
     def completed(self) -> Mapping[str, object]:
@@ -249,12 +249,15 @@ class Scene(Record):
         for name, each in self.bodies.items():
             if not each.points:
                 edges = (e for e in self.contacts.values() if isinstance(e, RigidContact) and e.body == name)
-                curves = (beam.curve.start for beam in beams.values())
-                place = next(chain((measures(edge)[0][0] for edge in edges), curves), (0.0, 0.0))
-                bodies[name] = FixedBody(motion="fixed", points=frozendict({f"{name}-point": place}))
+                places = [
+                    *(measures(e)[0][0] for e in edges),
+                    *(beam.curve.start for beam in beams.values()),
+                    (0.0, 0.0),
+                ]
+                bodies[name] = FixedBody(motion="fixed", points=frozendict({f"{name}-point": places[0]}))
         return {"beams": frozendict(beams), "bodies": frozendict(bodies)}
 
-    def with_parameters(self, **values: float) -> Scene:
+    def with_parameters(self, **values: float) -> Self:
         """The scene with other values of its parameters, checked as a file is checked.
 
         Args:
@@ -276,7 +279,7 @@ class Scene(Record):
         again, settings = self._reading.again, self._reading.settings
         if again is None or not self.parameters or again(parameters=settings) != self:
             raise ValueError("found a scene without parameters or altered after reading; allowed: a scene from a file")
-        return cast("Scene", again(parameters={**settings, **values}))
+        return cast("Self", again(parameters={**settings, **values}))
 
     def __repr__(self) -> str:
         """Name, and numbers of beams, contacts and probes."""

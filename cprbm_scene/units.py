@@ -19,30 +19,25 @@ from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
-from cprbm_scene.frozendict import frozendict
-from cprbm_scene.mistakes import SceneError, mistake
+from cprbm_scene.mistakes import Mistake, SceneError, mistake, refuse_broken
 
 SMALLEST, LARGEST = 1e-50, 1e50
 """Magnitudes of numbers with a unit, in SI: a product of six such numbers stays within floating-point numbers."""
 
-BY_QUANTITY: Mapping[str, Mapping[str, Fraction]] = frozendict(
-    {
-        "length": {
-            "m": Fraction(1),
-            "cm": Fraction("0.01"),
-            "mm": Fraction("0.001"),
-            "um": Fraction("1e-6"),
-            "in": Fraction("0.0254"),
-        },
-        "force": {"N": Fraction(1), "kN": Fraction(10**3), "mN": Fraction(1, 10**3), "uN": Fraction(1, 10**6)},
-        "angle": {"rad": Fraction(1), "deg": Fraction(math.pi / 180.0)},
-        "stress": {"Pa": Fraction(1), "kPa": Fraction(10**3), "MPa": Fraction(10**6), "GPa": Fraction(10**9)},
-    }
-)
+BY_QUANTITY: Mapping[str, Mapping[str, Fraction]] = {
+    "length": {
+        "m": Fraction(1),
+        "cm": Fraction("0.01"),
+        "mm": Fraction("0.001"),
+        "um": Fraction("1e-6"),
+        "in": Fraction("0.0254"),
+    },
+    "force": {"N": Fraction(1), "kN": Fraction(10**3), "mN": Fraction(1, 10**3), "uN": Fraction(1, 10**6)},
+    "angle": {"rad": Fraction(1), "deg": Fraction(math.pi / 180.0)},
+    "stress": {"Pa": Fraction(1), "kPa": Fraction(10**3), "MPa": Fraction(10**6), "GPa": Fraction(10**9)},
+}
 """Sizes of units in SI, by the quantities of :class:`Unit`."""
-SIZES: Mapping[str, Fraction] = frozendict(
-    {name: size for sizes in BY_QUANTITY.values() for name, size in sizes.items()}
-)
+SIZES: Mapping[str, Fraction] = {name: size for sizes in BY_QUANTITY.values() for name, size in sizes.items()}
 
 FileUnits = Iterable[tuple[str, str]]
 """Quantities of :class:`Unit` in order, each with the file's unit."""
@@ -147,24 +142,22 @@ def _power(function: Callable[..., float], values: Sequence[Value], units: FileU
     return Value(number**exponent, unit)
 
 
-_RULES: Mapping[str, tuple[Callable[..., float], Rule, int]] = frozendict(
-    {
-        "+": (operator.add, _alike, 2),
-        "-": (operator.sub, _alike, 2),
-        "**": (operator.pow, _power, 2),
-        "*": (operator.mul, _product, 2),
-        "/": (operator.truediv, _product, 2),
-        **{name: (getattr(math, name), _of_angle, 1) for name in ("sin", "cos", "tan")},
-        "hypot": (math.hypot, _alike, 0),
-        "min": (lambda *numbers: min(numbers), _alike, 0),
-        "max": (lambda *numbers: max(numbers), _alike, 0),
-        "abs": (abs, _alike, 1),
-        "atan2": (math.atan2, _angle, 2),
-        "sqrt": (math.sqrt, _power, 1),
-    }
-)
+_RULES: Mapping[str, tuple[Callable[..., float], Rule, int]] = {
+    "+": (operator.add, _alike, 2),
+    "-": (operator.sub, _alike, 2),
+    "**": (operator.pow, _power, 2),
+    "*": (operator.mul, _product, 2),
+    "/": (operator.truediv, _product, 2),
+    **{name: (getattr(math, name), _of_angle, 1) for name in ("sin", "cos", "tan")},
+    "hypot": (math.hypot, _alike, 0),
+    "min": (lambda *numbers: min(numbers), _alike, 0),
+    "max": (lambda *numbers: max(numbers), _alike, 0),
+    "abs": (abs, _alike, 1),
+    "atan2": (math.atan2, _angle, 2),
+    "sqrt": (math.sqrt, _power, 1),
+}
 """Operators and functions, each with the rule of its unit and the number of its arguments (0: at least one)."""
-_SIGNS = frozendict({ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"})
+_SIGNS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 FUNCTIONS = tuple(name for name in _RULES if name.isidentifier())
 
 
@@ -188,17 +181,14 @@ def evaluated(text: str, named: Callable[[str], Value], units: FileUnits) -> Val
             case ast.Name(id=name):
                 return Value(math.pi) if name == "pi" else named(name)
             case ast.UnaryOp(op=ast.UAdd() | ast.USub() as sign, operand=operand):
-                number, unit = of(operand)
-                return Value(-number if isinstance(sign, ast.USub) else number, unit)
+                return _product(operator.mul, [Value(-1.0 if isinstance(sign, ast.USub) else 1.0), of(operand)], units)
             case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _SIGNS:
-                name, nodes = _SIGNS[type(sign)], [left, right]
-            case ast.Call(func=ast.Name(id=name), args=nodes, keywords=[]) if name in FUNCTIONS:
-                pass
-            case _:
-                raise ExpressionError(f"{ast.unparse(node)!r}, which is no arithmetic")
-        function, rule, count = _RULES[name]
-        _refuse(len(nodes) != (count or max(len(nodes), 1)), f"{name} of {len(nodes)} numbers")
-        return rule(function, [of(each) for each in nodes], units)
+                return of(ast.Call(ast.Name(_SIGNS[type(sign)]), [left, right], []))
+            case ast.Call(func=ast.Name(id=name), args=nodes, keywords=[]) if name in _RULES:
+                function, rule, count = _RULES[name]
+                _refuse(len(nodes) != (count or max(len(nodes), 1)), f"{name} of {len(nodes)} numbers")
+                return rule(function, [of(each) for each in nodes], units)
+        raise ExpressionError(f"{ast.unparse(node)!r}, which is no arithmetic")
 
     try:
         value = of(ast.parse(text.strip(), mode="eval").body)
@@ -212,13 +202,11 @@ def evaluated(text: str, named: Callable[[str], Value], units: FileUnits) -> Val
     return value
 
 
-NAMED: Mapping[str, Value] = frozendict(
-    {
-        name: Value(float(size), Unit(**{quantity: 1}))
-        for quantity, sizes in BY_QUANTITY.items()
-        for name, size in sizes.items()
-    }
-)
+NAMED: Mapping[str, Value] = {
+    name: Value(float(size), Unit(**{quantity: 1}))
+    for quantity, sizes in BY_QUANTITY.items()
+    for name, size in sizes.items()
+}
 """Units as values."""
 
 
@@ -282,23 +270,22 @@ def read_points(path: Path, unit: str) -> tuple[tuple[float, float], ...]:
     text = text_of(
         path, "points", "a table of points in UTF-8, with a path from the scene's folder", f"{str(path)!r}, "
     )
-    lines = [
+    (first, header), *lines = [
         (row, line)
         for row, line in enumerate(text.splitlines(), start=1)
         if line.strip(" \t,;#") and not line.lstrip().startswith("#")
     ] or [(1, "")]
-    first, header = lines[0]
     mark = next((mark for mark in ";\t" if mark in header), ",")
-    names = [_COLUMN.fullmatch(name.strip("\"' ")) for name in header.split(mark)]
     columns = {
-        name[1].lower(): (i, (name[2] or unit).lower().replace("µ", "u")) for i, name in enumerate(names) if name
+        name[1].lower(): (i, (name[2] or unit).lower().replace("µ", "u"))
+        for i, title in enumerate(header.split(mark))
+        if (name := _COLUMN.fullmatch(title.strip("\"' ")))
     }
-    if set(columns) != {"x", "y"}:
-        raise mistake(f"{header[:80]!r} in {path.name}, row {first}", _HEADER)
-    cells = ((row, next(csv.reader([line], delimiter=mark))) for row, line in lines[1:])
+    refuse_broken(set(columns) != {"x", "y"} and Mistake("", f"{header[:80]!r} in {path.name}, row {first}", _HEADER))
     return tuple(
-        (_number(path, row, line, "x", *columns["x"], unit), _number(path, row, line, "y", *columns["y"], unit))
-        for row, line in cells
+        (_number(path, row, cells, "x", *columns["x"], unit), _number(path, row, cells, "y", *columns["y"], unit))
+        for row, line in lines
+        for cells in csv.reader([line], delimiter=mark)
     )
 
 

@@ -95,10 +95,10 @@ def table(name: str) -> str:
     tag = next((key for key in TAGS if key in parts[0].model_fields), "")
     lines: list[str] = []
     if tag:
-        united = [unit_of(part.unit) for part in parts if hasattr(part, "unit")]
+        kinds = [get_args(part.model_fields[tag].annotation)[0] for part in parts]
+        united = [unit_of(records.UNITS[kind]) for kind in kinds if kind in records.UNITS]
         lines += _row(f"`{tag}`", "meaning", *(["unit of its value"] if united else []), head=True)
-        for i, part in enumerate(parts):
-            (kind,) = get_args(part.model_fields[tag].annotation)
+        for i, (kind, part) in enumerate(zip(kinds, parts, strict=True)):
             lines += _row(f'`"{kind}"`', _first_sentence(part), *united[i : i + 1])
         lines.append("")
     lines += _row("key", "meaning", "values", head=True)

@@ -16,7 +16,7 @@ import numpy as np
 from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLine
 
 from cprbm_scene.answer import Array
-from cprbm_scene.joints import is_apart
+from cprbm_scene.clearance import is_apart
 from cprbm_scene.solving import refuse
 from cprbm_scene.statement import (
     Beam,

@@ -13,7 +13,7 @@ All numbers have the units of the scene's file.  Of a stress along a beam the la
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf, isfinite
 from pathlib import Path
 from typing import Literal
@@ -166,7 +166,7 @@ def read_demands(path: Path) -> Demands:
     try:
         return Demands.model_validate(data, context=Reading())  # the rules hold for what is read
     except ValidationError as error:
-        raise SceneError([replace(each, file=str(path)) for each in first_of(mistakes_of(error))]) from None
+        raise SceneError(first_of(mistakes_of(error), str(path))) from None
 
 
 def bounds_of(scene: Scene, demands: Demands, file: str) -> tuple[Bound, ...]:

@@ -12,8 +12,8 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from cprbm_scene.answer import Array, Ints
+from cprbm_scene.clearance import is_apart
 from cprbm_scene.curve_records import shape_of
-from cprbm_scene.joints import is_apart
 from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,

@@ -76,6 +76,9 @@ def _of_class(item: str, kind: type) -> Iterator[tuple[str, str | list[str]]]:
         fields = [field.name for field in of_class]
         empty = dataclasses.MISSING
         required = [each.name for each in of_class if each.default is empty and each.default_factory is empty]
+    elif issubclass(kind, tuple) and hasattr(kind, "_fields"):
+        fields = list(kind._fields)
+        required = [name for name in fields if name not in kind._field_defaults]
     else:
         models = getattr(kind, "model_fields", {})
         fields = list(models)

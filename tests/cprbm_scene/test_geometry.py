@@ -13,7 +13,7 @@ from scipy.integrate import quad
 from scipy.spatial import cKDTree
 
 from cprbm_scene import Arc, FunctionContact, HalfPlaneContact, Line, LineContact, Polynomial, Spline, scene_from
-from cprbm_scene.clearance import distance
+from cprbm_scene.contact_records import distance
 from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import CircleContact, EllipseContact, SplineContact
 from tests.cprbm_scene.editing import (
