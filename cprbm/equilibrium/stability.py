@@ -64,6 +64,7 @@ def blocked(solved: Solved) -> Solved:
         load[system.angles] = system.metric * _softest(solved).turns
         motion = solved.response(load)
         rates = np.bincount(columns.entry_column, columns.entry_value * motion[columns.entry_index])
+        rates = rates[: len(columns.values)]
         least = UNMOVED * np.abs(motion[system.motions]).max()
         if not rates.min() < -least < least < rates.max():
             break

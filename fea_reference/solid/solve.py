@@ -2,7 +2,6 @@
 
 import logging
 import time
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from cprbm_scene.answer import Answer, Ending, Event, StationAnswer, frozen_array, openings
@@ -113,7 +112,7 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     return prepared(scene, settings).answer()
 
 
-def _certified(scene: Scene, march: March, stage: Stage, station: float, closed: Mapping[str, str]) -> StationAnswer:
+def _certified(scene: Scene, march: March, stage: Stage, station: float, closed: dict[str, str]) -> StationAnswer:
     """The station's answer, if its certificate holds.
 
     ``closed`` is what was stepped as a contact closed: its closing is no value of anything else.
