@@ -235,9 +235,14 @@ def _expected(state: StationState, probe: Probe) -> tuple[Array, Array | float] 
             return np.array([state.rotation(of)]), SAME
         case "force":
             contact = state.scene.contacts[of]
-            on = np.sort(forces[(forces["source"] == of) & (forces["target"] == contact.beams[0])], order="s")["force"]
-            # both laps of a beam that touches itself bear the same forces
-            value = abs(on[: len(on) // 2 if isinstance(contact, SelfContact) else None].sum())
+            on = np.sort(forces[(forces["source"] == of) & (forces["target"] == contact.beams[0])], order="s")
+            force_on, place = on["force"], on["place"]
+            if isinstance(contact, SelfContact) and len(on):
+                # a lap bears the opposite force beside the force on the other lap: the lap with the smaller s counts
+                apart = np.abs(force_on[:, None] + force_on) / (np.abs(force_on)[:, None] + np.finfo(float).tiny)
+                other = np.argmin(apart + np.abs(place[:, None] - place) / state.longest, axis=1)
+                force_on = force_on[np.arange(len(on)) < other]
+            value = abs(force_on.sum())
             return np.array([value]), SAME * value + force
         case "moment":
             value = _moment(state, of)
