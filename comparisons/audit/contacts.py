@@ -111,9 +111,7 @@ def _surface(state: StationState, contact: Contact, on: str, s: Array) -> tuple[
     return (0.5 * t, DEEP * t) if contact.thick else (sunk * isinstance(contact, RigidContact), sunk)
 
 
-def _gap(
-    state: StationState, contact: Contact, on: str, x: Complex, s: Array, way: Complex = BOTH_SIDES
-) -> Array:
+def _gap(state: StationState, contact: Contact, on: str, x: Complex, s: Array, way: Complex = BOTH_SIDES) -> Array:
     """Distances g of places x (k,) from the partner of a beam, whose arc lengths there are s (k,).
 
     Of a beam that touches itself only the laps count from which unit vectors ``way`` (k,) lead away.

@@ -19,8 +19,8 @@ the discretisation.  A lever is known up to the distance of a chain's joints fro
 
 *Section law.*  Between two places Δφ = ∫ M/(E·I) ds, with an error of up to h |ΔM|/(E·I), as M may step between both
 places, of h² |ΔQ| /(8 E·I) of a kink of M, and of the variation of E·I.  γ = Q/(GA_s) holds in the middle of all places
-that bear shear: beside held ends and forces γ is not uniform over the section.  The law is coarse on purpose: without a
-copy of any element the audit finds gross errors of the section alone.
+that bear shear: beside held ends, forces and steps of Q γ is not uniform over the section.  The law is coarse on
+purpose: without a copy of any element the audit finds gross errors of the section alone.
 
 *Probes.*  Stresses follow from the moment and the force of all forces beyond the place, everywhere along the beam.  The
 strain energy is ∫ M²/(2 E·I) + N²/(2 EA) + Q²/(2 GA_s) ds.  M is the moment of all forces beyond, corrected by the
@@ -149,7 +149,9 @@ def section_law(state: StationState) -> Iterator[Finding]:
         yield off.max(), f"{name} at {s[np.argmax(off)]:.4g} m turns {off.max():.4g} rad off what its moments make"
         if state.kinematics == "shear":
             gamma, made = beam.state.angle - beam.state.section_angle, beam.state.Q / beam.stiffness(s)[2]
-            bears = np.abs(made) > BEARING * np.abs(made).max() + ANGLE
+            least = BEARING * np.abs(made).max() + ANGLE
+            steps = np.abs(np.diff(made, prepend=made[0], append=made[-1])) > least
+            bears = (np.abs(made) > least) & ~steps[1:] & ~steps[:-1]
             bears &= (np.abs(beam.state.Q) > 8.0 * ripple / beam.h) & (s > 0.0) & (s < beam.length)
             share = float(np.median(gamma[bears] / made[bears])) if bears.sum() >= ENOUGH else 1.0
             yield abs(share - 1.0) - SHEARED, f"{name} shears by {share:.3g} times what its internal forces make"

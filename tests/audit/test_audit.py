@@ -15,9 +15,10 @@ import cprbm
 import fea_reference
 from comparisons import cases
 from comparisons.audit import audit
-from cprbm_scene import Scene, scene_from
+from cprbm_scene import Scene, read, scene_from
 from tests.audit.faults import FAULTS
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
+from tests.scenes.rare_scenes import FOLDER
 from tests.together import branches
 
 SOLVERS = {
@@ -203,3 +204,11 @@ def test_a_lap_between_two_laps_is_pressed_from_both_sides():
     for fault in ("contact pulls", "force probe"):
         altered = FAULTS[fault](scene, answer.stations[-1])
         assert audit(scene, replace(answer, stations=(*answer.stations[:-1], altered))).complaints != ()
+
+
+def test_places_between_a_contact_and_a_load_nearby_do_not_tell_the_shear():
+    # four elements alone bear shear, and γ of the outer elements follows the steps of Q; the CPRBM agrees to 1e-4
+    scene = read(FOLDER.parent / "micro-gripper.toml")
+    answer = fea_reference.answer(scene)
+    assert answer.completed, answer.sentence
+    assert audit(scene, answer).complaints == ()
