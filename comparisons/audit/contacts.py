@@ -59,10 +59,6 @@ FAR, BEHIND = 1e3, 0.05
 over the longest beam."""
 
 
-BOTH_SIDES = np.zeros(1, dtype=complex)
-"""No direction: laps on both sides count."""
-
-
 def contacts(state: StationState) -> Iterator[Finding]:
     """Penetrations of contacts, gaps under forces, and forces that pull or rub."""
     for name, contact in state.scene.contacts.items():
@@ -111,7 +107,7 @@ def _surface(state: StationState, contact: Contact, on: str, s: Array) -> tuple[
     return (0.5 * t, DEEP * t) if contact.thick else (sunk * isinstance(contact, RigidContact), sunk)
 
 
-def _gap(state: StationState, contact: Contact, on: str, x: Complex, s: Array, way: Complex = BOTH_SIDES) -> Array:
+def _gap(state: StationState, contact: Contact, on: str, x: Complex, s: Array, way: Complex | complex = 0j) -> Array:
     """Distances g of places x (k,) from the partner of a beam, whose arc lengths there are s (k,).
 
     Of a beam that touches itself only the laps count from which unit vectors ``way`` (k,) lead away.
@@ -126,7 +122,7 @@ def _gap(state: StationState, contact: Contact, on: str, x: Complex, s: Array, w
     away -= 0.5 * contact.thick * partner.thickness(at[:-1] + share * np.diff(at))
     if isinstance(contact, SelfContact):  # another lap: between both laps the tangent turns by more than a right angle
         near = np.abs(np.interp(s, at[:-1], psi)[:, None] - psi) < 0.5 * np.pi
-        away[near | (((line[:-1] - x[:, None]) * np.conj(way)[:, None]).real > 0.0)] = FAR * state.longest
+        away[near | (((line[:-1] - x[:, None]) * np.conj(np.reshape(way, (-1, 1)))).real > 0.0)] = FAR * state.longest
     return np.asarray(away.min(axis=1))
 
 
