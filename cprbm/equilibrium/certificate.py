@@ -84,8 +84,7 @@ def certify(
     violation = max(float(gradient[system.equations].max()), apart)
     complementarity = max(_complementarity(solved, acting), pull) / scale
     force, couple = (size / scale for size in _resultants(solved))
-    stable = blocked(solved)
-    curvature = softest(stable).curvature if with_curvature else float("nan")
+    curvature = softest(solved).curvature if with_curvature else float("nan")
     balance_limit = max(BALANCE, 100.0 * floor)
     checks = (
         (residual, max(tolerance, floor), Ending.NOT_CERTIFIED, "the residual is {:.1e}, allowed {:.1e}"),
@@ -96,7 +95,7 @@ def certify(
         (strain, LARGEST_STRAIN, Ending.TURNED_TOO_FAR, STRAINED),
         (force, balance_limit, Ending.NOT_CERTIFIED, "ΣF is {:.1e} of the largest force, allowed {:.1e}"),
         (couple, balance_limit, Ending.NOT_CERTIFIED, "ΣM is {:.1e} of the largest moment, allowed {:.1e}"),
-        (float(stable.lost), 0.0, Ending.NOT_A_MINIMUM, "the energy falls in {:.0f} independent directions"),
+        (float(blocked(solved).lost), 0.0, Ending.NOT_A_MINIMUM, "the energy falls in {:.0f} independent directions"),
     )
     failures = [(ending, text.format(found, most)) for found, most, ending, text in checks if not found <= most]
     if law is not None:

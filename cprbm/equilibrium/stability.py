@@ -11,8 +11,8 @@ M        lengths of the links: the metric is ∫ dθ² ds
 S vanishes on infeasible directions.  The largest eigenvalue belongs to the smallest curvature of a minimum.  At other
 states the most negative eigenvalue belongs to the negative curvature nearest to zero.  κ is in EI/ℓ².
 
-A place that touches without force permits motions in a single sense.  A mode of falling energy counts if all such gaps
-grow along φ, or all along −φ.  Otherwise the place with the fastest gap closes, and the next mode is judged.
+A touching place without force permits motions in a single sense.  A mode of falling energy counts where no touching gap
+closes along φ, or no touching gap closes along −φ.  Otherwise the place with the fastest gap closes, for the next mode.
 """
 
 from dataclasses import dataclass, replace
@@ -36,7 +36,7 @@ VECTORS = 6
 """Lanczos vectors before a restart: the softest mode is well apart from the others."""
 
 UNMOVED = 1e-4
-"""Rate of a gap along a mode, over the largest rate of an unknown, that counts as none."""
+"""Rate of a gap along a mode, over the largest rate of an unknown, below which the gap stays."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +63,8 @@ def blocked(solved: Solved) -> Solved:
         load = np.zeros(system.size)
         load[system.angles] = system.metric * _softest(solved).turns
         motion = solved.response(load)
-        rates = np.bincount(columns.entry_column, columns.entry_value * motion[columns.entry_index])
-        rates = rates[: len(columns.values)]
+        moved = columns.entry_value * motion[columns.entry_index]
+        rates = np.bincount(columns.entry_column, moved)[: len(columns.values)]
         least = UNMOVED * np.abs(motion[system.motions]).max()
         if not rates.min() < -least < least < rates.max():
             break
@@ -75,7 +75,7 @@ def blocked(solved: Solved) -> Solved:
 
 
 def _touching(solved: Solved) -> tuple[Contacts, Flags]:
-    """Contacts with places at touching minima between joints, and the open places that touch."""
+    """Contacts with places at touching minima between joints, and the touching open places."""
     geometry, z, contacts = solved.system.geometry, solved.state.z, solved.state.contacts
     curves, places = geometry.arrays, contacts.places
     for pair in range(0 if geometry.joints_alone else len(geometry.pairs)):

@@ -38,7 +38,7 @@ class Run:
         plain: whether beams are plain chains in the formulation ``auto`` too.
         driver: at the first state once the run has begun.
         values: present values (SI) of loads and drives.
-        closing: what a stage stepped as a contact first closed, and its value (SI).
+        closing: name and value (SI) of the stepped load or drive at the first closing of contacts.
         stations, events, critical, gone_over, notes: of the answer.
         inspection: of contacts in the formulation ``paper``.
     """
