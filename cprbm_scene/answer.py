@@ -13,7 +13,7 @@ centre             (1,)    arc length on the contact's first beam of the resulta
 ends               (2,)    arc lengths on the contact's first beam at the begin and the end of the zone, m,
                            ascending, the same twice for contact in a point; empty if open; of several
                            zones the beginning of the first and the end of the last
-closing_load       (1,)    value of the stepped load or drive at which a contact first closes; empty if open
+closing_load       (1,)    value of the stepped load or drive at which a contact first closes; else empty
 bending_stress     (P,)    signed: E·t/2 times the change of curvature along the beam, Pa, with t of the place,
                            at P equal arc-length steps from the beam's start to its end;
                            a positive change turns the tangent counter-clockwise

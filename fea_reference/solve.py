@@ -49,7 +49,7 @@ class Prepared:
         ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
         with one_thread():
             try:
-                known: set[str] = set()
+                known: dict[str, str] = {}  # contacts that have closed, with what was stepped
                 assemble_ends(scene, march)
                 for stage in scene.stages:
                     course = _course(march, stage)
@@ -60,8 +60,8 @@ class Prepared:
                             for name, closing in march.closing.items()
                             if name not in known
                         ]
-                        known = set(march.closing)
-                        stations.append(_certified(scene, march, stage, station))
+                        known = {name: known.get(name, stage.steps) for name in march.closing}
+                        stations.append(_certified(scene, march, stage, station, known))
                         station_reached(_SAYS, scene, len(stations), stations[-1])
             except StoppedError as stopped:
                 ending, sentence = stopped.ending, stopped.sentence
@@ -134,8 +134,10 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     return prepared(scene, settings).answer()
 
 
-def _certified(scene: Scene, march: March, stage: Stage, station: float) -> StationAnswer:
+def _certified(scene: Scene, march: March, stage: Stage, station: float, closed: dict[str, str]) -> StationAnswer:
     """The station's answer, if its certificate holds.
+
+    ``closed`` is what was stepped as a contact closed: its closing is no value of anything else.
 
     Raises:
         StoppedError: it does not.
@@ -152,7 +154,10 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float) -> Stat
         stage=stage.name,
         value=station,
         values={
-            probe.name: probed(scene, march, probe) if probe.asked_in(stage.name) else frozen_array([])
+            probe.name: probed(scene, march, probe)
+            if probe.asked_in(stage.name)
+            and (probe.quantity != "closing_load" or closed.get(probe.of, stage.steps) == stage.steps)
+            else frozen_array([])
             for probe in scene.probes
         },
         shapes=shapes(march),

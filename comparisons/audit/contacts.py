@@ -89,13 +89,13 @@ def _pressing(state: StationState, name: str, on: str) -> Iterator[Finding]:
     forces = forces[size > max(SMALL * size.max(initial=0.0), ACTIVE * state.largest[0])]
     if len(forces):
         s, way, x = forces["s"], forces["force"] / np.abs(forces["force"]), state.beams[on].line(forces["s"])
-        (own, allowed), gap = _surface(state, contact, on, s), _gap(state, contact, on, x, s)
+        (own, allowed), gap = _surface(state, contact, on, s), _gap(state, contact, on, x, s, way)
         off = np.abs(gap - own) - allowed
         worst = int(np.argmax(off))
         yield off[worst], f"{name} presses {on} at {s[worst]:.4g} m across a gap of {(gap - own)[worst]:.2g} m"
         if contact.thick or isinstance(contact, RigidContact):
             step, least = (0.2 * own, ALIGNED) if contact.thick else (2.5 * own, LINE_ALIGNED)
-            cosine = (_gap(state, contact, on, x + step * way, s) - gap) / step
+            cosine = (_gap(state, contact, on, x + step * way, s, way) - gap) / step
             along = f"with {cosine.min():.3f} of the force along the normal"
             yield least - cosine.min(), f"{name} pulls or rubs {on} at {s[np.argmin(cosine)]:.4g} m, {along}"
 
@@ -106,8 +106,11 @@ def _surface(state: StationState, contact: Contact, on: str, s: Array) -> tuple[
     return (0.5 * t, DEEP * t) if contact.thick else (sunk * isinstance(contact, RigidContact), sunk)
 
 
-def _gap(state: StationState, contact: Contact, on: str, x: Complex, s: Array) -> Array:
-    """Distances g of places x (k,) from the partner of a beam, whose arc lengths there are s (k,)."""
+def _gap(state: StationState, contact: Contact, on: str, x: Complex, s: Array, way: Complex | complex = 0j) -> Array:
+    """Distances g of places x (k,) from the partner of a beam, whose arc lengths there are s (k,).
+
+    Of a beam that touches itself only the laps count from which unit vectors ``way`` (k,) lead away.
+    """
     if isinstance(contact, RigidContact):
         return np.asarray(shapely.distance(shapely.points(x.real, x.imag), _solid(state, contact)))
     partner = state.beams[next((other for other in contact.beams if other != on), on)]
@@ -117,7 +120,8 @@ def _gap(state: StationState, contact: Contact, on: str, x: Complex, s: Array) -
     away = np.abs(x[:, None] - line[:-1] - share * pieces)
     away -= 0.5 * contact.thick * partner.thickness(at[:-1] + share * np.diff(at))
     if isinstance(contact, SelfContact):  # another lap: between both laps the tangent turns by more than a right angle
-        away[np.abs(np.interp(s, at[:-1], psi)[:, None] - psi) < 0.5 * np.pi] = FAR * state.longest
+        near = np.abs(np.interp(s, at[:-1], psi)[:, None] - psi) < 0.5 * np.pi
+        away[near | (((line[:-1] - x[:, None]) * np.conj(np.reshape(way, (-1, 1)))).real > 0.0)] = FAR * state.longest
     return np.asarray(away.min(axis=1))
 
 

@@ -19,8 +19,8 @@ the discretisation.  A lever is known up to the distance of a chain's joints fro
 
 *Section law.*  Between two places Δφ = ∫ M/(E·I) ds, with an error of up to h |ΔM|/(E·I), as M may step between both
 places, of h² |ΔQ| /(8 E·I) of a kink of M, and of the variation of E·I.  γ = Q/(GA_s) holds in the middle of all places
-that bear shear: beside held ends and forces γ is not uniform over the section.  The law is coarse on purpose: without a
-copy of any element the audit finds gross errors of the section alone.
+that bear shear: beside held ends, forces and steps of Q γ is not uniform over the section.  The law is coarse on
+purpose: without a copy of any element the audit finds gross errors of the section alone.
 
 *Probes.*  Stresses follow from the moment and the force of all forces beyond the place, everywhere along the beam.  The
 strain energy is ∫ M²/(2 E·I) + N²/(2 EA) + Q²/(2 GA_s) ds.  M is the moment of all forces beyond, corrected by the
@@ -39,7 +39,7 @@ station is allowed.  Without a next station the energy is not judged.
 """
 
 from collections.abc import Iterator, Sequence
-from itertools import groupby, pairwise
+from itertools import groupby
 
 import numpy as np
 
@@ -75,8 +75,8 @@ SHARE, SHEARED = 0.05, 0.08
 factor of 1 makes 0.17."""
 
 BEARING, ENOUGH = 0.3, 4
-"""Share of a beam's largest shear force, and more than the load on an element, from which a place bears shear; least
-number of places with a median."""
+"""Share of a beam's largest shear force, beside the step to the next place, and more than the load on an element, from
+which a place bears shear; least number of places with a median."""
 
 JOINED = 1e-8
 """Largest error of a joint, over the longest beam, or rad."""
@@ -151,7 +151,8 @@ def section_law(state: StationState) -> Iterator[Finding]:
         yield off.max(), f"{name} at {s[np.argmax(off)]:.4g} m turns {off.max():.4g} rad off what its moments make"
         if state.kinematics == "shear":
             gamma, made = beam.state.angle - beam.state.section_angle, beam.state.Q / beam.stiffness(s)[2]
-            bears = np.abs(made) > BEARING * np.abs(made).max() + ANGLE
+            step = np.abs(np.diff(made, prepend=made[0], append=made[-1]))
+            bears = np.abs(made) - np.maximum(step[1:], step[:-1]) > BEARING * np.abs(made).max() + ANGLE
             bears &= (np.abs(beam.state.Q) > 8.0 * ripple / beam.h) & (s > 0.0) & (s < beam.length)
             share = float(np.median(gamma[bears] / made[bears])) if bears.sum() >= ENOUGH else 1.0
             yield abs(share - 1.0) - SHEARED, f"{name} shears by {share:.3g} times what its internal forces make"
@@ -237,9 +238,14 @@ def _expected(state: StationState, probe: Probe) -> tuple[Array, Array | float] 
             return np.array([state.rotation(of)]), SAME
         case "force":
             contact = state.scene.contacts[of]
-            on = np.sort(forces[(forces["source"] == of) & (forces["target"] == contact.beams[0])], order="s")["force"]
-            # both laps of a beam that touches itself bear the same forces
-            value = abs(on[: len(on) // 2 if isinstance(contact, SelfContact) else None].sum())
+            on = np.sort(forces[(forces["source"] == of) & (forces["target"] == contact.beams[0])], order="s")
+            if isinstance(contact, SelfContact) and len(on):
+                # a lap bears the opposite force beside the force on the other lap: the lap with the smaller s counts
+                own = on[:, None]
+                apart = np.abs(own["force"] + on["force"]) / (np.abs(own["force"]) + np.finfo(float).tiny)
+                apart += np.abs(own["place"] - on["place"]) / state.longest
+                on = on[np.arange(len(on)) < np.argmin(apart, axis=1)]
+            value = abs(on["force"].sum())
             return np.array([value]), SAME * value + force
         case "moment":
             value = _moment(state, of)
@@ -304,8 +310,8 @@ def _energies(state: StationState) -> tuple[float, float, float]:
 
 def path(scene: Scene, answer: Answer, states: Sequence[StationState]) -> Iterator[Finding]:
     """Changes of energy besides the work between stations of a branch, and energies gained at critical points."""
-    branches = groupby(states, key=lambda state: (state.station.stage, state.station.branch))
-    for (stage, _), of in ((key, list(group)) for key, group in branches):
+    for (stage, _), group in groupby(states, key=lambda state: (state.station.stage, state.station.branch)):
+        of = list(group)
         x, g = np.array([(state.station.value, _driving(state)) for state in of]).T
         strain, work, even = np.array([_energies(state) for state in of]).T
         h, slope = np.diff(x), np.gradient(g) if len(x) > 2 else 0.0 * x
@@ -334,9 +340,9 @@ def _judged(answer: Answer, states: Sequence[StationState]) -> Flags:
     first, x = states[0], np.array([state.station.value for state in states])
     events = np.array([event.value for event in answer.events if event.stage == first.stage.name])
     between = np.sign(events - x[:-1, None]) * np.sign(events - x[1:, None]) < 0.0
-    pressing = [{name for name, of in state.station.contacts.items() if of.active} for state in states]
-    same = np.array([before == after for before, after in pairwise(pressing)], dtype=bool)
-    return np.asarray((same & ~between.any(axis=1)) | (first.stage.steps in first.scene.loads))
+    pressing = np.array([{name for name, of in state.station.contacts.items() if of.active} for state in states])
+    changes = between.any(axis=1) | (pressing[1:] != pressing[:-1])
+    return np.asarray(~changes | (first.stage.steps in first.scene.loads))
 
 
 def _driving(state: StationState) -> float:

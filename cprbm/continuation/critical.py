@@ -32,7 +32,7 @@ import numpy as np
 from cprbm.contact import taken
 from cprbm.continuation.closing import Pressed, pressing
 from cprbm.continuation.path import Reached, Way, tangent
-from cprbm.equilibrium import Mode, NotConvergedError, Solved, at_state, balanced_forces, softest
+from cprbm.equilibrium import Mode, NotConvergedError, Solved, at_state, balanced_forces, blocked, softest
 from cprbm_scene import BeamContact, Loss, SelfContact
 from cprbm_scene.answer import Array
 
@@ -119,7 +119,7 @@ def contact_ends(trail: list[Reached], beyond: float) -> CriticalPoint | None:
         zero = _vanishes(value, earlier, last)
         if zero - last.t <= NEAR * width:
             after = _without(last.solved, ended)
-            if after is None or after.lost or loss is Loss.SLIP:
+            if after is None or blocked(after).lost or loss is Loss.SLIP:
                 return opened(last.solved, after, zero, loss, geometry.pairs[ended.pair].name, width)
     return None
 

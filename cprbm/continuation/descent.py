@@ -25,7 +25,7 @@ import numpy as np
 
 from cprbm.continuation.closing import with_stops
 from cprbm.continuation.path import potential
-from cprbm.equilibrium import NotConvergedError, Solved, Springs, State, System, at_state, softest
+from cprbm.equilibrium import NotConvergedError, Solved, Springs, State, System, at_state, blocked, softest
 from cprbm_scene.answer import Array, Flags
 
 STEPS = 300
@@ -77,7 +77,7 @@ def descend(system: System, saddle: Solved, curvature: float, target: Array, act
         if (moved < NEAR and moved <= last) or moved < STILL:
             found = _step(system, state, 0.0, acting, iterations)
             if found is not None and _moved(system, state, found.state) < LONGEST:
-                if found.lost == 0:
+                if blocked(found).lost == 0:
                     return found
                 # a saddle above the state, such as the begin of the descent, is not on the way down
                 if kicks < KICKS and potential(system, found.state) <= energy + 1e-12 * abs(energy):

@@ -45,7 +45,7 @@ from cprbm.continuation.critical import (
 )
 from cprbm.continuation.descent import descend
 from cprbm.continuation.path import Reached, Way, energy_before, jumped, turned
-from cprbm.equilibrium import NotConvergedError, Solved, State, System, certify, equilibrium, softest
+from cprbm.equilibrium import NotConvergedError, Solved, State, System, blocked, certify, equilibrium, softest
 from cprbm.settings import Settings
 from cprbm_scene import Ending, Loss
 from cprbm_scene.answer import Array, Flags
@@ -252,7 +252,7 @@ class Driver:
         except NotConvergedError as failure:
             raise StepError(Ending.STEP_TOO_SMALL, f"'{name}' closes or opens and {failure}") from failure
         after = replace(after, state=may_close(after.state))
-        if after.lost:
+        if blocked(after).lost:
             loss = Loss.CONTACT if name in self.system.mechanism.scene.contacts else Loss.STOP
             return self._leave(way, opened(before, after, t, loss, name), beyond)
         names = pressing_names(after)

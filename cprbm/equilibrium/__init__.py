@@ -8,7 +8,7 @@ from cprbm.equilibrium.neighbours import least_between
 from cprbm.equilibrium.rank import repeated_rows
 from cprbm.equilibrium.sharing import balanced_forces, shared_multipliers
 from cprbm.equilibrium.solving import Solved, at_state, equilibrium
-from cprbm.equilibrium.stability import Mode, softest
+from cprbm.equilibrium.stability import Mode, blocked, softest
 from cprbm.equilibrium.system import State, System, hidden_forces, rest_state, system_of
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "System",
     "at_state",
     "balanced_forces",
+    "blocked",
     "certify",
     "contact_columns",
     "contact_terms",

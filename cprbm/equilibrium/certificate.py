@@ -22,7 +22,7 @@ from cprbm.contact import on_edge
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.iteration import beside_points
 from cprbm.equilibrium.solving import Solved
-from cprbm.equilibrium.stability import softest
+from cprbm.equilibrium.stability import blocked, softest
 from cprbm.equilibrium.system import System
 from cprbm_scene import Certificate, Ending
 from cprbm_scene.answer import Array, Flags
@@ -95,7 +95,7 @@ def certify(
         (strain, LARGEST_STRAIN, Ending.TURNED_TOO_FAR, STRAINED),
         (force, balance_limit, Ending.NOT_CERTIFIED, "ΣF is {:.1e} of the largest force, allowed {:.1e}"),
         (couple, balance_limit, Ending.NOT_CERTIFIED, "ΣM is {:.1e} of the largest moment, allowed {:.1e}"),
-        (float(solved.lost), 0.0, Ending.NOT_A_MINIMUM, "the energy falls in {:.0f} independent directions"),
+        (float(blocked(solved).lost), 0.0, Ending.NOT_A_MINIMUM, "the energy falls in {:.0f} independent directions"),
     )
     failures = [(ending, text.format(found, most)) for found, most, ending, text in checks if not found <= most]
     if law is not None:

@@ -10,14 +10,21 @@ M        lengths of the links: the metric is ∫ dθ² ds
 
 S vanishes on infeasible directions.  The largest eigenvalue belongs to the smallest curvature of a minimum.  At other
 states the most negative eigenvalue belongs to the negative curvature nearest to zero.  κ is in EI/ℓ².
+
+A touching place without force permits motions in a single sense.  A mode of falling energy counts where no touching gap
+closes along φ, or no touching gap closes along −φ.  Otherwise the place with the fastest gap closes, for the next mode.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm.equilibrium.solving import Solved
-from cprbm_scene.answer import Array
+from cprbm.contact import TOUCHING, Contacts, joined, movable
+from cprbm.equilibrium.columns import contact_terms
+from cprbm.equilibrium.iteration import closable
+from cprbm.equilibrium.neighbours import as_point, minima_of
+from cprbm.equilibrium.solving import Solved, at_state
+from cprbm_scene.answer import Array, Flags
 
 ACCURACY = 1e-6
 """Relative accuracy of a curvature: it judges and extrapolates, and no result contains it."""
@@ -27,6 +34,9 @@ STIFF = 1e-3
 
 VECTORS = 6
 """Lanczos vectors before a restart: the softest mode is well apart from the others."""
+
+UNMOVED = 1e-4
+"""Rate of a gap along a mode, over the largest rate of an unknown, below which the gap stays."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +49,48 @@ class Mode:
 
 def softest(solved: Solved) -> Mode:
     """Smallest curvature and mode at a state; infinite if no direction is free."""
+    return _softest(blocked(solved))
+
+
+def blocked(solved: Solved) -> Solved:
+    """The state with the closed touching places that block modes of falling energy in both senses."""
+    system, state = solved.system, solved.state
+    if not solved.lost or not system.geometry.pairs:
+        return solved
+    contacts, touching = _touching(solved)
+    while solved.lost and touching.any():
+        columns, _ = contact_terms(system.geometry, state.z, contacts.places, touching)
+        load = np.zeros(system.size)
+        load[system.angles] = system.metric * _softest(solved).turns
+        motion = solved.response(load)
+        moved = columns.entry_value * motion[columns.entry_index]
+        rates = np.bincount(columns.entry_column, moved)[: len(columns.values)]
+        least = UNMOVED * np.abs(motion[system.motions]).max()
+        if not rates.min() < -least < least < rates.max():
+            break
+        place = np.flatnonzero(touching)[np.argmax(np.abs(rates))]
+        contacts.closed[place], touching[place] = True, False
+        solved = at_state(system, replace(state, contacts=contacts))
+    return solved
+
+
+def _touching(solved: Solved) -> tuple[Contacts, Flags]:
+    """Contacts with places at touching minima between joints, and the touching open places."""
+    geometry, z, contacts = solved.system.geometry, solved.state.z, solved.state.contacts
+    curves, places = geometry.arrays, contacts.places
+    for pair in range(0 if geometry.joints_alone else len(geometry.pairs)):
+        for k in minima_of(curves, contacts.places, contacts.closed, solved.gaps, geometry.columns, pair):
+            trial, gap, curvature = as_point(z, curves, contacts.places, k, 0.0, contacts.counters)
+            if abs(gap) < TOUCHING and curvature > 0.0 and movable(curves, geometry.ends, trial)[0]:
+                places = joined(places, trial)
+    closed = np.concatenate([contacts.closed, np.zeros(len(places.pair) - len(contacts.closed), dtype=bool)])
+    every = replace(contacts, places=places, closed=closed)
+    allowed = closable(curves, places, closed, geometry.columns)[0]
+    return every, ~closed & allowed & (places.shares == 0) & (np.abs(every.gaps(geometry, z)) < TOUCHING)
+
+
+def _softest(solved: Solved) -> Mode:
+    """Smallest curvature and mode with the closed places of a state."""
     from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh  # scenes that end at once load no ARPACK
 
     system = solved.system

@@ -118,7 +118,7 @@ def contact_centre(view: View, contact: str) -> list[float]:
 
 
 def closing_load(view: View, contact: str) -> list[float]:
-    """Value (SI) of the load or drive at which a contact first closed; empty for an open contact."""
+    """Value (SI) of the stepped load or drive at the first closing of a contact; else empty."""
     return [view.closing[contact]] if contact in view.closing and contact_force(view, contact) > 0.0 else []
 
 

@@ -38,7 +38,7 @@ class Run:
         plain: whether beams are plain chains in the formulation ``auto`` too.
         driver: at the first state once the run has begun.
         values: present values (SI) of loads and drives.
-        closing: values (SI) at which contacts first closed.
+        closing: name and value (SI) of the stepped load or drive at the first closing of contacts.
         stations, events, critical, gone_over, notes: of the answer.
         inspection: of contacts in the formulation ``paper``.
     """
@@ -48,7 +48,7 @@ class Run:
     plain: bool = False
     driver: Driver | None = None
     values: dict[str, float] = field(default_factory=dict)
-    closing: dict[str, float] = field(default_factory=dict)
+    closing: dict[str, tuple[str, float]] = field(default_factory=dict)
     stations: list[StationAnswer] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
     critical: list[Critical] = field(default_factory=list)
@@ -109,7 +109,7 @@ class Run:
             self.driver = assembled(self.system, self.settings)
         except StepError as failure:
             return failure.ending, str(failure)
-        first = self.scene.stages[0].name
+        first = self.scene.stages[0]
         self._note_contacts(first, [ContactEvent(name, 0.0, closes=True) for name in sorted(self.driver.touching)])
         for stage in self.scene.stages:
             for station in stage.stations:
@@ -162,7 +162,7 @@ class Run:
             driver.follow(Way(begin, end, (before, station), stage.steps), stage.beyond)
         finally:
             self._note(stage, driver.passed)
-            self._note_contacts(stage.name, driver.events)
+            self._note_contacts(stage, driver.events)
         self.values |= dict.fromkeys(names, station)
         certificate, ending = certify(driver.solved, self.settings.tolerance, driver.spent, driver.acting)
         if ending is not Ending.COMPLETED:
@@ -199,16 +199,17 @@ class Run:
             else:
                 self.critical.append(critical)
 
-    def _note_contacts(self, stage: str, events: list[ContactEvent]) -> None:
+    def _note_contacts(self, stage: Stage, events: list[ContactEvent]) -> None:
         """Add closings and openings on the way to a station to the answer."""
         for event in events:
             if event.closes:
-                self.closing.setdefault(event.name, event.value)
-            self.events.append(Event(stage, event.name, "closes" if event.closes else "opens", event.value))
+                self.closing.setdefault(event.name, (stage.steps, event.value))
+            self.events.append(Event(stage.name, event.name, "closes" if event.closes else "opens", event.value))
 
     def _station(self, driver: Driver, stage: Stage, station: float, certificate: Certificate) -> StationAnswer:
         """Answer at a station."""
-        view = View(driver.solved, self.samples, dict(self.values), self.closing)
+        closing = {name: value for name, (steps, value) in self.closing.items() if steps == stage.steps}
+        view = View(driver.solved, self.samples, dict(self.values), closing)
         units, statics = self.system.mechanism.units, Statics(view)
         # the paper's contacts press on joints and turn links: no places of the line carry the forces
         touching, told = touching_places(view), self.inspection is None

@@ -88,7 +88,7 @@ class View:
         solved: the state.
         samples: of the mechanism's beams.
         loads: values (SI) of all loads.
-        closing: values (SI) of loads or drives at which contacts first closed.
+        closing: values (SI) of the stepped load or drive at which contacts first closed.
     """
 
     solved: Solved

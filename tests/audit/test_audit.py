@@ -15,9 +15,10 @@ import cprbm
 import fea_reference
 from comparisons import cases
 from comparisons.audit import audit
-from cprbm_scene import Scene, scene_from
+from cprbm_scene import Scene, read, scene_from
 from tests.audit.faults import FAULTS
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
+from tests.scenes.rare_scenes import FOLDER
 from tests.together import branches
 
 SOLVERS = {
@@ -169,3 +170,51 @@ def test_an_answer_without_internal_forces_is_not_audited():
     answer = answered("hinge", "shear")
     bare = replace(answer, stations=tuple(replace(station, beams={}) for station in answer.stations))
     assert audit(asked("hinge"), bare).stations == 0
+
+
+def wound_spiral():
+    """A spiral of 1.6 turns, wound by 1.25 turns: a middle lap is pressed from both sides."""
+    way = np.linspace(0.0, 1.6, 33)
+    places = ((0.01 + 0.003 * way) * np.exp(2j * np.pi * way)).view(float).reshape(-1, 2).tolist()
+    return scene_from(
+        {
+            "name": "spiral",
+            "materials": {"m": {"youngs_modulus": 3e9, "poisson_ratio": 0.4}},
+            "bodies": {
+                "ground": {"motion": "fixed", "points": {"A": places[0]}},
+                "end": {"motion": "free", "points": {"E": places[-1]}},
+            },
+            "beams": {
+                "b": {
+                    "curve": {"kind": "spline", "points": places},
+                    "thickness": 1e-3,
+                    "width": 8e-3,
+                    "material": "m",
+                    "start": {"joint": "weld", "point": "A"},
+                    "end": {"joint": "weld", "point": "E"},
+                }
+            },
+            "contacts": {"k": {"kind": "beam-self", "beam": "b"}},
+            "drives": {"turn": {"kind": "rotation", "body": "end"}},
+            "stages": [{"name": "wind", "steps": "turn", "stations": [1.5 * np.pi, 2.5 * np.pi]}],
+            "probes": [{"of": "k", "quantity": "force"}],
+        }
+    )
+
+
+def test_a_lap_between_two_laps_is_pressed_from_both_sides():
+    scene = wound_spiral()
+    answer = SOLVERS["cprbm"](scene)
+    assert answer.completed, answer.sentence
+    assert audit(scene, answer).complaints == ()
+    for fault in ("contact pulls", "force probe"):
+        altered = FAULTS[fault](scene, answer.stations[-1])
+        assert audit(scene, replace(answer, stations=(*answer.stations[:-1], altered))).complaints != ()
+
+
+def test_places_between_a_contact_and_a_load_nearby_do_not_tell_the_shear():
+    # four elements alone bear shear, and γ of the outer elements follows the steps of Q; the CPRBM agrees to 1e-4
+    scene = read(FOLDER.parent / "micro-gripper.toml")
+    answer = fea_reference.answer(scene)
+    assert answer.completed, answer.sentence
+    assert audit(scene, answer).complaints == ()
