@@ -76,7 +76,7 @@ class Settings(BaseModel):
             raise SceneError(
                 [Mistake(f"settings.links.{beam}", found, allowed, scene.file) for beam, found, allowed in wrong]
             )
-        met: tuple[Requirement, ...] = ("overlap at rest", "theory", "edge", "from", "together")
+        met: tuple[Requirement, ...] = ("overlap at rest", "edge", "from", "together")
         if scene.contacts and self.formulation == "auto" and contacts_may_hold(scene):
             met += ("support",)
         refuse(scene, "the CPRBM", *met)

@@ -17,17 +17,16 @@ from typing import Any, Literal, cast
 from cprbm_scene.answer import StationAnswer
 from cprbm_scene.clearance import overlap_at_rest
 from cprbm_scene.freedoms import Freedoms, unsupported
-from cprbm_scene.mistakes import Mistake, broken, refuse_broken
+from cprbm_scene.mistakes import Mistake, refuse_broken
 from cprbm_scene.statement import BeamContact, CircleContact, EllipseContact, Scene, SplineContact
 
-Requirement = Literal["theory", "overlap at rest", "from", "together", "support", "edge"]
+Requirement = Literal["overlap at rest", "from", "together", "support", "edge"]
 
 
-def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
-    """Kinds of requirements, with keys, values found, and values for a solver without the feature."""
+def requirements(scene: Scene) -> dict[Requirement, Iterator[Mistake]]:
+    """Keys, values found, and values for a solver without the feature, by kinds of requirements."""
     first, file, contacts = scene.stages[0].name, scene.file, [*scene.contacts.items()]
-    rules: dict[Requirement, Iterator[Mistake]] = {
-        "theory": broken(scene.theory != "bending" and Mistake("theory", repr(scene.theory), "'bending'", file)),
+    return {
         "from": (
             Mistake(
                 f"drives.{name}.from",
@@ -69,7 +68,6 @@ def requirements(scene: Scene) -> Iterator[tuple[Requirement, Mistake]]:
             if isinstance(each, BeamContact) and (overlap := overlap_at_rest(scene, each))
         ),
     }
-    return ((kind, mistake) for kind, mistakes in rules.items() for mistake in mistakes)
 
 
 def refuse(scene: Scene, solver: str, *met: Requirement) -> None:
@@ -86,8 +84,9 @@ def refuse(scene: Scene, solver: str, *met: Requirement) -> None:
     refuse_broken(
         *(
             mistake._replace(allowed=f"{mistake.allowed}, for {solver}")
-            for kind, mistake in requirements(scene)
+            for kind, mistakes in requirements(scene).items()
             if kind not in met
+            for mistake in mistakes
         )
     )
 

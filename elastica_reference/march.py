@@ -96,7 +96,11 @@ def refuse(scene: Scene) -> None:
         SceneError: the scene has such records; the error names every key.
     """
     found = [
-        *((mistake.key, mistake.found, mistake.allowed) for kind, mistake in requirements(scene) if kind != "theory"),
+        *(
+            (mistake.key, mistake.found, mistake.allowed)
+            for mistakes in requirements(scene).values()
+            for mistake in mistakes
+        ),
         *((f"stops.{name}", "a stop", "pins without stops") for name in scene.stops),
         *((f"pins.{name}", "a pin between two bodies", "pins of beams") for name in scene.pins),
         *[("assembly", "an assembly", "beams that are drawn in place")] * (scene.assembly is not None),

@@ -405,7 +405,7 @@ def build(scene: Scene, settings: Settings) -> Model:
     Raises:
         SceneError: the settings do not fit the scene.
     """
-    refuse(scene, "the finite elements; 'cprbm solve' asks the CPRBM alone", "theory", "overlap at rest")
+    refuse(scene, "the finite elements; 'cprbm solve' asks the CPRBM alone", "overlap at rest")
     counts = settings.elements_of(scene.beams)
     lengths = {name: length(beam.curve) for name, beam in scene.beams.items()}
     largest = max(

@@ -12,7 +12,7 @@ def refuse(scene: Scene) -> None:
     Raises:
         SceneError: it does not.
     """
-    refuse_requirements(scene, "the solid", "theory")
+    refuse_requirements(scene, "the solid")
     mistakes = too_curved(scene)
     for name, contact in scene.contacts.items():
         if not contact.thick:

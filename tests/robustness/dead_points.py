@@ -112,7 +112,7 @@ def without_dead_point(data: dict[str, Any]) -> Scene:
             let a drive reach a station.
     """
     scene = scene_from(data)
-    refuse(scene, "a random scene", "theory")
+    refuse(scene, "a random scene")
     if not scene.pins or not scene.drives:
         return scene
     linkage = Linkage(scene)
