@@ -32,35 +32,25 @@ ROUNDS = 5
 """Rounds from chord to chord for the place of a bend."""
 
 
-class Ends(NamedTuple):
-    """Bodies of curves.
-
-    Attributes:
-        body: numbers (curves, 2) of the bodies at start and end.
-        welded: welds (curves, 2) of beams.
-        rigid: curves of bodies (curves,).
-        slide: directions (curves, 2, 2) in which the bodies slide; zero at rest, NaN for every other motion.
-    """
-
-    body: Ints
-    welded: Flags
-    rigid: Flags
-    slide: Array
-
-
 class Sites(NamedTuple):
-    """All fixed places of a mechanism.
+    """All fixed places of a mechanism, and the bodies of the curves.
 
     Attributes:
         possible: places, feet not found.
         columns: numbers of the two curves of every pair (pairs, 2).
-        ends: bodies of the curves.
+        body: numbers (curves, 2) of the bodies at start and end.
+        slide: directions (curves, 2, 2) in which the bodies slide; zero at rest, NaN for every other motion.
+        rigid: curves of bodies (curves,).
+        welded: welds (curves, 2) of beams.
         sharing: ends (curves, 2) with a shared force: the first joint has the force of the second.
     """
 
     possible: Places
     columns: Ints
-    ends: Ends
+    body: Ints
+    slide: Array
+    rigid: Flags
+    welded: Flags
     sharing: Flags
 
 
@@ -92,33 +82,33 @@ def is_straight(curves: CurveArrays, piece: int) -> bool:  # pragma: no cover
 
 
 @compiled
-def on_end_body(curves: CurveArrays, ends: Ends, places: Places, k: int, end: int) -> bool:  # pragma: no cover
+def on_end_body(curves: CurveArrays, sites: Sites, places: Places, k: int, end: int) -> bool:  # pragma: no cover
     """Whether the foot lies on, or beside a joint with, the body of the start (0) or end (1) of the place's curve.
 
     A body that slides along a straight edge keeps the gap of a welded end, as if the edge were on the body.
     """
-    other, foot, own = places.other[k], places.foot[k], ends.body[places.curve[k], end]
-    if ends.welded[places.curve[k], end] and is_straight(curves, foot):
+    other, foot, own = places.other[k], places.foot[k], sites.body[places.curve[k], end]
+    if sites.welded[places.curve[k], end] and is_straight(curves, foot):
         x, y = curves.real[foot, 1, 1], curves.imaginary[foot, 1, 1]
-        edge, beam = ends.slide[other, 0], ends.slide[places.curve[k], end]
+        edge, beam = sites.slide[other, 0], sites.slide[places.curve[k], end]
         if abs(x * edge[1] - y * edge[0]) + abs(x * beam[1] - y * beam[0]) < PARALLEL * hypot(x, y):
             return True
-    at_start = ends.rigid[other] or places.foot[k] <= curves.first[other] + BESIDE
-    at_end = ends.rigid[other] or places.foot[k] >= curves.last[other] - BESIDE
-    same = (at_start and own == ends.body[other, 0]) or (at_end and own == ends.body[other, 1])
+    at_start = sites.rigid[other] or places.foot[k] <= curves.first[other] + BESIDE
+    at_end = sites.rigid[other] or places.foot[k] >= curves.last[other] - BESIDE
+    same = (at_start and own == sites.body[other, 0]) or (at_end and own == sites.body[other, 1])
     return bool(same and own != FREE)
 
 
 @compiled
-def movable(curves: CurveArrays, ends: Ends, places: Places) -> Flags:  # pragma: no cover
+def movable(curves: CurveArrays, sites: Sites, places: Places) -> Flags:  # pragma: no cover
     """Whether the places may move along their curves."""
     free = np.empty(places.piece.size, np.bool_)
     for k in range(places.piece.size):
         piece, curve = places.piece[k], places.curve[k]
         at_first, at_last = piece == curves.first[curve], piece == curves.last[curve]
         at_end = (at_first and places.xi[k] == 0.0) or (at_last and places.xi[k] == 1.0)
-        held = at_first and on_end_body(curves, ends, places, k, 0)
-        held = held or (at_last and on_end_body(curves, ends, places, k, 1))
+        held = at_first and on_end_body(curves, sites, places, k, 0)
+        held = held or (at_last and on_end_body(curves, sites, places, k, 1))
         free[k] = not (at_end or held)
     return free
 
@@ -137,15 +127,15 @@ def places_at_feet(
 
     On the curves marked ``pressed`` (curves,) ends at a weld on the curve's body are places too.
     """
-    mine, ends = np.flatnonzero(near[sites.possible.pair]), sites.ends
+    mine = np.flatnonzero(near[sites.possible.pair])
     places, distance, kept = picked(sites.possible, mine), np.empty(mine.size), np.empty(mine.size, np.bool_)
     find_feet(z, curves, places, distance, counters)
     for k in range(mine.size):
         pair, curve, other, foot = places.pair[k], places.curve[k], places.other[k], places.foot[k]
-        start, end = on_end_body(curves, ends, places, k, 0), on_end_body(curves, ends, places, k, 1)
+        start, end = on_end_body(curves, sites, places, k, 0), on_end_body(curves, sites, places, k, 1)
         before = places.piece[k] - curves.first[curve] + int(places.xi[k])
         behind = curves.last[curve] - curves.first[curve] + 1 - before
-        welded, held = ends.welded[curve], False
+        welded, held = sites.welded[curve], False
         if curves.angle[places.piece[k]] < 0:
             # a corner is no place in an end link held by the corner's body
             places.side[k] = 0.0
@@ -234,8 +224,8 @@ def contact_places(
         apart: earlier places of open pairs, for their sides.
         counters: count the searches.
     """
-    ends, nothing = sites.ends, np.zeros(curves.first.size, np.bool_)
-    near = near_pairs(z, curves, sites.columns, np.full(len(sites.columns), REACH), counters)
+    nothing = np.zeros(curves.first.size, np.bool_)
+    near = near_pairs(z, curves, sites.columns, REACH, counters)
     for k in range(closed.size):
         near[old.pair[k]] |= closed[k]
     near &= ~kept_open
@@ -248,7 +238,7 @@ def contact_places(
     marks, room, weights = np.zeros(count + moving.size, np.bool_), np.empty((2, count)), np.empty((4, 2, STENCIL))
     for k in range(count):
         curve, j = fixed.curve[k], known[k]
-        between = not ends.rigid[curve] and not ends.rigid[fixed.other[k]] and curve != fixed.other[k]
+        between = not sites.rigid[curve] and not sites.rigid[fixed.other[k]] and curve != fixed.other[k]
         if j >= 0 and closed[j]:
             marks[k], fixed.force[k], fixed.side[k] = True, old.force[j], old.side[j]
             fixed.piece[k], fixed.xi[k], fixed.foot[k], fixed.eta[k] = old.piece[j], old.xi[j], old.foot[j], old.eta[j]

@@ -157,21 +157,16 @@ class Row(NamedTuple):
     """Row of a place in the linear system, the place's change eliminated.
 
     Attributes:
+        frame: derivatives of λ at the place.
         value: g + F c, which a closed place makes zero.
         by_force: derivative of the value by F.
-        qq, qe, ee, shift: coefficients of the Hessian of λ, qq q² + 2 qe q e + ee e² + shift λ_ξu².
-        slope, curvature, slope_by_force: λ_ξ, λ_ξξ, λ_ξF.
+        shift: the Hessian of λ is qq q² + 2 qe q e + ee e² + shift λ_ξu².
     """
 
+    frame: Frame
     value: float
     by_force: float
-    qq: float
-    qe: float
-    ee: float
     shift: float
-    slope: float
-    curvature: float
-    slope_by_force: float
 
 
 @compiled
@@ -256,26 +251,19 @@ def gap_row(
     _add(vectors[TANGENT], at_b, weights[1], f.tx, f.ty, -1.0)
     if not places.at_point[k]:
         _add(vectors[TURN], at_b, weights[3], f.nx, f.ny, 1.0)
-    if not places.moves[k]:
-        vectors[COUPLING] = vectors[GRADIENT]
-        return Row(f.gap, 0.0, f.qq, f.qe, f.ee, 0.0, f.slope, f.curvature, 0.0)
-    if f.curvature == 0.0:
+    value, by_force, shift = f.gap + force * f.lost, f.lost + force * f.by_force, 0.0
+    if places.moves[k] and f.curvature != 0.0:
+        shift = -1.0 / f.curvature
+        _add(vectors[SHIFT], 0, weights[2], f.nx, f.ny, 1.0)
         for i in range(LOCAL):
-            foot = f.foot_q * vectors[TANGENT, i] + f.foot_e * vectors[TURN, i]
-            vectors[COUPLING, i] = vectors[GRADIENT, i] + 0.5 * force * f.foot_lost * foot
-        by_force = f.lost + force * f.by_force
-        return Row(f.gap + force * f.lost, by_force, f.qq, f.qe, f.ee, 0.0, 0.0, 0.0, 0.0)
-    _add(vectors[SHIFT], 0, weights[2], f.nx, f.ny, 1.0)
-    lean = f.slope_by_force
+            vectors[SHIFT, i] += f.along * (f.qq * vectors[TANGENT, i] + f.qe * vectors[TURN, i])
+            vectors[GRADIENT, i] += shift * f.slope * vectors[SHIFT, i]
+    lean = shift * f.slope_by_force
     for i in range(LOCAL):
-        q, e = vectors[TANGENT, i], vectors[TURN, i]
-        vectors[SHIFT, i] += f.along * (f.qq * q + f.qe * e)
-        vectors[GRADIENT, i] -= vectors[SHIFT, i] * f.slope / f.curvature
-        foot = 0.5 * f.foot_lost * (f.foot_q * q + f.foot_e * e)
-        vectors[COUPLING, i] = vectors[GRADIENT, i] + force * (foot - vectors[SHIFT, i] * lean / f.curvature)
-    value = f.gap + force * f.lost - f.slope * (f.slope + force * lean) / f.curvature
-    by_force = f.lost + force * (f.by_force - lean * lean / f.curvature)
-    return Row(value, by_force, f.qq, f.qe, f.ee, -1.0 / f.curvature, f.slope, f.curvature, lean)
+        foot = 0.5 * f.foot_lost * (f.foot_q * vectors[TANGENT, i] + f.foot_e * vectors[TURN, i])
+        vectors[COUPLING, i] = vectors[GRADIENT, i] + force * (foot + lean * vectors[SHIFT, i])
+    value += f.slope * (shift * f.slope + force * lean)
+    return Row(f, value, by_force + force * lean * f.slope_by_force, shift)
 
 
 @compiled

@@ -43,14 +43,14 @@ def new_counters() -> Ints:
 
 
 @compiled
-def near_pairs(z: Array, curves: CurveArrays, pairs: Ints, reach: Array, counters: Ints) -> Flags:  # pragma: no cover
-    """Whether the boxes of two curves (pairs, 2) are nearer than ``reach`` (pairs,); one test per pair."""
+def near_pairs(z: Array, curves: CurveArrays, pairs: Ints, reach: float, counters: Ints) -> Flags:  # pragma: no cover
+    """Whether the boxes of two curves (pairs, 2) are nearer than ``reach``; one test per pair."""
     boxes, near = curve_boxes(z, curves), np.empty(len(pairs), np.bool_)
     for k in range(len(pairs)):
         a, b = boxes[pairs[k, 0]], boxes[pairs[k, 1]]
         counters[BOX_TESTS] += 1
         apart = max(a[0] - b[2], b[0] - a[2], a[1] - b[3], b[1] - a[3])
-        near[k] = apart < reach[k]
+        near[k] = apart < reach
     return near
 
 
@@ -211,13 +211,13 @@ def move_places(
         if not places.moves[k]:
             continue
         row = gap_row(z, curves, places, k, vectors, weights)
-        if row.curvature == 0.0:
+        if row.shift == 0.0:
             continue
         local_indices(curves, places, k, index)
-        slope = row.slope + row.slope_by_force * by_force[k]
+        slope = row.frame.slope + row.frame.slope_by_force * by_force[k]
         for i in range(LOCAL):
             slope += vectors[SHIFT, i] * change[index[i]]
-        whole, piece, at = -slope / abs(row.curvature), places.piece[k], places.xi[k]
+        whole, piece, at = -slope * abs(row.shift), places.piece[k], places.xi[k]
         step = min(limit, max(-limit, whole)) * share
         places.piece[k], places.xi[k], ended = moved_along(curves, places.curve[k], piece, at, step)
         largest = max(largest, 0.0 if ended and places.xi[k] == at and places.piece[k] == piece else abs(whole))

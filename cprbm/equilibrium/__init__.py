@@ -1,7 +1,7 @@
 """Equilibria of a mechanism: Newton's method, exact elimination with inertia, certificate, stability."""
 
 from cprbm.equilibrium.certificate import certify
-from cprbm.equilibrium.columns import contact_columns, contact_terms
+from cprbm.equilibrium.columns import contact_columns, contact_terms, squares_of
 from cprbm.equilibrium.contact_set import NotConvergedError, with_fixed_places
 from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.neighbours import least_between
@@ -30,6 +30,7 @@ __all__ = [
     "rest_state",
     "shared_multipliers",
     "softest",
+    "squares_of",
     "system_of",
     "with_fixed_places",
 ]

@@ -185,7 +185,7 @@ def _come_near(geometry: Geometry, solved: Touched) -> Contacts | None:
     along one face does not see another face come near.
     """
     z, contacts = solved.state.z, solved.contacts
-    late = near_pairs(z, geometry.arrays, geometry.columns, np.full(len(geometry.pairs), REACH), contacts.counters)
+    late = near_pairs(z, geometry.arrays, geometry.sites.columns, REACH, contacts.counters)
     late[list(contacts.kept_open)] = False
     late[contacts.places.pair] &= geometry.has_faces[contacts.places.pair]
     if not late.any():
@@ -247,7 +247,7 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
                 raise NotConvergedError("a contact's curves overlap between two joints")
             continue
         overlaps = contacts.closed[best] or gap < -OVERLAP - depth[best]
-        if not overlaps or curvature <= 0.0 or not movable(curves, geometry.ends, trial)[0]:
+        if not overlaps or curvature <= 0.0 or not movable(curves, geometry.sites, trial)[0]:
             continue
         at = arc_of(geometry, trial)[0]
         others = contacts.closed & (places.pair == places.pair[best]) & (places.curve == places.curve[best])

@@ -172,11 +172,11 @@ def solve_set(system: System, start: State, iterations: int, springs: Springs | 
 def _settle_set(geometry: Geometry, z: Array, settling: Settling, most: int, steps: int = 0) -> int:
     """Settle places in at most ``steps`` and change the set; the number of places with a wrong sign."""
     if geometry.law is None:
-        return settle_set(z, *settling, geometry.columns, most, steps)
+        return settle_set(z, *settling, geometry.sites.columns, most, steps)
     curves, places, closed, gaps, *_ = settling
     settle_near(z, *settling, steps)
     geometry.law.write_gaps(z, places, gaps)
-    return change_set(curves, places, closed, gaps, geometry.columns, most)
+    return change_set(curves, places, closed, gaps, geometry.sites.columns, most)
 
 
 def _change_set(geometry: Geometry, linear: Linear, settling: Settling, *, returned: bool) -> None:
@@ -211,7 +211,7 @@ def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> bool:
         NotConvergedError: joints close beside a moving place.
     """
     z, m, curves, places, closed, gaps = linear[0], linear[1], *settling[:4]
-    allowed, beside, depth = closable(curves, places, closed, geometry.columns)
+    allowed, beside, depth = closable(curves, places, closed, geometry.sites.columns)
     leaders = np.arange(len(closed)) + places.shares
     trial = ((allowed & np.isfinite(gaps)) | (closed & ~beside))[leaders]
     columns, gradient = contact_terms(geometry, z, places, trial)

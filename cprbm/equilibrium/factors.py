@@ -60,7 +60,7 @@ class Factors:
         m, bordered, solution = self.system.numbers, self.bordered, np.array(load)
         reduced = reduced_load(m, self.work, self.driven, bordered, values, solution)
         within = solved_border(self.factored, self.order, reduced)
-        restored(m.beams, m.border, bordered.reached, within, solution)
+        restored(m.beams, m.border, bordered.coupling, within, solution)
         return solution, within[m.border.size : m.border.size + len(bordered.columns.values)]
 
 

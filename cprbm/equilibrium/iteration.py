@@ -207,7 +207,7 @@ def step_with_columns(
         for j in range(i):
             bordered.border[j, i] = bordered.border[i, j]
     solution = np.linalg.solve(bordered.border, reduced)
-    restored(m.beams, m.border, bordered.reached, solution, change)  # type: ignore[arg-type]
+    restored(m.beams, m.border, bordered.coupling, solution, change)  # type: ignore[arg-type]
     size, share = correction(change, m.motions, m.turns)
     if not isfinite(size):
         return np.inf, 0.0

@@ -5,7 +5,7 @@ A Newton step solves the border by LU factors, :mod:`cprbm.equilibrium.iteration
 has symmetric factors of the border with the inertia, :mod:`cprbm.equilibrium.factors`.
 """
 
-from math import isfinite
+from math import cos, isfinite, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +22,15 @@ from cprbm.chain import (
     row_values,
 )
 from cprbm.contact import Columns
-from cprbm.equilibrium.elimination import Beams, Border, Reached, border_block, eliminate, solve_columns
+from cprbm.equilibrium.elimination import (
+    Beams,
+    Border,
+    Coupling,
+    border_entries,
+    coupled_chains,
+    eliminate,
+    solve_columns,
+)
 from cprbm_scene.answer import Array, Flags, Ints
 
 LARGEST_TURN = 0.5
@@ -56,13 +64,14 @@ class Bordered(NamedTuple):
     Attributes:
         border: G, lower triangle.
         negative: number of negative pivots of all T.
-        columns, reached: of the closed places, and X.
+        columns: of the closed places.
+        coupling: of the chains and the border.
     """
 
     border: Array
     negative: int
     columns: Columns
-    reached: Reached
+    coupling: Coupling
 
 
 @compiled
@@ -89,40 +98,33 @@ def reduced_load(
     m: Numbers, work: Work, driven: Flags, bordered: Bordered, values: Array, load: Array
 ) -> Array:  # pragma: no cover
     """Load of the border; solves the chains in place. ``values`` (at most forces,) are the load of the forces."""
-    beams, border, columns, reached = m.beams, m.border, bordered.columns, bordered.reached
+    beams, border, coupling = m.beams, m.border, bordered.coupling
     reduced = np.zeros(len(bordered.border))
-    for i in range(border.first, load.size):
-        reduced[i - border.first] = load[i]
-    for r in range(driven.size):
-        if not driven[r]:
-            reduced[border.rows + r] = 0.0
+    reduced[: load.size - border.first] = load[border.first :]
+    reduced[border.rows : border.rows + driven.size] *= driven
     reduced[border.size : border.size + values.size] = values
     for beam in range(beams.first.size):
         first, size = beams.first[beam], 2 + PER_LINK * beams.links[beam]
         solve_columns(beams, beam, work.blocks, work.pivot, work.ratio, load[first : first + size].reshape((-1, 1)))
-    for t in range(border.entry_beam.size):
-        beam, r = border.entry_beam[t], border.entry_row[t]
-        if r < 0 or driven[r]:
-            value = border.entry_value[t] * load[beams.first[beam] + border.entry_local[t]]
-            reduced[border.column[border.begin[beam] + border.entry_slot[t]]] -= value
-    for t in range(columns.entry_index.size):
-        if reached.entry_beam[t] >= 0:
-            reduced[border.size + columns.entry_column[t]] -= columns.entry_value[t] * load[columns.entry_index[t]]
+    for t in range(coupling.value.size):
+        if coupling.beam[t] >= 0:
+            reduced[coupling.column[t]] -= coupling.value[t] * load[coupling.index[t]]
     return reduced
 
 
 @compiled
-def restored(beams: Beams, border: Border, reached: Reached, solution: Array, load: Array) -> None:  # pragma: no cover
+def restored(
+    beams: Beams, border: Border, coupling: Coupling, solution: Array, load: Array
+) -> None:  # pragma: no cover
     """Turn the chains' solution ``load`` into the whole solution, in place; ``solution`` belongs to the border."""
     for beam in range(beams.first.size):
-        column = reached.column[reached.begin[beam] : reached.begin[beam + 1]]
-        y, at, first = solution[column], reached.offset[beam], beams.first[beam]
+        y = solution[coupling.reached[coupling.begin[beam] : coupling.begin[beam + 1]]]
+        at, first = coupling.offset[beam], beams.first[beam]
         for i in range(first, first + 2 + PER_LINK * beams.links[beam]):
             for q in range(y.size):
-                load[i] -= reached.solved[at + q] * y[q]
+                load[i] -= coupling.solved[at + q] * y[q]
             at += y.size
-    for i in range(border.first, load.size):
-        load[i] = solution[i - border.first]
+    load[border.first :] = solution[: load.size - border.first]
 
 
 @compiled
@@ -139,11 +141,24 @@ def linearise(
 ) -> Bordered:  # pragma: no cover
     """Border at a state with the columns of closed places; adds the gradient without contacts to ``gradient``."""
     add_gradient(z, m, driven, target, stiffness, anchor, work.blocks, gradient)
-    size = m.border.size + columns.diagonal.size
+    border, count = m.border, columns.diagonal.size
+    size = border.size + count
     G = np.zeros((size, size))
-    border_block(z, m.rows, driven, m.border, G)
-    negative, reached = eliminate(m.beams, work.blocks, work.pivot, work.ratio, driven, m.border, columns, G)
-    return Bordered(G, negative, columns, reached)
+    for c in range(border.rows, border.size):
+        G[c, c] = 1.0
+    for r in np.flatnonzero(driven):
+        G[border.rows + r, border.rows + r] = 0.0
+    for t in range(m.rows.turning_row.size):
+        angle, mu = m.rows.turning_index[t], z[m.rows.first + m.rows.turning_row[t]]
+        bent = m.rows.turning_cos[t] * cos(z[angle]) + m.rows.turning_sin[t] * sin(z[angle])
+        G[angle - border.first, angle - border.first] -= mu * bent
+    for c in range(count):
+        at = border.size + c
+        G[at, at] += columns.diagonal[c]
+        G[at, at - 1] += columns.beside[c]
+    coupling = coupled_chains(m.beams, border, size, border_entries(z, m.rows, m.beams, driven, border, columns))
+    negative = eliminate(m.beams, work.blocks, work.pivot, work.ratio, border, coupling, G)
+    return Bordered(G, negative, columns, coupling)
 
 
 @compiled

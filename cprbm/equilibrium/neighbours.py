@@ -106,7 +106,7 @@ def least_between(
     least = np.inf
     for k in minima_of(curves, places, closed, gaps, sites.columns, pair):
         trial, gap, curvature = as_point(z, curves, places, k, 0.0, counters)
-        if curvature > 0.0 and movable(curves, sites.ends, trial)[0]:
+        if curvature > 0.0 and movable(curves, sites, trial)[0]:
             least = min(least, gap)
     return least
 
@@ -163,7 +163,7 @@ def given_up(
     gone, light = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
     if not np.any(places.moves):
         return gone, light
-    allowed, near = movable(curves, sites.ends, places), np.zeros(count, np.bool_)
+    allowed, near = movable(curves, sites, places), np.zeros(count, np.bool_)
     for k in range(count):
         if not places.moves[k] or curves.angle[places.piece[k]] < 0:
             continue

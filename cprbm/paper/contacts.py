@@ -203,7 +203,8 @@ def paper_geometry(m: Mechanism, every: Geometry, degree: int) -> Geometry:
     longest = max(float(np.max(np.diff(chain.borders))) for chain in m.chains.values())
     law = FittedLaw(boundaries, every, BEYOND * longest, m.units.length) if boundaries else None
     possible = places_at(every.arrays, np.array(rows + fitted_rows, dtype=np.int64))
-    return replace(every, pairs=pairs, possible=possible, law=law, joints_alone=True)
+    sites = every.sites._replace(possible=possible, sharing=np.zeros_like(every.sites.sharing))
+    return replace(every, pairs=pairs, sites=sites, law=law, joints_alone=True)
 
 
 def refuse_contacts(scene: Scene) -> None:

@@ -34,13 +34,14 @@ The offset points turn, dA_i = dx_i + A_τ dτ_i, and with them goes Σ t_i dτ_
 beside the diagonal; a point's block has its two eigenvectors (:mod:`cprbm.equilibrium.columns`).
 """
 
-from math import atan2, cos, hypot, sin
+from math import cos, hypot, sin
 from typing import NamedTuple
 
 import numpy as np
 
 from cprbm.chain import compiled
 from cprbm.contact import Columns
+from cprbm.equilibrium import squares_of
 from cprbm_scene.answer import Array, Flags, Ints
 
 REAL = 1e-14
@@ -174,10 +175,9 @@ def _add_curvature(b: Boundary, fit: Fit, out: Local, K: Array, w: Array, basis:
     U = np.empty((n, 3))
     for i in range(n):
         P, U[i] = fit.V[i] @ fit.q, fit.V[i] @ mu
-        half, cross = 0.5 * (U[i, 2] * (P[0] - fit.points[1, i]) + U[i, 0] * P[2]) + U[i, 1] * P[1], -U[i, 1]
-        lean, size = 0.5 * atan2(cross, half), hypot(half, cross)
-        for value, A, B in ((half + size, cos(lean), sin(lean)), (half - size, -sin(lean), cos(lean))):
-            if abs(value) > REAL * size:
+        bent = U[i, 2] * (P[0] - fit.points[1, i]) + 2.0 * U[i, 1] * P[1] + U[i, 0] * P[2]
+        for value, A, B in squares_of(bent, -U[i, 1], 0.0):
+            if abs(value) > REAL * hypot(bent, U[i, 1]):
                 vector = _new_square(out, value)
                 vector[2 * k + i], vector[2 * k + n + i] = A, B
         turn = -slope[i] * fit.offsets[0, i] - slope[n + i] * fit.offsets[1, i]
