@@ -104,58 +104,69 @@ def factor_chains(beams: Beams, blocks: Blocks, pivot: Array, ratio: Array) -> i
 
 
 @compiled
-def _add(x: Array, i: int, factor: float, other: Array) -> None:  # pragma: no cover
-    """Add a multiple of a row to a row of X; all columns are in the inner loop, which the processor does at once."""
-    for q in range(x.shape[1]):
-        x[i, q] += factor * other[q]
-
-
-@compiled
 def _sum_forces(coupling: Array, m: int, x: Array) -> Array:  # pragma: no cover
     """Resultants (2, columns) at the first node; the force n_j takes the place of p_{j+1}, θ loses the forces' part."""
-    force = x[5 * m : 5 * m + 2].copy()
+    force, count = x[5 * m : 5 * m + 2].copy(), x.shape[1]
     for j in range(m - 1, -1, -1):
+        i, c = 5 * j, coupling[j]
         for axis in range(2):
-            x[5 * j + 5 + axis] = force[axis]
+            n = force[axis]
+            for q in range(count):
+                x[i + 5 + axis, q] = n[q]
             for link in range(max(j - 1, 0), min(j + 2, m)):
-                _add(x, 5 * link + 4, -coupling[j, 1 + link - j, axis], force[axis])
-            _add(force, axis, 1.0, x[5 * j + axis])
+                factor = c[1 + link - j, axis]
+                for q in range(count):
+                    x[5 * link + 4, q] -= factor * n[q]
+            for q in range(count):
+                n[q] += x[i + axis, q]
     return force
 
 
 @compiled
 def _solve_angles(pivot: Array, ratio: Array, m: int, x: Array) -> None:  # pragma: no cover
     """Solve T θ = b in place."""
+    count = x.shape[1]
     for j in range(1, m):
-        _add(x, 5 * j + 4, -ratio[j], x[5 * j - 1])
-    for j in range(m - 1, -1, -1):
-        x[5 * j + 4] *= pivot[j]
-        if j < m - 1:
-            _add(x, 5 * j + 4, -ratio[j + 1], x[5 * j + 9])
+        for q in range(count):
+            x[5 * j + 4, q] -= ratio[j] * x[5 * j - 1, q]
+    for q in range(count):
+        x[5 * m - 1, q] *= pivot[m - 1]
+    for j in range(m - 2, -1, -1):
+        for q in range(count):
+            x[5 * j + 4, q] = x[5 * j + 4, q] * pivot[j] - ratio[j + 1] * x[5 * j + 9, q]
 
 
 @compiled
 def _sum_places(coupling: Array, compliance: Array, m: int, place: Array, x: Array) -> None:  # pragma: no cover
     """Write forces and positions behind the first node at ``place`` (2, columns), which is lost."""
+    count = x.shape[1]
     for j in range(m):
-        i = 5 * j
+        i, c, k = 5 * j, coupling[j], compliance[j]
         for axis in range(2):
-            _add(place, axis, 1.0, x[i + 2 + axis])
+            p = place[axis]
+            for q in range(count):
+                p[q] += x[i + 2 + axis, q]
             for link in range(max(j - 1, 0), min(j + 2, m)):
                 # forces of links before are in their own places already
-                n, near = 5 * link + (2 if link < j else 5), 1 + link - j
-                _add(place, axis, -compliance[j, near, axis, 0], x[n])
-                _add(place, axis, -compliance[j, near, axis, 1], x[n + 1])
-                _add(place, axis, -coupling[j, near, axis], x[5 * link + 4])
-        x[i + 2 : i + 4] = x[i + 5 : i + 7]
-        x[i + 5 : i + 7] = place
+                n, turn, near = 5 * link + (2 if link < j else 5), 5 * link + 4, 1 + link - j
+                a, b, factor = k[near, axis, 0], k[near, axis, 1], c[near, axis]
+                for q in range(count):
+                    p[q] -= a * x[n, q] + b * x[n + 1, q] + factor * x[turn, q]
+        for axis in range(2):
+            for q in range(count):
+                x[i + 2 + axis, q] = x[i + 5 + axis, q]
+            for q in range(count):
+                x[i + 5 + axis, q] = place[axis, q]
 
 
 @compiled
 def solve_columns(
     beams: Beams, beam: int, blocks: Blocks, pivot: Array, ratio: Array, x: Array
 ) -> None:  # pragma: no cover
-    """Solve A X = B in place; ``x`` (unknowns, columns) belongs to a chain."""
+    """Solve A X = B in place; ``x`` (unknowns, columns) belongs to a chain.
+
+    All columns are in the inner loops, which the processor does at once.
+    """
     m, start = beams.links[beam], beams.first_link[beam]
     end = start + m
     place = _sum_forces(blocks.coupling[start:end], m, x)

@@ -43,14 +43,9 @@ def vectors_over_unknowns(geometry, z, places, k):
 
 def form(row, spread):
     """Hessian of λ over all unknowns."""
-    q, e, m = spread[TANGENT], spread[TURN], spread[SHIFT]
+    q, e, m, f = spread[TANGENT], spread[TURN], spread[SHIFT], row.frame
     mixed = np.outer(q, e) + np.outer(e, q)
-    return (
-        row.frame.qq * np.outer(q, q)
-        + row.frame.qe * mixed
-        + row.frame.ee * np.outer(e, e)
-        + row.shift * np.outer(m, m)
-    )
+    return f.qq * np.outer(q, q) + f.qe * mixed + f.ee * np.outer(e, e) + row.shift * np.outer(m, m)
 
 
 def touched(geometry, places):
