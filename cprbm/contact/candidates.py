@@ -126,11 +126,6 @@ def copied(places: Places) -> Places:
     return Places._make(column.copy() for column in places)
 
 
-def joined(places: Places, others: Places) -> Places:
-    """Both groups of places, in this order."""
-    return Places._make(np.concatenate(columns) for columns in zip(places, others, strict=True))
-
-
 def fixed_places(
     geometry: Geometry, z: Array, sides: Array, near: Flags, counters: Ints, *, welds: bool = False
 ) -> Places:

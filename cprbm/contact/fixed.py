@@ -74,6 +74,25 @@ def picked(places: Places, which: Ints) -> Places:  # pragma: no cover
 
 
 @compiled
+def joined(places: Places, others: Places) -> Places:  # pragma: no cover
+    """Both groups of places, in this order."""
+    return Places(
+        np.concatenate((places.pair, others.pair)),
+        np.concatenate((places.curve, others.curve)),
+        np.concatenate((places.piece, others.piece)),
+        np.concatenate((places.xi, others.xi)),
+        np.concatenate((places.other, others.other)),
+        np.concatenate((places.foot, others.foot)),
+        np.concatenate((places.eta, others.eta)),
+        np.concatenate((places.at_point, others.at_point)),
+        np.concatenate((places.side, others.side)),
+        np.concatenate((places.moves, others.moves)),
+        np.concatenate((places.shares, others.shares)),
+        np.concatenate((places.force, others.force)),
+    )
+
+
+@compiled
 def is_straight(curves: CurveArrays, piece: int) -> bool:  # pragma: no cover
     """Whether a piece is a straight piece of a body's edge."""
     bends = np.abs(curves.real[piece, 1, 2:]).sum() + np.abs(curves.imaginary[piece, 1, 2:]).sum()
@@ -209,8 +228,8 @@ def contact_places(
     closed: Flags,
     apart: Places,
     counters: Ints,
-) -> tuple[Places, Ints, Flags]:  # pragma: no cover
-    """Fixed places at the nearest feet, numbers of the moving places of ``old``, and marks of the closed among both.
+) -> tuple[Places, Flags]:  # pragma: no cover
+    """Fixed places at the nearest feet with the moving places of ``old``, and marks of the closed among both.
 
     Known places keep force and state.  A new place of a beam in self-contact has the present side, and a new place
     beyond the end of another beam too.
@@ -251,4 +270,4 @@ def contact_places(
         if curves.angle[fixed.piece[k]] < 0:
             fixed.side[k] = corner_sides[curve]
     marks[count:] = closed[moving]
-    return fixed, moving, marks
+    return joined(fixed, picked(old, moving)), marks

@@ -45,6 +45,8 @@ dξ = −(λ_ξ + λ_ξu + λ_ξF dF)/λ_ξξ.  At a corner C_A' = 0 and all der
 from math import hypot, sqrt
 from typing import NamedTuple, Protocol
 
+import numpy as np
+
 from cprbm.chain import compiled
 from cprbm.contact.closest import curve_jet, lost_at, thickness_between
 from cprbm.contact.curve import STENCIL, CurveArrays
@@ -208,6 +210,22 @@ def gap_frame(z: Array, curves: CurveArrays, places: Places, k: int, weights: Ar
         R - thickness, nx, ny, tx, ty, qq, qe, ee, along, slope, curvature,
         0.5 * (own1 + other1 * foot_q * along), foot_q, foot_e, own + other, other1, -0.25 * other1 * other1 * foot_e,
     )  # fmt: skip
+
+
+@compiled
+def touching_points(
+    z: Array, curves: CurveArrays, places: Places, which: Ints
+) -> tuple[Array, Array]:  # pragma: no cover
+    """Points (k, 2, 2) of some places on both curves, and normals (k, 2) from the feet to the places."""
+    points, normals, weights = np.empty((which.size, 2, 2)), np.empty((which.size, 2)), np.empty((4, 2, STENCIL))
+    for i in range(which.size):
+        k = which[i]
+        frame = gap_frame(z, curves, places, k, weights)
+        normals[i, 0], normals[i, 1] = frame.nx, frame.ny
+        x, y, _, _, _, _ = curve_jet(z, curves, places.piece[k], places.xi[k], weights[0], weights[1])
+        u, v, _, _, _, _ = curve_jet(z, curves, places.foot[k], places.eta[k], weights[0], weights[1])
+        points[i, 0, 0], points[i, 0, 1], points[i, 1, 0], points[i, 1, 1] = x, y, u, v
+    return points, normals
 
 
 @compiled

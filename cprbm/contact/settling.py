@@ -242,14 +242,12 @@ def sweeps_any_point(
 ) -> bool:  # pragma: no cover
     """True if a beam sweeps over one of the ``points`` of :class:`cprbm.contact.candidates.Geometry` in a step."""
     old, new = curve_boxes(before, curves), curve_boxes(after, curves)
+    low, high = np.minimum(old[:, :2], new[:, :2]), np.maximum(old[:, 2:], new[:, 2:])
     for k in range(len(points)):
         a, b, piece, at_end = points[k]
         counters[BOX_TESTS] += 1
-        met = True
-        for i in range(2):
-            for c, d in ((a, b), (b, a)):
-                met = met and min(old[c, i], new[c, i]) < max(old[d, i + 2], new[d, i + 2])
-        if met and _sweeps_over(before, after, curves, b, piece, float(at_end)):
+        apart = max((low[a] - high[b]).max(), (low[b] - high[a]).max())
+        if apart < 0.0 and _sweeps_over(before, after, curves, b, piece, float(at_end)):
             return True
     return False
 

@@ -72,17 +72,19 @@ def contact_columns(
     z: Array, curves: CurveArrays, places: Places, closed: Flags, gradient: Array
 ) -> Columns:  # pragma: no cover
     """Columns of the places marked ``closed``; adds the gradient of all −F λ by the unknowns to ``gradient``."""
-    own, count = closed & (places.shares == 0), np.count_nonzero(closed)
-    number, forces = np.cumsum(own) - 1, np.count_nonzero(own)
+    own, count = closed & (places.shares == 0), int(np.count_nonzero(closed))
+    number, forces = np.cumsum(own) - 1, int(np.count_nonzero(own))
     values, diagonal = np.zeros(forces), np.zeros(forces + MOTIONS * count)
     most = (1 + MOTIONS) * LOCAL * count
     entries = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most)
     vectors, weights, index = np.empty((5, LOCAL)), np.empty((4, 2, STENCIL)), np.empty(LOCAL, np.int64)
     used, at = 0, forces
-    for k in np.flatnonzero(closed):
+    for k in range(closed.size):
+        if not closed[k]:
+            continue
         row = gap_row(z, curves, places, k, vectors, weights)
         local_indices(curves, places, k, index)
-        column, F = number[k + places.shares[k]], places.force[k]
+        column, F = int(number[k + places.shares[k]]), places.force[k]
         values[column] += row.value
         diagonal[column] -= row.by_force
         for i in range(LOCAL):
@@ -94,9 +96,9 @@ def contact_columns(
                 motion = q * vectors[TANGENT] + e * vectors[TURN] + shift * vectors[SHIFT]
                 diagonal[at], used = 1.0 / (F * s), _add_entries(entries, used, at, index, motion)
                 at += 1
-    column, unknown, value = entries
-    negative = np.count_nonzero(diagonal[forces:at] < 0.0)
-    return Columns(values, negative, diagonal[:at], np.zeros(at), column[:used], unknown[:used], value[:used])
+    of_entries, unknown, value = entries
+    negative = int(np.count_nonzero(diagonal[forces:at] < 0.0))
+    return Columns(values, negative, diagonal[:at], np.zeros(at), of_entries[:used], unknown[:used], value[:used])
 
 
 @compiled

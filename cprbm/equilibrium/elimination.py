@@ -63,7 +63,7 @@ class Coupling(NamedTuple):
     """Entries of B, of rows, springs and closed places, and X by the chains.
 
     Attributes:
-        column, index, value: border column, unknown and value of an entry.
+        column, unknown, value: border column, unknown and value of an entry.
         beam: chain of an entry; −1 for an entry beside the border's unknowns.
         slot, row: number of the column among the chain's columns, first value of the unknown's row in ``solved``.
         begin, reached: border columns that reach a chain, ordered by chain, and the first of each chain (beams + 1,).
@@ -72,7 +72,7 @@ class Coupling(NamedTuple):
     """
 
     column: Ints
-    index: Ints
+    unknown: Ints
     value: Array
     beam: Ints
     slot: Ints
@@ -83,24 +83,31 @@ class Coupling(NamedTuple):
     solved: Array
 
 
+class Chains(NamedTuple):
+    """Factors of the chains: coupling and compliance of the Hessian's blocks, inverse pivots and ratios of T."""
+
+    coupling: Array
+    compliance: Array
+    pivot: Array
+    ratio: Array
+
+
 @compiled
-def factor_chains(beams: Beams, blocks: Blocks, pivot: Array, ratio: Array) -> int:  # pragma: no cover
-    """Write the inverse pivots of T of all chains, and their ratios; the number of negative pivots."""
-    negative = 0
+def factored_chains(beams: Beams, blocks: Blocks) -> tuple[Chains, int]:  # pragma: no cover
+    """Factors of all chains, and the number of negative pivots of all T."""
+    negative, pivot, ratio = 0, blocks.turn.copy(), np.zeros(blocks.turn.size)
     for beam in range(beams.first.size):
         start = beams.first_link[beam]
+        pivot[start] += beams.springs[beam, 2]
         for j in range(start, start + beams.links[beam]):
-            pivot[j] = blocks.turn[j]
-            if j == start:
-                pivot[j] += beams.springs[beam, 2]
-            else:
+            if j > start:
                 ratio[j] = blocks.next_turn[j - 1] * pivot[j - 1]
                 pivot[j] -= ratio[j] * blocks.next_turn[j - 1]
             if pivot[j] == 0.0:
                 pivot[j] = LEAST_PIVOT
             negative += pivot[j] < 0.0
             pivot[j] = 1.0 / pivot[j]
-    return negative
+    return Chains(blocks.coupling, blocks.compliance, pivot, ratio), negative
 
 
 @compiled
@@ -160,21 +167,19 @@ def _sum_places(coupling: Array, compliance: Array, m: int, place: Array, x: Arr
 
 
 @compiled
-def solve_columns(
-    beams: Beams, beam: int, blocks: Blocks, pivot: Array, ratio: Array, x: Array
-) -> None:  # pragma: no cover
+def solve_columns(beams: Beams, beam: int, chains: Chains, x: Array) -> None:  # pragma: no cover
     """Solve A X = B in place; ``x`` (unknowns, columns) belongs to a chain.
 
     All columns are in the inner loops, which the processor does at once.
     """
     m, start = beams.links[beam], beams.first_link[beam]
     end = start + m
-    place = _sum_forces(blocks.coupling[start:end], m, x)
-    _solve_angles(pivot[start:end], ratio[start:end], m, x)
+    place = _sum_forces(chains.coupling[start:end], m, x)
+    _solve_angles(chains.pivot[start:end], chains.ratio[start:end], m, x)
     for axis in range(2):
         place[axis] /= beams.springs[beam, axis]
         x[axis] = place[axis]
-    _sum_places(blocks.coupling[start:end], blocks.compliance[start:end], m, place, x)
+    _sum_places(chains.coupling[start:end], chains.compliance[start:end], m, place, x)
 
 
 @compiled
@@ -200,11 +205,11 @@ def coupled_chains(
     beams: Beams, border: Border, size: int, entries: tuple[Ints, Ints, Array]
 ) -> Coupling:  # pragma: no cover
     """Entries by chain, and X with the entries for values; ``size`` is the number of all columns."""
-    count, (column, index, value) = beams.first.size, entries
-    beam = np.searchsorted(beams.first, index, "right") - 1
+    count, (column, unknown, value) = beams.first.size, entries
+    beam = np.searchsorted(beams.first, unknown, "right") - 1
     row, slot, slots = np.empty_like(beam), np.empty_like(beam), np.full((count, size), -1)
     for t in range(value.size):
-        if index[t] < border.first:
+        if unknown[t] < border.first:
             slots[beam[t], column[t]] = 0
         else:
             beam[t] = -1
@@ -223,27 +228,23 @@ def coupled_chains(
         k = beam[t]
         if k >= 0:
             slot[t] = slots[k, column[t]]
-            row[t] = offset[k] + (index[t] - beams.first[k]) * (begin[k + 1] - begin[k])
+            row[t] = offset[k] + (unknown[t] - beams.first[k]) * (begin[k + 1] - begin[k])
             solved[row[t] + slot[t]] += value[t]
-    return Coupling(column, index, value, beam, slot, row, begin, reached, offset, solved)
+    return Coupling(column, unknown, value, beam, slot, row, begin, reached, offset, solved)
 
 
 @compiled
-def eliminate(
-    beams: Beams, blocks: Blocks, pivot: Array, ratio: Array, border: Border, coupling: Coupling, G: Array
-) -> int:  # pragma: no cover
-    """Solve for X, add the border's own entries to G and subtract B X; the number of negative pivots of all T."""
-    negative = factor_chains(beams, blocks, pivot, ratio)
+def eliminate(beams: Beams, chains: Chains, border: Border, coupling: Coupling, G: Array) -> None:  # pragma: no cover
+    """Solve for X, add the border's own entries to G and subtract B X."""
     column, begin, offset, solved = coupling.column, coupling.begin, coupling.offset, coupling.solved
     for beam in range(beams.first.size):
         x = solved[offset[beam] : offset[beam + 1]].reshape((-1, begin[beam + 1] - begin[beam]))
-        solve_columns(beams, beam, blocks, pivot, ratio, x)
+        solve_columns(beams, beam, chains, x)
     for t in range(column.size):
         beam, of_column = coupling.beam[t], G[column[t]]
         if beam < 0:
-            of_column[coupling.index[t] - border.first] += coupling.value[t]
+            of_column[coupling.unknown[t] - border.first] += coupling.value[t]
         else:
             for other in range(coupling.slot[t] + 1):
                 product = coupling.value[t] * solved[coupling.row[t] + other]
                 of_column[coupling.reached[begin[beam] + other]] -= product
-    return negative

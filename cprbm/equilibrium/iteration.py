@@ -7,7 +7,7 @@ import numpy as np
 from cprbm.chain import compiled
 from cprbm.contact import BEND, CORNER, Columns, CurveArrays, Places, move_places, settle_near
 from cprbm.equilibrium.columns import contact_columns
-from cprbm.equilibrium.linear import Numbers, Work, correction, reduced_system, restored
+from cprbm.equilibrium.linear import Numbers, correction, reduced_system, restored
 from cprbm_scene.answer import Array, Flags, Ints
 
 OVERLAP = 1e-12
@@ -164,18 +164,25 @@ def newton_step(
     target: Array,
     stiffness: Array,
     anchor: Array,
-    work: Work,
     curves: CurveArrays,
     places: Places,
     closed: Flags,
+    gaps: Array,
+    curvatures: Array,
     room: Array,
+    counters: Ints,
+    pairs: Ints,
+    changes: int,
 ) -> tuple[float, float]:  # pragma: no cover
-    """A step of Newton's method with the closed places of the smooth curves, :func:`step_with_columns`."""
+    """A step of Newton's method with the closed places of the smooth curves, :func:`step_with_columns`.
+
+    ``changes`` is the number of changes of the set before the step.
+    """
+    for _ in range(changes):
+        settle_set(z, curves, places, closed, gaps, curvatures, room, counters, pairs, closed.size, 0)
     gradient = np.zeros(z.size)
     columns = contact_columns(z, curves, places, closed, gradient)
-    return step_with_columns(
-        z, m, driven, target, stiffness, anchor, work, curves, places, closed, room, columns, gradient
-    )
+    return step_with_columns(z, m, driven, target, stiffness, anchor, curves, places, closed, room, columns, gradient)
 
 
 @compiled
@@ -186,7 +193,6 @@ def step_with_columns(
     target: Array,
     stiffness: Array,
     anchor: Array,
-    work: Work,
     curves: CurveArrays,
     places: Places,
     closed: Flags,
@@ -202,7 +208,7 @@ def step_with_columns(
     Raises:
         LinAlgError: the border is singular.
     """
-    bordered, change, reduced = reduced_system(z, m, driven, target, stiffness, anchor, work, columns, gradient)
+    bordered, change, reduced = reduced_system(z, m, driven, target, stiffness, anchor, columns, gradient)
     for i in range(reduced.size):
         for j in range(i):
             bordered.border[j, i] = bordered.border[i, j]

@@ -25,10 +25,12 @@ from cprbm.contact import Columns
 from cprbm.equilibrium.elimination import (
     Beams,
     Border,
+    Chains,
     Coupling,
     border_entries,
     coupled_chains,
     eliminate,
+    factored_chains,
     solve_columns,
 )
 from cprbm_scene.answer import Array, Flags, Ints
@@ -50,14 +52,6 @@ class Numbers(NamedTuple):
     motions: Ints
 
 
-class Work(NamedTuple):
-    """Factors of the chains: blocks, inverse pivots and ratios of T."""
-
-    blocks: Blocks
-    pivot: Array
-    ratio: Array
-
-
 class Bordered(NamedTuple):
     """Border after the elimination of the chains.
 
@@ -65,25 +59,26 @@ class Bordered(NamedTuple):
         border: G, lower triangle.
         negative: number of negative pivots of all T.
         columns: of the closed places.
-        coupling: of the chains and the border.
+        chains, coupling: factors of the chains, and their coupling with the border.
     """
 
     border: Array
     negative: int
     columns: Columns
+    chains: Chains
     coupling: Coupling
 
 
 @compiled
 def add_gradient(
-    z: Array, m: Numbers, driven: Flags, target: Array, stiffness: Array, anchor: Array, blocks: Blocks, gradient: Array
-) -> None:  # pragma: no cover
-    """Add the gradient of the Lagrangian without contacts to ``gradient``; write the blocks of the Hessian.
+    z: Array, m: Numbers, driven: Flags, target: Array, stiffness: Array, anchor: Array, gradient: Array
+) -> Blocks:  # pragma: no cover
+    """Blocks of the Hessian; adds the gradient of the Lagrangian without contacts to ``gradient``.
 
     Springs of the ``stiffness`` (links,) pull the links' angles to the ``anchor`` (links,).
     """
     first = m.rows.first
-    evaluate_chains(z, m.links, m.joints, blocks, gradient)
+    blocks = evaluate_chains(z, m.links, m.joints, gradient)
     add_row_gradient(z, m.rows, z[first:], gradient)
     for j in range(m.angles.size):
         blocks.turn[j] += stiffness[j]
@@ -91,24 +86,22 @@ def add_gradient(
     values = row_values(z, m.rows)
     for r in range(driven.size):
         gradient[first + r] = values[r] - target[r] if driven[r] else 0.0
+    return blocks
 
 
 @compiled
 def reduced_load(
-    m: Numbers, work: Work, driven: Flags, bordered: Bordered, values: Array, load: Array
+    beams: Beams, border: Border, chains: Chains, coupling: Coupling, driven: Flags, values: Array, load: Array
 ) -> Array:  # pragma: no cover
-    """Load of the border; solves the chains in place. ``values`` (at most forces,) are the load of the forces."""
-    beams, border, coupling = m.beams, m.border, bordered.coupling
-    reduced = np.zeros(len(bordered.border))
-    reduced[: load.size - border.first] = load[border.first :]
+    """Load of the border; solves the chains in place. ``values`` (columns,) are the load of the closed places."""
+    reduced = np.concatenate((load[border.first :], np.zeros(border.size - load.size + border.first), values))
     reduced[border.rows : border.rows + driven.size] *= driven
-    reduced[border.size : border.size + values.size] = values
     for beam in range(beams.first.size):
         first, size = beams.first[beam], 2 + PER_LINK * beams.links[beam]
-        solve_columns(beams, beam, work.blocks, work.pivot, work.ratio, load[first : first + size].reshape((-1, 1)))
+        solve_columns(beams, beam, chains, load[first : first + size].reshape((-1, 1)))
     for t in range(coupling.value.size):
         if coupling.beam[t] >= 0:
-            reduced[coupling.column[t]] -= coupling.value[t] * load[coupling.index[t]]
+            reduced[coupling.column[t]] -= coupling.value[t] * load[coupling.unknown[t]]
     return reduced
 
 
@@ -135,12 +128,11 @@ def linearise(
     target: Array,
     stiffness: Array,
     anchor: Array,
-    work: Work,
     columns: Columns,
     gradient: Array,
 ) -> Bordered:  # pragma: no cover
     """Border at a state with the columns of closed places; adds the gradient without contacts to ``gradient``."""
-    add_gradient(z, m, driven, target, stiffness, anchor, work.blocks, gradient)
+    blocks = add_gradient(z, m, driven, target, stiffness, anchor, gradient)
     border, count = m.border, columns.diagonal.size
     size = border.size + count
     G = np.zeros((size, size))
@@ -157,8 +149,9 @@ def linearise(
         G[at, at] += columns.diagonal[c]
         G[at, at - 1] += columns.beside[c]
     coupling = coupled_chains(m.beams, border, size, border_entries(z, m.rows, m.beams, driven, border, columns))
-    negative = eliminate(m.beams, work.blocks, work.pivot, work.ratio, border, coupling, G)
-    return Bordered(G, negative, columns, coupling)
+    chains, negative = factored_chains(m.beams, blocks)
+    eliminate(m.beams, chains, border, coupling, G)
+    return Bordered(G, negative, columns, chains, coupling)
 
 
 @compiled
@@ -169,14 +162,14 @@ def reduced_system(
     target: Array,
     stiffness: Array,
     anchor: Array,
-    work: Work,
     columns: Columns,
     gradient: Array,
 ) -> tuple[Bordered, Array, Array]:  # pragma: no cover
     """Border, the chains' solution for minus the whole gradient, and the border's load; arguments as of linearise."""
-    bordered = linearise(z, m, driven, target, stiffness, anchor, work, columns, gradient)
-    load = -gradient
-    return bordered, load, reduced_load(m, work, driven, bordered, columns.values, load)
+    bordered = linearise(z, m, driven, target, stiffness, anchor, columns, gradient)
+    load, values = -gradient, np.zeros(columns.diagonal.size)
+    values[: columns.values.size] = columns.values
+    return bordered, load, reduced_load(m.beams, m.border, bordered.chains, bordered.coupling, driven, values, load)
 
 
 @compiled

@@ -2,7 +2,7 @@
 
 A state has unknowns z, rows with a prescribed value, and targets of the rows: the value f*, or the
 multiplier μ* of a row with prescribed force.  Repeated rows are left out
-(:mod:`cprbm.equilibrium.rank`).
+(:mod:`cprbm.equilibrium.solving`).
 """
 
 from dataclasses import dataclass
@@ -153,13 +153,10 @@ def rest_state(system: System) -> State:
 def _beams(m: Mechanism) -> Beams:
     """Chains with springs of the size of their own bending stiffness."""
     counts = np.array([chain.links for chain in m.chains.values()], dtype=np.int64)
-    springs = []
-    for chain in m.chains.values():
-        turning = float(np.median(chain.stiffness))
-        pulling = turning / chain.links / chain.length**2
-        springs.append((pulling, pulling, turning))
+    turning = np.array([np.median(chain.stiffness) for chain in m.chains.values()])
+    pulling = turning / counts / np.array([chain.length for chain in m.chains.values()]) ** 2
     first = np.array(list(m.starts.values()), dtype=np.int64)
-    return Beams(first, counts, np.cumsum(counts) - counts, np.array(springs))
+    return Beams(first, counts, np.cumsum(counts) - counts, np.column_stack([pulling, pulling, turning]))
 
 
 def _border(rows: RowArrays, beams: Beams) -> Border:
