@@ -173,10 +173,8 @@ def settle_near(
     A place and the curve beneath move by at most the sum of the weights' sizes times the nodes' way.  The weights grow
     along a rigid curve; half the gap leaves them room.  Moving and sharing places and beams with themselves have none.
     """
-    weights, sharing = np.empty((4, 2, STENCIL)), np.zeros(closed.size, np.bool_)
-    for k in range(closed.size):
-        if places.shares[k] != 0:
-            sharing[k], sharing[k + places.shares[k]] = True, True
+    weights, sharing = np.empty((4, 2, STENCIL)), places.shares != 0
+    sharing[(np.arange(closed.size) + places.shares)[sharing]] = True
     for k in range(closed.size):
         if room[k] > 0.0 and not closed[k]:
             continue

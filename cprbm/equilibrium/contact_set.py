@@ -52,6 +52,7 @@ from cprbm.contact import (
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.factors import SingularError, Springs, factored_border, pulls, solved_border
 from cprbm.equilibrium.iteration import (
+    arcs_of,
     change_set,
     closable,
     follow_leaders,
@@ -244,7 +245,7 @@ def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> None:
     closed[:] = False
     closed[own] = pressed
     follow_leaders(places, closed)
-    arcs, joints = arc_of(geometry, places), closed & ~places.moves
+    arcs, joints = arcs_of(curves, places), closed & ~places.moves
     points = np.flatnonzero(closed & places.moves & ~on_edge(curves, places))
     near = np.abs(arcs[joints, None] - arcs[points]) < ISOLATED * curves.span[places.piece[points]]
     if np.any(near & (places.pair[joints, None] == places.pair[points])):
@@ -278,10 +279,3 @@ def closed_forces(bordered: Bordered, reduced: Array, size: int, forces: Array, 
     except (SingularError, LinAlgError, ValueError, RuntimeError):
         # no minimum without contacts, numbers without a limit, or no least-squares solution
         return None
-
-
-def arc_of(geometry: Geometry, places: Places) -> Array:
-    """Arc lengths of places on their beams: of the feet of corners."""
-    corner = on_edge(geometry.arrays, places)
-    piece, at = np.where(corner, places.foot, places.piece), np.where(corner, places.eta, places.xi)
-    return np.asarray(geometry.arrays.arc[piece] + at * geometry.arrays.span[piece])
