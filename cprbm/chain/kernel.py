@@ -118,15 +118,17 @@ def link_arrays(m: Mechanism) -> tuple[Links, Joints]:
 @compiled
 def _partials_of_links(z: Array, links: Links) -> Array:  # pragma: no cover
     """F_N, F_Q, F_NN, F_NQ, F_QQ, N, Q, cos θ, sin θ of the links alone (links, 9)."""
-    force = np.empty((links.length.size, 9))
-    for j in range(links.length.size):
-        i = links.first[j]
-        L, c, s = links.length[j], links.stretch[j], links.shear[j]
-        a, b = cos(z[i + 4]), sin(z[i + 4])
-        N, Q = z[i + 2] * a + z[i + 3] * b, z[i + 3] * a - z[i + 2] * b
-        row = force[j]
-        row[0], row[1], row[2], row[3], row[4] = -L * (1.0 + c * N), -L * s * Q, -L * c, 0.0, -L * s
-        row[5], row[6], row[7], row[8] = N, Q, a, b
+    force, angle, x, y = np.zeros((links.length.size, 9)), z[links.first + 4], z[links.first + 2], z[links.first + 3]
+    a, b = np.cos(angle), np.sin(angle)
+    N, Q, L, c, s = x * a + y * b, y * a - x * b, links.length, links.stretch, links.shear
+    force[:, 0], force[:, 1], force[:, 2], force[:, 3], force[:, 4] = (
+        -L * (1.0 + c * N),
+        -L * s * Q,
+        -L * c,
+        0.0,
+        -L * s,
+    )
+    force[:, 5], force[:, 6], force[:, 7], force[:, 8] = N, Q, a, b
     return force
 
 
@@ -250,15 +252,12 @@ def _turn_joint(
 @compiled
 def strain_energy(z: Array, links: Links, joints: Joints) -> float:  # pragma: no cover
     """Energy of joints and links at a solution of the link equations."""
-    unloaded, energy = z.copy(), 0.0
-    for j in range(links.length.size):
-        unloaded[links.first[j] + 2], unloaded[links.first[j] + 3] = 0.0, 0.0
+    unloaded, angle = z.copy(), z[links.first + 4]
+    unloaded[links.first + 2] = 0.0
+    unloaded[links.first + 3] = 0.0
     force, free = _partials_of_links(z, links), _partials_of_links(unloaded, links)
-    for i in range(joints.stiffness.size):
-        j = joints.before[i]
-        energy += 0.5 * joints.stiffness[i] * (z[links.first[j + 1] + 4] - z[links.first[j] + 4] - joints.rest[i]) ** 2
     _partials_of_joints(z, links, joints, force)
     _partials_of_joints(unloaded, links, joints, free)
-    for j in range(links.length.size):
-        energy -= 0.5 * (force[j, 5] * (force[j, 0] - free[j, 0]) + force[j, 6] * (force[j, 1] - free[j, 1]))
-    return energy
+    turn = angle[joints.before + 1] - angle[joints.before] - joints.rest
+    loaded = force[:, 5] * (force[:, 0] - free[:, 0]) + force[:, 6] * (force[:, 1] - free[:, 1])
+    return 0.5 * float((joints.stiffness * turn**2).sum() - loaded.sum())

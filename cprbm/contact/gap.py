@@ -48,7 +48,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from cprbm.chain import compiled
-from cprbm.contact.closest import curve_jet, lost_at, thickness_between
+from cprbm.contact.closest import curve_jet, curve_point, lost_at, thickness_between
 from cprbm.contact.curve import STENCIL, CurveArrays
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -222,9 +222,8 @@ def touching_points(
         k = which[i]
         frame = gap_frame(z, curves, places, k, weights)
         normals[i, 0], normals[i, 1] = frame.nx, frame.ny
-        x, y, _, _, _, _ = curve_jet(z, curves, places.piece[k], places.xi[k], weights[0], weights[1])
-        u, v, _, _, _, _ = curve_jet(z, curves, places.foot[k], places.eta[k], weights[0], weights[1])
-        points[i, 0, 0], points[i, 0, 1], points[i, 1, 0], points[i, 1, 1] = x, y, u, v
+        points[i, 0] = curve_point(z, curves, places.piece[k], places.xi[k], weights[0])
+        points[i, 1] = curve_point(z, curves, places.foot[k], places.eta[k], weights[0])
     return points, normals
 
 
@@ -287,7 +286,6 @@ def gap_row(
 @compiled
 def local_indices(curves: CurveArrays, places: Places, k: int, index: Ints) -> None:  # pragma: no cover
     """Write the unknowns (LOCAL,) of a place's vectors; an unknown may come twice."""
-    for i in range(STENCIL):
-        a, b = curves.stencil[places.piece[k], i], curves.stencil[places.foot[k], i]
-        index[2 * i], index[2 * i + 1] = a, a + 1
-        index[2 * STENCIL + 2 * i], index[2 * STENCIL + 2 * i + 1] = b, b + 1
+    a, b = curves.stencil[places.piece[k]], curves.stencil[places.foot[k]]
+    index[: 2 * STENCIL : 2], index[1 : 2 * STENCIL : 2] = a, a + 1
+    index[2 * STENCIL :: 2], index[2 * STENCIL + 1 :: 2] = b, b + 1

@@ -45,13 +45,11 @@ def new_counters() -> Ints:
 @compiled
 def near_pairs(z: Array, curves: CurveArrays, pairs: Ints, reach: float, counters: Ints) -> Flags:  # pragma: no cover
     """Whether the boxes of two curves (pairs, 2) are nearer than ``reach``; one test per pair."""
-    boxes, near = curve_boxes(z, curves), np.empty(len(pairs), np.bool_)
-    for k in range(len(pairs)):
-        a, b = boxes[pairs[k, 0]], boxes[pairs[k, 1]]
-        counters[BOX_TESTS] += 1
-        apart = max(a[0] - b[2], b[0] - a[2], a[1] - b[3], b[1] - a[3])
-        near[k] = apart < reach
-    return near
+    boxes = curve_boxes(z, curves)
+    a, b = boxes[pairs[:, 0]], boxes[pairs[:, 1]]
+    counters[BOX_TESTS] += len(pairs)
+    apart = np.maximum(a[:, :2] - b[:, 2:], b[:, :2] - a[:, 2:])
+    return np.asarray((apart[:, 0] < reach) & (apart[:, 1] < reach))
 
 
 @compiled
@@ -181,11 +179,7 @@ def settle_near(
         settle_place(z, curves, places, k, gaps, curvatures, counters, steps, weights)
         room[k] = 0.0
         if not (places.moves[k] or sharing[k] or places.curve[k] == places.other[k]):
-            way = 0.0
-            for part in range(2):
-                for i in range(STENCIL):
-                    way += abs(weights[part, 0, i]) + abs(weights[part, 1, i])
-            room[k] = 0.5 * gaps[k] / way
+            room[k] = 0.5 * gaps[k] / np.abs(weights[:2]).sum()
 
 
 @compiled
@@ -213,8 +207,7 @@ def move_places(
             continue
         local_indices(curves, places, k, index)
         slope = row.frame.slope + row.frame.slope_by_force * by_force[k]
-        for i in range(LOCAL):
-            slope += vectors[SHIFT, i] * change[index[i]]
+        slope += (vectors[SHIFT] * change[index]).sum()
         whole, piece, at = -slope * abs(row.shift), places.piece[k], places.xi[k]
         step = min(limit, max(-limit, whole)) * share
         places.piece[k], places.xi[k], ended = moved_along(curves, places.curve[k], piece, at, step)

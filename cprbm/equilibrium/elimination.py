@@ -216,13 +216,10 @@ def coupled_chains(
     reached = np.empty(np.count_nonzero(slots == 0), np.int64)
     begin, offset = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
     for k in range(count):
-        end = begin[k]
-        for c in range(size):
-            if slots[k, c] == 0:
-                slots[k, c], reached[end] = end - begin[k], c
-                end += 1
-        begin[k + 1] = end
-        offset[k + 1] = offset[k] + (end - begin[k]) * (2 + PER_LINK * beams.links[k])
+        own = np.flatnonzero(slots[k] == 0)
+        slots[k][own] = np.arange(own.size)
+        begin[k + 1], offset[k + 1] = begin[k] + own.size, offset[k] + own.size * (2 + PER_LINK * beams.links[k])
+        reached[begin[k] : begin[k + 1]] = own
     solved = np.zeros(offset[count])
     for t in range(value.size):
         k = beam[t]

@@ -48,12 +48,11 @@ class Factors:
     order: Ints
     lost: int
 
-    def solve(self, load: Array) -> Array:
-        """Solution (size,) of the Hessian's system; closed places stay closed, prescribed multipliers unchanged."""
-        return self.solve_both(load, np.zeros(0))[0]
-
     def solve_both(self, load: Array, values: Array) -> tuple[Array, Array]:
-        """Solution (size,), and changes of the contact forces (forces,) for loads of their rows (at most forces,)."""
+        """Solution (size,) of the Hessian's system, and changes of the contact forces (forces,).
+
+        Prescribed multipliers stay unchanged, and closed places closed, but for ``values`` (at most forces,).
+        """
         m, bordered, solution = self.system.numbers, self.bordered, np.array(load)
         both = np.pad(values, (0, len(bordered.columns.diagonal) - len(values)))
         reduced = reduced_load(m.beams, m.border, bordered.chains, bordered.coupling, self.driven, both, solution)

@@ -82,8 +82,6 @@ def beside_points(curves: CurveArrays, places: Places, closed: Flags) -> tuple[F
     Closed point contacts stay closed beside each other, and two corners are two contacts.
     """
     beside, depth, points = np.zeros(closed.size, np.bool_), np.zeros(closed.size), closed & places.moves
-    if not np.any(points):
-        return beside, depth
     corner, arcs = curves.angle[places.piece] < 0, arcs_of(curves, places)
     curve, piece = np.where(corner, places.other, places.curve), np.where(corner, places.foot, places.piece)
     for k in range(closed.size):
@@ -177,26 +175,17 @@ def step_with_columns(
         LinAlgError: the border is singular.
     """
     bordered, change, reduced = reduced_system(z, m, driven, target, stiffness, anchor, columns, gradient)
-    for i in range(reduced.size):
-        for j in range(i):
-            bordered.border[j, i] = bordered.border[i, j]
-    solution = np.linalg.solve(bordered.border, reduced)
+    border = np.tril(bordered.border) + np.tril(bordered.border, -1).T
+    solution = np.linalg.solve(border, reduced)
     restored(m.beams, m.border, bordered.coupling, solution, change)  # type: ignore[arg-type]
     size, share = correction(change, m.motions, m.turns)
     if not isfinite(size):
         return np.inf, 0.0
-    by_force, column = np.zeros(closed.size), m.border.size
-    for k in range(closed.size):
-        if closed[k] and places.shares[k] == 0:
-            by_force[k] = solution[column]
-            column += 1
-    for k in range(closed.size):
-        if closed[k]:
-            by_force[k] = by_force[k + places.shares[k]]
+    by_force, leader = np.zeros(closed.size), np.arange(closed.size) + places.shares
+    by_force[np.flatnonzero(closed & (places.shares == 0))] = solution[m.border.size :][: columns.values.size]
+    by_force = np.where(closed, by_force[leader], 0.0)
     moved = move_places(z, curves, places, change, by_force, share, LONGEST_MOVE)
-    for i in range(z.size):
-        z[i] += share * change[i]
-    for k in range(closed.size):
-        places.force[k] += share * by_force[k]
-        room[k] -= share * size
+    z += share * change
+    places.force[:] += share * by_force
+    room -= share * size
     return size, moved

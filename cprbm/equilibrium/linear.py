@@ -5,7 +5,7 @@ A Newton step solves the border by LU factors, :mod:`cprbm.equilibrium.iteration
 has symmetric factors of the border with the inertia, :mod:`cprbm.equilibrium.factors`.
 """
 
-from math import cos, isfinite, sin
+from math import cos, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -133,22 +133,15 @@ def linearise(
 ) -> Bordered:  # pragma: no cover
     """Border at a state with the columns of closed places; adds the gradient without contacts to ``gradient``."""
     blocks = add_gradient(z, m, driven, target, stiffness, anchor, gradient)
-    border, count = m.border, columns.diagonal.size
-    size = border.size + count
-    G = np.zeros((size, size))
-    for c in range(border.rows, border.size):
-        G[c, c] = 1.0
-    for r in np.flatnonzero(driven):
-        G[border.rows + r, border.rows + r] = 0.0
+    border, springs = m.border, np.ones(m.beams.springs.size)
+    G = np.diag(np.concatenate((np.zeros(border.rows), np.where(driven, 0.0, 1.0), springs, columns.diagonal)))
     for t in range(m.rows.turning_row.size):
         angle, mu = m.rows.turning_index[t], z[m.rows.first + m.rows.turning_row[t]]
         bent = m.rows.turning_cos[t] * cos(z[angle]) + m.rows.turning_sin[t] * sin(z[angle])
         G[angle - border.first, angle - border.first] -= mu * bent
-    for c in range(count):
-        at = border.size + c
-        G[at, at] += columns.diagonal[c]
-        G[at, at - 1] += columns.beside[c]
-    coupling = coupled_chains(m.beams, border, size, border_entries(z, m.rows, m.beams, driven, border, columns))
+    for c in np.flatnonzero(columns.beside):
+        G[border.size + c, border.size + c - 1] += columns.beside[c]
+    coupling = coupled_chains(m.beams, border, len(G), border_entries(z, m.rows, m.beams, driven, border, columns))
     chains, negative = factored_chains(m.beams, blocks)
     eliminate(m.beams, chains, border, coupling, G)
     return Bordered(G, negative, columns, chains, coupling)
@@ -175,11 +168,7 @@ def reduced_system(
 @compiled
 def correction(change: Array, motions: Ints, turns: Ints) -> tuple[float, float]:  # pragma: no cover
     """Size of a change (size,) of the unknowns, inf if not finite, and the share that turns no part too far."""
-    size, turn = 0.0, 0.0
-    for i in motions:
-        if not isfinite(change[i]):
-            return np.inf, 0.0
-        size = max(size, abs(change[i]))
-    for i in turns:
-        turn = max(turn, abs(change[i]))
-    return size, min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0
+    moved, turn = np.abs(change[motions]), np.abs(change[turns]).max()
+    if not np.all(np.isfinite(moved)):
+        return np.inf, 0.0
+    return moved.max(), min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0

@@ -65,7 +65,7 @@ class Solved:
 
     def response(self, load: Array) -> Array:
         """Change (size,) of the unknowns under a ``load`` (size,), the closed places kept closed."""
-        return self.factors.solve(load)
+        return self.factors.solve_both(load, np.zeros(0))[0]
 
     @cached_property
     def values(self) -> Array:

@@ -106,7 +106,8 @@ def system_of(mechanism: Mechanism, geometry: Geometry) -> System:
     nodes = np.concatenate([mechanism.beam_nodes(name) for name in mechanism.chains])
     angles = links.first + PER_LINK - 1
     rotations = [index + 2 for index in mechanism.bodies.values()]
-    border = _border(rows, beams)
+    first = int(beams.first[-1] + 2 + PER_LINK * beams.links[-1])
+    border = Border(first, rows.first - first + len(rows.constant) + beams.springs.size, rows.first - first)
     return System(
         mechanism=mechanism,
         links=links,
@@ -157,10 +158,3 @@ def _beams(m: Mechanism) -> Beams:
     pulling = turning / counts / np.array([chain.length for chain in m.chains.values()]) ** 2
     first = np.array(list(m.starts.values()), dtype=np.int64)
     return Beams(first, counts, np.cumsum(counts) - counts, np.column_stack([pulling, pulling, turning]))
-
-
-def _border(rows: RowArrays, beams: Beams) -> Border:
-    """Border of bodies and carried nodes, multipliers and springs."""
-    first = int(beams.first[-1] + 2 + PER_LINK * beams.links[-1])
-    column = rows.first - first
-    return Border(first, column + len(rows.constant) + beams.springs.size, column)

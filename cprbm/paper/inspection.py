@@ -75,7 +75,7 @@ class Inspection:
         for boundary, name, _ in _pressed_boundaries(solved):
             if boundary.degree + 1 < len(boundary.points):
                 fit = fitted(solved.state.z, boundary)
-                misfit = float(np.abs(fit.V[:, 0] @ fit.q - fit.points[1]).max()) * unit, where
+                misfit = float(np.abs(fit.V[0] @ fit.q - fit.points[1]).max()) * unit, where
                 self.misfits[name] = max(misfit, self.misfits.get(name, misfit))
 
     def sentences(self, solved: Solved) -> list[str]:
