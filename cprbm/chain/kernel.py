@@ -253,11 +253,15 @@ def _turn_joint(
 def strain_energy(z: Array, links: Links, joints: Joints) -> float:  # pragma: no cover
     """Energy of joints and links at a solution of the link equations."""
     unloaded, angle = z.copy(), z[links.first + 4]
-    unloaded[links.first + 2] = 0.0
-    unloaded[links.first + 3] = 0.0
+    unloaded[links.first + 2], unloaded[links.first + 3] = 0.0, 0.0
     force, free = _partials_of_links(z, links), _partials_of_links(unloaded, links)
+    N, Q = force[:, 5], force[:, 6]
+    stored = -force[:, 2] * N * N - force[:, 4] * Q * Q
+    # the links' own forces at rest would cover the small parts of the joints by round-off
+    force[:, :2] = 0.0
+    free[:, :2] = 0.0
     _partials_of_joints(z, links, joints, force)
     _partials_of_joints(unloaded, links, joints, free)
     turn = angle[joints.before + 1] - angle[joints.before] - joints.rest
-    loaded = force[:, 5] * (force[:, 0] - free[:, 0]) + force[:, 6] * (force[:, 1] - free[:, 1])
-    return 0.5 * float((joints.stiffness * turn**2).sum() - loaded.sum())
+    stored -= N * (force[:, 0] - free[:, 0]) + Q * (force[:, 1] - free[:, 1])
+    return 0.5 * float((joints.stiffness * turn**2).sum() + stored.sum())

@@ -4,8 +4,6 @@ A foot is the closest point near the last foot.  A moving place makes λ station
 unknowns follows from the linear equation of :mod:`cprbm.contact.gap`.
 """
 
-from math import hypot
-
 import numpy as np
 
 from cprbm.chain import compiled
@@ -259,7 +257,7 @@ def _sweeps_over(
         bx, by = curve_point(before, curves, point, at, weights)
         cx, cy = curve_point(after, curves, piece, xi, weights)
         dx, dy = curve_point(after, curves, point, at, weights)
-        nearest = min(hypot(ax - bx, ay - by), hypot(cx - dx, cy - dy))
+        nearest = min(np.hypot(ax - bx, ay - by), np.hypot(cx - dx, cy - dy))
         beside = nearest > depth_beyond(curves, piece, thickness_between(curves, piece, xi, point, at))
         if beside and (ax - bx) * (cx - dx) + (ay - by) * (cy - dy) < 0.0:
             return True

@@ -23,8 +23,6 @@ of −R⁻¹ = 1/(F s).  Two places with a shared force have a common column, th
 A column has entries at the nodes of two pieces, at most six nodes each: it reaches one chain or two.
 """
 
-from math import atan2, cos, hypot, sin
-
 import numpy as np
 
 from cprbm.chain import compiled
@@ -63,8 +61,8 @@ def squares_of(
 ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:  # pragma: no cover
     """The form a x² + 2 b x y + c y² as the sum of two squares: coefficient and unit vector of either square."""
     mean, half = 0.5 * (a + c), 0.5 * (a - c)
-    size, lean = hypot(half, b), 0.5 * atan2(b, half)
-    return (mean + size, cos(lean), sin(lean)), (mean - size, -sin(lean), cos(lean))
+    size, lean = np.hypot(half, b), 0.5 * np.arctan2(b, half)
+    return (mean + size, np.cos(lean), np.sin(lean)), (mean - size, -np.sin(lean), np.cos(lean))
 
 
 @compiled

@@ -34,7 +34,6 @@ The offset points turn, dA_i = dx_i + A_τ dτ_i, and with them goes Σ t_i dτ_
 beside the diagonal; a point's block has its two eigenvectors (:mod:`cprbm.equilibrium.columns`).
 """
 
-from math import hypot
 from typing import NamedTuple
 
 import numpy as np
@@ -164,7 +163,7 @@ def _add_curvature(b: Boundary, fit: Fit, out: Local, K: Array, w: Array, basis:
         _new_square(out, squares[c])[c] = 1.0
     for i in range(n):
         for value, A, B in squares_of(bent[i], -U1[i], 0.0):
-            if abs(value) > REAL * hypot(bent[i], U1[i]):
+            if abs(value) > REAL * np.hypot(bent[i], U1[i]):
                 vector = _new_square(out, value)
                 vector[2 * k + i], vector[2 * k + n + i] = A, B
         if turn[i] != 0.0:
