@@ -1,12 +1,22 @@
 """The chain: beams as rigid or compliant links with torsional springs, and rows."""
 
-from cprbm.chain.arrays import RowArrays, add_row_gradient, link_arrays, row_arrays, row_values
 from cprbm.chain.beam import BeamChain, ChainUnits, Theory
 from cprbm.chain.compiled import compiled
-from cprbm.chain.kernel import Blocks, Joints, Links, empty_blocks, evaluate_chains, strain_energy
+from cprbm.chain.kernel import Blocks, Joints, Links, evaluate_chains, link_arrays, strain_energy
 from cprbm.chain.loads import hidden_angles, hidden_flexibility
 from cprbm.chain.mechanism import AXES, PER_LINK, Direction, Form, Mechanism, Row, mechanism_of
-from cprbm.chain.rows import END, add_rows, apart_ends, ends_of, stop_angle, unit_direction
+from cprbm.chain.rows import (
+    END,
+    RowArrays,
+    add_row_gradient,
+    add_rows,
+    apart_ends,
+    ends_of,
+    row_arrays,
+    row_values,
+    stop_angle,
+    unit_direction,
+)
 from cprbm.chain.spline import POWERS, lost_compliance
 
 __all__ = [
@@ -29,7 +39,6 @@ __all__ = [
     "add_rows",
     "apart_ends",
     "compiled",
-    "empty_blocks",
     "ends_of",
     "evaluate_chains",
     "hidden_angles",

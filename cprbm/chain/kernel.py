@@ -38,7 +38,7 @@ Every joint is thus a function F(d, N₋, Q₋, N₊, Q₊).  The kernel sums th
 then turns them to the unknowns by dN = e·dn + Q dθ and dQ = e′·dn − N dθ.
 
 **Energy.**  At a solution the Lagrangian equals the potential energy.  Terms linear in n vanish with the link
-equations; quadratic terms change sign: +L/2 (c N² + s Q²), k D (d − D/2), +w Q̂²/2.
+equations; quadratic terms change sign: Σ k d²/2 − ½ Σ [N (F_N − F_N⁰) + Q (F_Q − F_Q⁰)], the zero without forces.
 """
 
 from math import cos, sin
@@ -47,6 +47,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cprbm.chain.compiled import compiled
+from cprbm.chain.mechanism import PER_LINK, Mechanism
 from cprbm_scene.answer import Array, Ints
 
 
@@ -81,49 +82,65 @@ class Blocks(NamedTuple):
         next_turn: ∂²/∂θ_j ∂θ_{j+1}.
         coupling: (links, 3, 2), n_j by θ of links j − 1, j, j + 1.
         compliance: (links, 3, 2, 2), n_j by n of links j − 1, j, j + 1.
-        force, rate, cross: work space: partial derivatives of links, of joints, and of joints by both forces.
     """
 
     turn: Array
     next_turn: Array
     coupling: Array
     compliance: Array
-    force: Array
-    rate: Array
-    cross: Array
 
 
-def empty_blocks(links: int, joints: int) -> Blocks:
-    """Blocks to write into."""
-    return Blocks(
-        np.zeros(links),
-        np.zeros(links),
-        np.zeros((links, 3, 2)),
-        np.zeros((links, 3, 2, 2)),
-        np.zeros((links, 9)),
-        np.zeros((joints, 6)),
-        np.zeros(joints),
+def link_arrays(m: Mechanism) -> tuple[Links, Joints]:
+    """Links and joints of all beams in the order of the unknowns."""
+    chains = m.chains.values()
+    first = np.concatenate([m.starts[name] + PER_LINK * np.arange(chain.links) for name, chain in m.chains.items()])
+    links = Links(
+        first.astype(np.int64),
+        np.concatenate([chain.link_length for chain in chains]),
+        np.concatenate([chain.stretch for chain in chains]),
+        np.concatenate([chain.shear + chain.lean for chain in chains]),
     )
+    offsets = np.cumsum([0, *(chain.links for chain in chains)])
+    joints = Joints(
+        np.concatenate([at + np.arange(chain.links - 1) for at, chain in zip(offsets, chains, strict=False)]),
+        np.concatenate([chain.stiffness for chain in chains]),
+        np.concatenate([np.diff(chain.link_angle) for chain in chains]),
+        np.concatenate([chain.bend for chain in chains]),
+        np.concatenate([chain.skew for chain in chains]),
+        np.concatenate([chain.growth[:, 0] for chain in chains]),
+        np.concatenate([chain.growth[:, 1] for chain in chains]),
+        np.concatenate([chain.half_lean[:-1] for chain in chains]),
+        np.concatenate([chain.half_lean[1:] for chain in chains]),
+    )
+    return links, joints
 
 
 @compiled
-def _partials_of_links(z: Array, links: Links, force: Array) -> None:  # pragma: no cover
-    """Write F_N, F_Q, F_NN, F_NQ, F_QQ, N, Q, cos θ, sin θ of the links alone."""
-    for j in range(links.length.size):
-        i = links.first[j]
-        L, c, s = links.length[j], links.stretch[j], links.shear[j]
-        a, b = cos(z[i + 4]), sin(z[i + 4])
-        N, Q = z[i + 2] * a + z[i + 3] * b, z[i + 3] * a - z[i + 2] * b
-        row = force[j]
-        row[0], row[1], row[2], row[3], row[4] = -L * (1.0 + c * N), -L * s * Q, -L * c, 0.0, -L * s
-        row[5], row[6], row[7], row[8] = N, Q, a, b
+def _partials_of_links(z: Array, links: Links) -> Array:  # pragma: no cover
+    """F_N, F_Q, F_NN, F_NQ, F_QQ, N, Q, cos θ, sin θ of the links alone (links, 9)."""
+    force, angle, x, y = np.zeros((links.length.size, 9)), z[links.first + 4], z[links.first + 2], z[links.first + 3]
+    a, b = np.cos(angle), np.sin(angle)
+    N, Q, L, c, s = x * a + y * b, y * a - x * b, links.length, links.stretch, links.shear
+    force[:, 0], force[:, 1], force[:, 2], force[:, 3], force[:, 4] = (
+        -L * (1.0 + c * N),
+        -L * s * Q,
+        -L * c,
+        0.0,
+        -L * s,
+    )
+    force[:, 5], force[:, 6], force[:, 7], force[:, 8] = N, Q, a, b
+    return force
 
 
 @compiled
 def _partials_of_joints(
-    z: Array, links: Links, joints: Joints, force: Array, rate: Array, cross: Array
-) -> None:  # pragma: no cover
-    """Add the joints' partials to those of the links; write F_d, F_dd, F_dN₋, F_dQ₋, F_dN₊, F_dQ₊ of the joints."""
+    z: Array, links: Links, joints: Joints, force: Array
+) -> tuple[Array, Array]:  # pragma: no cover
+    """Add the joints' partials to those of the links.
+
+    F_d, F_dd, F_dN₋, F_dQ₋, F_dN₊, F_dQ₊ (joints, 6), and the derivative by both forces (joints,).
+    """
+    rate, cross = np.empty((joints.stiffness.size, 6)), np.empty(joints.stiffness.size)
     for i in range(joints.stiffness.size):
         j = joints.before[i]
         left, right, of = force[j], force[j + 1], rate[i]
@@ -152,6 +169,7 @@ def _partials_of_joints(
             _add_half(left, of, 2, joints.half_before[i], 0.25, d)
         if joints.half_behind[i] != 0.0:
             _add_half(right, of, 4, joints.half_behind[i], -0.25, d)
+    return rate, cross
 
 
 @compiled
@@ -171,14 +189,12 @@ def _add_half(side: Array, of: Array, at: int, w: float, quarter: float, d: floa
 
 
 @compiled
-def evaluate_chains(
-    z: Array, links: Links, joints: Joints, blocks: Blocks, gradient: Array
-) -> None:  # pragma: no cover
-    """Write the Hessian's blocks, and add the chains' gradient to ``gradient``."""
-    force, rate, cross = blocks.force, blocks.rate, blocks.cross
-    _partials_of_links(z, links, force)
-    _partials_of_joints(z, links, joints, force, rate, cross)
-    for j in range(links.length.size):
+def evaluate_chains(z: Array, links: Links, joints: Joints, gradient: Array) -> Blocks:  # pragma: no cover
+    """Blocks of the Hessian; adds the chains' gradient to ``gradient``."""
+    count, force = links.length.size, _partials_of_links(z, links)
+    rate, cross = _partials_of_joints(z, links, joints, force)
+    blocks = Blocks(np.empty(count), np.empty(count), np.empty((count, 3, 2)), np.empty((count, 3, 2, 2)))
+    for j in range(count):
         i = links.first[j]
         F_N, F_Q, F_NN, F_NQ, F_QQ = force[j, 0], force[j, 1], force[j, 2], force[j, 3], force[j, 4]
         N, Q, a, b = force[j, 5], force[j, 6], force[j, 7], force[j, 8]
@@ -202,6 +218,7 @@ def evaluate_chains(
         blocks.next_turn[j] = 0.0
     for i in range(joints.stiffness.size):
         _turn_joint(joints.before[i], links, force, rate[i], cross[i], blocks, gradient)
+    return blocks
 
 
 @compiled
@@ -235,21 +252,16 @@ def _turn_joint(
 @compiled
 def strain_energy(z: Array, links: Links, joints: Joints) -> float:  # pragma: no cover
     """Energy of joints and links at a solution of the link equations."""
-    energy = 0.0
-    for j in range(links.length.size):
-        i = links.first[j]
-        a, b = cos(z[i + 4]), sin(z[i + 4])
-        N, Q = z[i + 2] * a + z[i + 3] * b, z[i + 3] * a - z[i + 2] * b
-        energy += 0.5 * links.length[j] * (links.stretch[j] * N * N + links.shear[j] * Q * Q)
-    for i in range(joints.stiffness.size):
-        p, q = links.first[joints.before[i]], links.first[joints.before[i] + 1]
-        d = z[q + 4] - z[p + 4] - joints.rest[i]
-        D = d
-        for t in (p, q):
-            D += 0.5 * joints.skew[i] * (z[t + 3] * cos(z[t + 4]) - z[t + 2] * sin(z[t + 4]))
-        energy += joints.stiffness[i] * D * (d - 0.5 * D)
-        angle = z[p + 4] + 0.25 * d
-        energy += 0.5 * joints.half_before[i] * (z[p + 3] * cos(angle) - z[p + 2] * sin(angle)) ** 2
-        angle = z[q + 4] - 0.25 * d
-        energy += 0.5 * joints.half_behind[i] * (z[q + 3] * cos(angle) - z[q + 2] * sin(angle)) ** 2
-    return energy
+    unloaded, angle = z.copy(), z[links.first + 4]
+    unloaded[links.first + 2], unloaded[links.first + 3] = 0.0, 0.0
+    force, free = _partials_of_links(z, links), _partials_of_links(unloaded, links)
+    N, Q = force[:, 5], force[:, 6]
+    stored = -force[:, 2] * N * N - force[:, 4] * Q * Q
+    # the links' own forces at rest would cover the small parts of the joints by round-off
+    force[:, :2] = 0.0
+    free[:, :2] = 0.0
+    _partials_of_joints(z, links, joints, force)
+    _partials_of_joints(unloaded, links, joints, free)
+    turn = angle[joints.before + 1] - angle[joints.before] - joints.rest
+    stored -= N * (force[:, 0] - free[:, 0]) + Q * (force[:, 1] - free[:, 1])
+    return 0.5 * float((joints.stiffness * turn**2).sum() + stored.sum())

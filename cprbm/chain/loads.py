@@ -44,7 +44,7 @@ def hidden_flexibility(m: Mechanism) -> Array:
     for i, one in loads:
         for j, other in loads:
             if one.beam == other.beam:
-                hidden[i, j] = _exact(m.chains[one.beam], one, other) - _shown(m.chains[one.beam], one, other)
+                hidden[i, j] = _hidden(m.chains[one.beam], one, other)
     return hidden
 
 
@@ -53,20 +53,16 @@ def hidden_angles(chain: BeamChain, s: Array, load: UnitLoad) -> Array:
     hidden = np.zeros(len(s))
     near = np.flatnonzero(np.abs(s - load.at) < HIDDEN_REACH * chain.link_length.max())
     for k, links, weights in zip(near, *chain.angle_weights(s[near]), strict=True):
-        turned = unit_moment(chain, float(s[k]), links, weights)
-        hidden[k] = _exact(chain, turned, load) - _shown(chain, turned, load)
+        hidden[k] = _hidden(chain, unit_moment(chain, float(s[k]), links, weights), load)
     return hidden
 
 
-def _exact(chain: BeamChain, one: UnitLoad, other: UnitLoad) -> float:
-    until = min(one.at, other.at)
-    places = np.union1d(chain.borders[chain.borders < until], until)
-    if len(places) < 2:
-        return 0.0
-    return float(chain.flexibility(places, lambda s: (one.at - s) ** one.power * (other.at - s) ** other.power).sum())
-
-
-def _shown(chain: BeamChain, one: UnitLoad, other: UnitLoad) -> float:
+def _hidden(chain: BeamChain, one: UnitLoad, other: UnitLoad) -> float:
+    """Flexibility of two unit loads, less the flexibility of the chain."""
+    places, exact = np.union1d(chain.borders[chain.borders < min(one.at, other.at)], min(one.at, other.at)), 0.0
+    if len(places) > 1:
+        exact = chain.flexibility(places, lambda s: (one.at - s) ** one.power * (other.at - s) ** other.power).sum()
     mixed = one.moments * (other.shear[:-1] + other.shear[1:]) + other.moments * (one.shear[:-1] + one.shear[1:])
     bent = one.moments @ (other.moments / chain.stiffness) - 0.5 * chain.skew @ mixed
-    return float(bent + (chain.lean * chain.link_length + chain.half_lean) @ (one.shear * other.shear))
+    sheared = (chain.lean * chain.link_length + chain.half_lean) @ (one.shear * other.shear)
+    return float(exact - bent - sheared)

@@ -66,9 +66,8 @@ class Form:
 
     def value(self, z: Array) -> float:
         """f(z)."""
-        linear = sum(a * float(z[i]) for i, a in self.linear)
-        turned = sum(-2.0 * A * np.sin(0.5 * z[i]) ** 2 + B * np.sin(z[i]) for i, A, B in self.turning)
-        return float(self.constant + linear + turned)
+        turned = (-2.0 * A * np.sin(0.5 * z[i]) ** 2 + B * np.sin(z[i]) for i, A, B in self.turning)
+        return float(self.constant + sum(a * float(z[i]) for i, a in self.linear) + sum(turned))
 
 
 def node_coordinate(index: int, direction: Direction) -> Form:

@@ -14,15 +14,19 @@ on the section's angle at s.  All three are linear in the unknowns of the chain.
 
 A stop has the rows β − β_least ≥ 0 and β_most − β ≥ 0.  The names of a joint's rows are ``beam@start.x``, ``.y``,
 ``.turn``; a stop's rows are ``stop.least`` and ``stop.most``; the row of a load or a drive has the same name.
+
+The gradient of the Lagrangian by z is the chains' gradient plus Σ μ ∂f/∂z of the rows.  By the multiplier of a row
+with prescribed value the gradient is f(z) − f*.
 """
 
 from collections.abc import Iterator
-from math import hypot, pi, remainder, tau
-from typing import Literal
+from math import cos, hypot, pi, remainder, sin, tau
+from typing import Literal, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from cprbm.chain.compiled import compiled
 from cprbm.chain.loads import unit_force, unit_moment
 from cprbm.chain.mechanism import AXES, Direction, Form, Mechanism, Row, node_coordinate
 from cprbm_scene import FreeEnd, Scene, WeldedEnd
@@ -46,6 +50,20 @@ STRAIGHT = 1e-9
 """Distance of β₀ from −π, rad, below which it is π: round-off decides between the two."""
 
 END: tuple[Literal["start"], Literal["end"]] = ("start", "end")
+
+
+class RowArrays(NamedTuple):
+    """Rows: index of the first multiplier, constants; terms with the number of their row."""
+
+    first: int
+    constant: Array
+    linear_row: Ints
+    linear_index: Ints
+    linear_factor: Array
+    turning_row: Ints
+    turning_index: Ints
+    turning_cos: Array
+    turning_sin: Array
 
 
 def add_rows(m: Mechanism) -> None:
@@ -193,3 +211,44 @@ def unit_direction(direction: Direction) -> Direction:
     """Unit vector of a direction."""
     size = hypot(*direction)
     return direction[0] / size, direction[1] / size
+
+
+def row_arrays(m: Mechanism) -> RowArrays:
+    """Terms of all rows."""
+    linear = [(r, i, a) for r, row in enumerate(m.rows) for i, a in row.form.linear if a != 0.0]
+    turning = [(r, *term) for r, row in enumerate(m.rows) for term in row.form.turning]
+    return RowArrays(
+        len(m.rest),
+        np.array([row.form.constant for row in m.rows], dtype=float),
+        np.array([r for r, _, _ in linear], dtype=np.int64),
+        np.array([i for _, i, _ in linear], dtype=np.int64),
+        np.array([a for _, _, a in linear], dtype=float),
+        np.array([r for r, _, _, _ in turning], dtype=np.int64),
+        np.array([i for _, i, _, _ in turning], dtype=np.int64),
+        np.array([A for _, _, A, _ in turning], dtype=float),
+        np.array([B for _, _, _, B in turning], dtype=float),
+    )
+
+
+@compiled
+def row_values(z: Array, rows: RowArrays) -> Array:  # pragma: no cover
+    """f of all rows."""
+    values = rows.constant.copy()
+    for t in range(rows.linear_row.size):
+        values[rows.linear_row[t]] += rows.linear_factor[t] * z[rows.linear_index[t]]
+    for t in range(rows.turning_row.size):
+        half = sin(0.5 * z[rows.turning_index[t]])
+        turned = -2.0 * rows.turning_cos[t] * half * half + rows.turning_sin[t] * sin(z[rows.turning_index[t]])
+        values[rows.turning_row[t]] += turned
+    return values
+
+
+@compiled
+def add_row_gradient(z: Array, rows: RowArrays, weight: Array, gradient: Array) -> None:  # pragma: no cover
+    """Add Σ weight ∂f/∂z of all rows to ``gradient``."""
+    for t in range(rows.linear_row.size):
+        gradient[rows.linear_index[t]] += weight[rows.linear_row[t]] * rows.linear_factor[t]
+    for t in range(rows.turning_row.size):
+        angle = z[rows.turning_index[t]]
+        slope = rows.turning_sin[t] * cos(angle) - rows.turning_cos[t] * sin(angle)
+        gradient[rows.turning_index[t]] += weight[rows.turning_row[t]] * slope

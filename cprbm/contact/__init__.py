@@ -16,7 +16,6 @@ from cprbm.contact.candidates import (
     copied,
     fixed_places,
     hold_sections_upright,
-    joined,
     on_edge,
     open_contacts,
     places_at,
@@ -27,7 +26,7 @@ from cprbm.contact.candidates import (
 from cprbm.contact.closest import lost_at
 from cprbm.contact.curve import BEND, CORNER, STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
 from cprbm.contact.edges import corner_sides, is_left, left_corner
-from cprbm.contact.fixed import REACH, Sites, contact_places, matched, movable, picked
+from cprbm.contact.fixed import REACH, Sites, contact_places, joined, matched, movable, picked
 from cprbm.contact.gap import (
     COUPLING,
     GRADIENT,
@@ -42,8 +41,8 @@ from cprbm.contact.gap import (
     gap_frame,
     gap_row,
     local_indices,
+    touching_points,
 )
-from cprbm.contact.pairs import Pair
 from cprbm.contact.settling import (
     BOX_TESTS,
     FINDING,
@@ -82,7 +81,6 @@ __all__ = [
     "Frames",
     "Geometry",
     "Law",
-    "Pair",
     "Places",
     "Row",
     "Sites",
@@ -118,4 +116,5 @@ __all__ = [
     "sweeps_any_point",
     "taken",
     "touching_as_drawn",
+    "touching_points",
 ]

@@ -22,7 +22,7 @@ import numpy as np
 
 from cprbm.chain import Direction, Mechanism, unit_direction
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
-from cprbm.contact.fixed import FREE, Ends, Sites, is_straight, on_end_body, places_at_feet
+from cprbm.contact.fixed import FREE, Sites, is_straight, on_end_body, places_at_feet
 from cprbm.contact.gap import Law, Places, gap_frame
 from cprbm.contact.pairs import Pair, contact_pairs
 from cprbm.contact.settling import new_counters, settle
@@ -43,10 +43,7 @@ class Geometry:
     """Curves and pairs of a mechanism's contacts.
 
     Attributes:
-        curves, pairs, arrays: as the modules of the package say.
-        ends: bodies of the curves.
-        possible: all fixed places, feet not found.
-        columns: numbers of the two curves of every pair (pairs, 2).
+        curves, pairs, arrays, sites: as the modules of the package say.
         law: measures the gaps of some pairs; None without such pairs.
         joints_alone: whether the places are joints alone: no place moves or shares a force.
     """
@@ -54,17 +51,9 @@ class Geometry:
     curves: list[Curve]
     pairs: list[Pair]
     arrays: CurveArrays
-    ends: Ends
-    possible: Places
-    columns: Ints
+    sites: Sites
     law: Law | None = None
     joints_alone: bool = False
-
-    @cached_property
-    def sites(self) -> Sites:
-        """All fixed places, for the kernels."""
-        sharing = self.ends.welded & (not self.joints_alone)
-        return Sites(self.possible, self.columns, self.ends, sharing)
 
     @cached_property
     def points(self) -> Ints:
@@ -74,7 +63,7 @@ class Geometry:
         """
         first, last, found = self.arrays.first, self.arrays.last, list[tuple[int, ...]]()
         for pair in self.pairs:
-            if self.ends.rigid[pair.second]:
+            if self.sites.rigid[pair.second]:
                 circle = [pair.second] if self.arrays.is_point[pair.second] else []
                 found += [(k, pair.first, first[k], 0) for k in circle + [corner.curve for corner in pair.corners]]
             elif not pair.itself:
@@ -85,13 +74,13 @@ class Geometry:
     @cached_property
     def has_faces(self) -> Flags:
         """Whether the second curves of pairs are rigid with several pieces (pairs,): a place may have several feet."""
-        second = self.columns[:, 1]
-        return np.asarray(self.ends.rigid[second] & (self.arrays.last[second] > self.arrays.first[second]))
+        second = self.sites.columns[:, 1]
+        return np.asarray(self.sites.rigid[second] & (self.arrays.last[second] > self.arrays.first[second]))
 
     @cached_property
     def has_corners(self) -> bool:
         """True if corners of rigid curves are places."""
-        return bool(on_edge(self.arrays, self.possible).any())
+        return bool(on_edge(self.arrays, self.sites.possible).any())
 
 
 def contact_geometry(m: Mechanism) -> Geometry:
@@ -101,26 +90,27 @@ def contact_geometry(m: Mechanism) -> Geometry:
     """
     curves, pairs = contact_pairs(m)
     arrays = curve_arrays(curves)
-    ends = _ends(m, curves)
-    columns = np.array([(pair.first, pair.second) for pair in pairs], dtype=np.int64).reshape(-1, 2)
-    return Geometry(curves, pairs, arrays, ends, _possible(arrays, ends, pairs), columns)
+    return Geometry(curves, pairs, arrays, _sites(m, curves, pairs, arrays))
 
 
 def hold_sections_upright(m: Mechanism, geometry: Geometry) -> None:
     """Keep the sections upright at welds beside touching beams, and on touching curved bodies: a theory of shear."""
-    arrays, ends, found, z = geometry.arrays, geometry.ends, set[tuple[str, int]](), np.array(m.rest)
+    arrays, sites, found, z = geometry.arrays, geometry.sites, set[tuple[str, int]](), np.array(m.rest)
     contacts = open_contacts(geometry, z)
     pairs, curves = np.ones(len(geometry.pairs), dtype=bool), np.ones(len(geometry.curves), dtype=bool)
-    places = places_at_feet(z, arrays, geometry.sites, contacts.sides, pairs, curves, contacts.counters)
+    places = places_at_feet(z, arrays, sites, contacts.sides, pairs, curves, contacts.counters)
+    straight, held = is_straight(arrays, places.foot), [on_end_body(arrays, sites, places, end) for end in (0, 1)]
     for k, gap in enumerate(_gaps_at(geometry, z, contacts, places)):
         curve, other = places.curve[k], places.other[k]
         for end, node in enumerate((arrays.first[curve], arrays.last[curve] + 1)):
-            at_weld = ends.welded[curve, end] and places.piece[k] + places.xi[k] == node
-            if not at_weld or is_straight(arrays, places.foot[k]) or not on_end_body(arrays, ends, places, k, end):
+            at_weld = sites.welded[curve, end] and places.piece[k] + places.xi[k] == node
+            if not at_weld or straight[k] or not held[end][k]:
                 continue
             beam, layer = geometry.curves[curve].beam, m.chains[geometry.curves[curve].beam].layer(end)
-            if not ends.rigid[other]:
-                layer += m.chains[geometry.curves[other].beam].layer(int(ends.body[other, 0] != ends.body[curve, end]))
+            if not sites.rigid[other]:
+                layer += m.chains[geometry.curves[other].beam].layer(
+                    int(sites.body[other, 0] != sites.body[curve, end])
+                )
             if abs(gap) < LEANING * layer:
                 found.add((beam, end))
     for beam, end in found:
@@ -137,11 +127,6 @@ def copied(places: Places) -> Places:
     return Places._make(column.copy() for column in places)
 
 
-def joined(places: Places, others: Places) -> Places:
-    """Both groups of places, in this order."""
-    return Places._make(np.concatenate(columns) for columns in zip(places, others, strict=True))
-
-
 def fixed_places(
     geometry: Geometry, z: Array, sides: Array, near: Flags, counters: Ints, *, welds: bool = False
 ) -> Places:
@@ -155,7 +140,7 @@ def fixed_places(
         counters: count the searches.
         welds: whether ends at a weld on the rigid body of the foot are places.
     """
-    return places_at_feet(z, geometry.arrays, geometry.sites, sides, near, geometry.ends.rigid & welds, counters)
+    return places_at_feet(z, geometry.arrays, geometry.sites, sides, near, geometry.sites.rigid & welds, counters)
 
 
 def on_edge(arrays: CurveArrays, places: Places) -> Flags:
@@ -192,7 +177,7 @@ def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:
             continue
         best = int(np.argmin(distance))
         along = gap_frame(z, arrays, places, best, weights).along
-        role = int(places.curve[best] != geometry.columns[number, 0])
+        role = int(places.curve[best] != geometry.sites.columns[number, 0])
         side = 1.0 if signed[best] >= 0.0 else -1.0
         sides[number, role], sides[number, 1 - role] = side, -side if along > 0.0 else side
     return sides
@@ -247,13 +232,13 @@ def _gaps_at(geometry: Geometry, z: Array, contacts: Contacts, places: Places) -
 def open_contacts(geometry: Geometry, z: Array) -> Contacts:
     """Contacts of a state as drawn, without any place."""
     counters = new_counters()
-    nothing = taken(geometry.possible, np.zeros(0, dtype=np.int64))
+    nothing = taken(geometry.sites.possible, np.zeros(0, dtype=np.int64))
     sides = sides_at_rest(geometry, z, counters), np.zeros(len(geometry.curves))
     return Contacts(nothing, np.zeros(0, dtype=bool), *sides, counters)
 
 
-def _ends(m: Mechanism, curves: list[Curve]) -> Ends:
-    """Numbers of bodies in the scene's order; all bodies at rest have the number of the first."""
+def _sites(m: Mechanism, curves: list[Curve], pairs: list[Pair], arrays: CurveArrays) -> Sites:
+    """Fixed places and bodies, numbered in the scene's order; all bodies at rest have the number of the first."""
     still = _bodies_at_rest(m.scene)
     order = list(m.scene.bodies)
     number = {name: order.index(still[0] if name in still else name) for name in order}
@@ -271,7 +256,9 @@ def _ends(m: Mechanism, curves: list[Curve]) -> Ends:
                 name = m.scene.body_of(joint.point)
                 body[k, side], slide[k, side] = number[name], slides[name]
                 welded[k, side] = isinstance(joint, WeldedEnd)
-    return Ends(body, welded, np.array([not curve.beam for curve in curves], dtype=bool), slide)
+    rigid = np.array([not curve.beam for curve in curves], dtype=bool)
+    columns = np.array([(pair.first, pair.second) for pair in pairs], dtype=np.int64).reshape(-1, 2)
+    return Sites(_possible(arrays, rigid, pairs), columns, body, slide, rigid, welded, welded)
 
 
 def _slide(body: Body, *, at_rest: bool) -> Direction:
@@ -292,13 +279,13 @@ def _bodies_at_rest(scene: Scene) -> list[str]:
     return [name for name in scene.bodies if len(freedoms.guide(name)) + held.count(name) >= FREEDOMS]
 
 
-def _possible(arrays: CurveArrays, ends: Ends, pairs: list[Pair]) -> Places:
+def _possible(arrays: CurveArrays, rigid: Flags, pairs: list[Pair]) -> Places:
     """All fixed places of all pairs, with the first piece of the other curve for a foot."""
     rows, pieces = [], arrays.last - arrays.first + 1
     for number, pair in enumerate(pairs):
         rows += [(number, pair.first, pair.second, node) for node in range(pieces[pair.first] + 1)]
         rows += [(number, corner.curve, pair.first, 0) for corner in pair.corners]
-        if not pair.itself and not ends.rigid[pair.second]:
+        if not pair.itself and not rigid[pair.second]:
             rows += [(number, pair.second, pair.first, node) for node in (0, int(pieces[pair.second]))]
     return places_at(arrays, np.array(rows, dtype=np.int64).reshape(-1, 4))
 

@@ -86,15 +86,8 @@ def curve_jet(
 def curve_point(
     z: Array, curves: CurveArrays, piece: int, xi: float, weights: Array
 ) -> tuple[float, float]:  # pragma: no cover
-    """C; writes the weights (2, STENCIL)."""
-    x, y, square, cube = 0.0, 0.0, xi * xi, xi * xi * xi
-    for i in range(STENCIL):
-        w, v = curves.real[piece, i], curves.imaginary[piece, i]
-        p = weights[0, i] = w[0] + xi * w[1] + square * w[2] + cube * w[3]
-        q = weights[1, i] = v[0] + xi * v[1] + square * v[2] + cube * v[3]
-        node = curves.stencil[piece, i]
-        x += p * z[node] - q * z[node + 1]
-        y += q * z[node] + p * z[node + 1]
+    """C; ``weights`` (2, STENCIL) is scratch space."""
+    x, y, _, _, _, _ = curve_jet(z, curves, piece, xi, weights, weights)
     return x, y
 
 

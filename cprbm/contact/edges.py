@@ -61,8 +61,10 @@ def corner_sides(geometry: Geometry, z: Array, known: Array, counters: Ints) -> 
     if not geometry.has_corners:
         return known
     arrays, sides = geometry.arrays, known.copy()
-    near = near_pairs(z, arrays, geometry.columns, np.full(len(geometry.pairs), FAR), counters)
-    places = taken(geometry.possible, near[geometry.possible.pair] & on_edge(arrays, geometry.possible))
+    near = near_pairs(z, arrays, geometry.sites.columns, FAR, counters)
+    places = taken(
+        geometry.sites.possible, near[geometry.sites.possible.pair] & on_edge(arrays, geometry.sites.possible)
+    )
     nothing = np.empty(len(places.pair))
     find_feet(z, arrays, places, nothing, counters)
     settle(z, arrays, places, nothing, nothing, counters, 0)
@@ -110,7 +112,7 @@ def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Arr
     apart = arrays.arc[trial.piece] + trial.xi * arrays.span[trial.piece]
     apart -= arrays.arc[places.foot[k]] + places.eta[k] * arrays.span[places.foot[k]]
     near = abs(apart[0]) < BESIDE * arrays.span[trial.piece[0]]
-    goes = near and curvature[0] > 0.0 and not trial.at_point[0] and movable(geometry.arrays, geometry.ends, trial)[0]
+    goes = near and curvature[0] > 0.0 and not trial.at_point[0] and movable(geometry.arrays, geometry.sites, trial)[0]
     return trial if goes else None
 
 

@@ -4,7 +4,6 @@ A place is the same in two groups if pair, curve, piece and parameter are equal;
 Both groups have the order of all possible places, so that the search for the same place goes on behind the last.
 """
 
-from math import hypot
 from typing import NamedTuple
 
 import numpy as np
@@ -32,35 +31,25 @@ ROUNDS = 5
 """Rounds from chord to chord for the place of a bend."""
 
 
-class Ends(NamedTuple):
-    """Bodies of curves.
-
-    Attributes:
-        body: numbers (curves, 2) of the bodies at start and end.
-        welded: welds (curves, 2) of beams.
-        rigid: curves of bodies (curves,).
-        slide: directions (curves, 2, 2) in which the bodies slide; zero at rest, NaN for every other motion.
-    """
-
-    body: Ints
-    welded: Flags
-    rigid: Flags
-    slide: Array
-
-
 class Sites(NamedTuple):
-    """All fixed places of a mechanism.
+    """All fixed places of a mechanism, and the bodies of the curves.
 
     Attributes:
         possible: places, feet not found.
         columns: numbers of the two curves of every pair (pairs, 2).
-        ends: bodies of the curves.
+        body: numbers (curves, 2) of the bodies at start and end.
+        slide: directions (curves, 2, 2) in which the bodies slide; zero at rest, NaN for every other motion.
+        rigid: curves of bodies (curves,).
+        welded: welds (curves, 2) of beams.
         sharing: ends (curves, 2) with a shared force: the first joint has the force of the second.
     """
 
     possible: Places
     columns: Ints
-    ends: Ends
+    body: Ints
+    slide: Array
+    rigid: Flags
+    welded: Flags
     sharing: Flags
 
 
@@ -84,43 +73,56 @@ def picked(places: Places, which: Ints) -> Places:  # pragma: no cover
 
 
 @compiled
-def is_straight(curves: CurveArrays, piece: int) -> bool:  # pragma: no cover
-    """Whether a piece is a straight piece of a body's edge."""
-    bends = np.abs(curves.real[piece, 1, 2:]).sum() + np.abs(curves.imaginary[piece, 1, 2:]).sum()
-    speed = hypot(curves.real[piece, 1, 1], curves.imaginary[piece, 1, 1])
-    return bool(curves.angle[piece] < 0 and bends < PARALLEL * speed)
+def joined(places: Places, others: Places) -> Places:  # pragma: no cover
+    """Both groups of places, in this order."""
+    return Places(
+        np.concatenate((places.pair, others.pair)),
+        np.concatenate((places.curve, others.curve)),
+        np.concatenate((places.piece, others.piece)),
+        np.concatenate((places.xi, others.xi)),
+        np.concatenate((places.other, others.other)),
+        np.concatenate((places.foot, others.foot)),
+        np.concatenate((places.eta, others.eta)),
+        np.concatenate((places.at_point, others.at_point)),
+        np.concatenate((places.side, others.side)),
+        np.concatenate((places.moves, others.moves)),
+        np.concatenate((places.shares, others.shares)),
+        np.concatenate((places.force, others.force)),
+    )
 
 
 @compiled
-def on_end_body(curves: CurveArrays, ends: Ends, places: Places, k: int, end: int) -> bool:  # pragma: no cover
-    """Whether the foot lies on, or beside a joint with, the body of the start (0) or end (1) of the place's curve.
+def is_straight(curves: CurveArrays, pieces: Ints) -> Flags:  # pragma: no cover
+    """Whether pieces are straight pieces of a body's edge."""
+    bends = np.abs(curves.real[:, 1, 2:][pieces]) + np.abs(curves.imaginary[:, 1, 2:][pieces])
+    speed = np.hypot(curves.real[:, 1, 1][pieces], curves.imaginary[:, 1, 1][pieces])
+    return np.asarray((curves.angle[pieces] < 0) & (bends.sum(axis=1) < PARALLEL * speed))
+
+
+@compiled
+def on_end_body(curves: CurveArrays, sites: Sites, places: Places, end: int) -> Flags:  # pragma: no cover
+    """Whether the feet lie on, or beside a joint with, the body of the start (0) or end (1) of the places' curves.
 
     A body that slides along a straight edge keeps the gap of a welded end, as if the edge were on the body.
     """
-    other, foot, own = places.other[k], places.foot[k], ends.body[places.curve[k], end]
-    if ends.welded[places.curve[k], end] and is_straight(curves, foot):
-        x, y = curves.real[foot, 1, 1], curves.imaginary[foot, 1, 1]
-        edge, beam = ends.slide[other, 0], ends.slide[places.curve[k], end]
-        if abs(x * edge[1] - y * edge[0]) + abs(x * beam[1] - y * beam[0]) < PARALLEL * hypot(x, y):
-            return True
-    at_start = ends.rigid[other] or places.foot[k] <= curves.first[other] + BESIDE
-    at_end = ends.rigid[other] or places.foot[k] >= curves.last[other] - BESIDE
-    same = (at_start and own == ends.body[other, 0]) or (at_end and own == ends.body[other, 1])
-    return bool(same and own != FREE)
+    curve, other, foot, own = places.curve, places.other, places.foot, sites.body[:, end][places.curve]
+    x, y = curves.real[:, 1, 1][foot], curves.imaginary[:, 1, 1][foot]
+    edge, beam = sites.slide[:, 0][other], sites.slide[:, end][curve]
+    across = np.abs(x * edge[:, 1] - y * edge[:, 0]) + np.abs(x * beam[:, 1] - y * beam[:, 0])
+    guided = sites.welded[:, end][curve] & is_straight(curves, foot) & (across < PARALLEL * np.hypot(x, y))
+    at_start = sites.rigid[other] | (foot <= curves.first[other] + BESIDE)
+    at_end = sites.rigid[other] | (foot >= curves.last[other] - BESIDE)
+    same = (at_start & (own == sites.body[:, 0][other])) | (at_end & (own == sites.body[:, 1][other]))
+    return np.asarray(guided | (same & (own != FREE)))
 
 
 @compiled
-def movable(curves: CurveArrays, ends: Ends, places: Places) -> Flags:  # pragma: no cover
+def movable(curves: CurveArrays, sites: Sites, places: Places) -> Flags:  # pragma: no cover
     """Whether the places may move along their curves."""
-    free = np.empty(places.piece.size, np.bool_)
-    for k in range(places.piece.size):
-        piece, curve = places.piece[k], places.curve[k]
-        at_first, at_last = piece == curves.first[curve], piece == curves.last[curve]
-        at_end = (at_first and places.xi[k] == 0.0) or (at_last and places.xi[k] == 1.0)
-        held = at_first and on_end_body(curves, ends, places, k, 0)
-        held = held or (at_last and on_end_body(curves, ends, places, k, 1))
-        free[k] = not (at_end or held)
-    return free
+    at_first, at_last = places.piece == curves.first[places.curve], places.piece == curves.last[places.curve]
+    at_end = (at_first & (places.xi == 0.0)) | (at_last & (places.xi == 1.0))
+    held = (at_first & on_end_body(curves, sites, places, 0)) | (at_last & on_end_body(curves, sites, places, 1))
+    return np.asarray(~(at_end | held))
 
 
 @compiled
@@ -137,29 +139,23 @@ def places_at_feet(
 
     On the curves marked ``pressed`` (curves,) ends at a weld on the curve's body are places too.
     """
-    mine, ends = np.flatnonzero(near[sites.possible.pair]), sites.ends
-    places, distance, kept = picked(sites.possible, mine), np.empty(mine.size), np.empty(mine.size, np.bool_)
+    mine = np.flatnonzero(near[sites.possible.pair])
+    places, distance = picked(sites.possible, mine), np.empty(mine.size)
     find_feet(z, curves, places, distance, counters)
-    for k in range(mine.size):
-        pair, curve, other, foot = places.pair[k], places.curve[k], places.other[k], places.foot[k]
-        start, end = on_end_body(curves, ends, places, k, 0), on_end_body(curves, ends, places, k, 1)
-        before = places.piece[k] - curves.first[curve] + int(places.xi[k])
-        behind = curves.last[curve] - curves.first[curve] + 1 - before
-        welded, held = ends.welded[curve], False
-        if curves.angle[places.piece[k]] < 0:
-            # a corner is no place in an end link held by the corner's body
-            places.side[k] = 0.0
-            held = (start and foot == curves.first[other]) or (end and foot == curves.last[other])
-        else:
-            places.side[k] = sides[pair, 0 if curve == sites.columns[pair, 0] else 1]
-            held = start and before == 0 and not (welded[0] and pressed[other])
-            held = held or (end and behind == 0 and not (welded[1] and pressed[other]))
-        doubled = curve == other and foot < places.piece[k] and behind > 0
-        kept[k] = not held and np.isfinite(distance[k]) and not doubled
-        if before == 1 and start and sites.sharing[curve, 0]:
-            places.shares[k] = 1
-        if behind == 1 and end and sites.sharing[curve, 1]:
-            places.shares[k] = -1
+    curve, other, foot, corner = places.curve, places.other, places.foot, curves.angle[places.piece] < 0
+    start, end = on_end_body(curves, sites, places, 0), on_end_body(curves, sites, places, 1)
+    before = places.piece - curves.first[curve] + places.xi.astype(np.int64)
+    behind = curves.last[curve] - curves.first[curve] + 1 - before
+    first = curve == sites.columns[:, 0][places.pair]
+    places.side[:] = np.where(corner, 0.0, np.where(first, sides[:, 0][places.pair], sides[:, 1][places.pair]))
+    # a corner is no place in an end link held by the corner's body
+    free = sites.welded[curve] & pressed[other].reshape((-1, 1))
+    start_held = np.where(corner, foot == curves.first[other], (before == 0) & ~free[:, 0])
+    end_held = np.where(corner, foot == curves.last[other], (behind == 0) & ~free[:, 1])
+    doubled = (curve == other) & (foot < places.piece) & (behind > 0)
+    places.shares[:] = np.where(start & (before == 1) & sites.sharing[:, 0][curve], 1, 0)
+    places.shares[np.flatnonzero(end & (behind == 1) & sites.sharing[:, 1][curve])] = -1
+    kept = ~((start & start_held) | (end & end_held)) & np.isfinite(distance) & ~doubled
     return picked(places, np.flatnonzero(kept))
 
 
@@ -178,11 +174,10 @@ def matched(curves: CurveArrays, places: Places, others: Places) -> Ints:  # pra
             continue
         for step in range(count):
             j = (at + step) % count
-            if places.pair[k] != others.pair[j] or places.curve[k] != others.curve[j]:
-                continue
-            if places.moves[k] != others.moves[j] or not is_fixed(curves, others, j):
-                continue
-            if places.moves[k] or (places.piece[k] == others.piece[j] and places.xi[k] == others.xi[j]):
+            of_curve = places.pair[k] == others.pair[j] and places.curve[k] == others.curve[j]
+            alike = places.moves[k] == others.moves[j] and is_fixed(curves, others, j)
+            at_place = places.moves[k] or (places.piece[k] == others.piece[j] and places.xi[k] == others.xi[j])
+            if of_curve and alike and at_place:
                 found[k], at = j, j + 1
                 break
     return found
@@ -219,8 +214,8 @@ def contact_places(
     closed: Flags,
     apart: Places,
     counters: Ints,
-) -> tuple[Places, Ints, Flags]:  # pragma: no cover
-    """Fixed places at the nearest feet, numbers of the moving places of ``old``, and marks of the closed among both.
+) -> tuple[Places, Flags]:  # pragma: no cover
+    """Fixed places at the nearest feet with the moving places of ``old``, and marks of the closed among both.
 
     Known places keep force and state.  A new place of a beam in self-contact has the present side, and a new place
     beyond the end of another beam too.
@@ -234,8 +229,8 @@ def contact_places(
         apart: earlier places of open pairs, for their sides.
         counters: count the searches.
     """
-    ends, nothing = sites.ends, np.zeros(curves.first.size, np.bool_)
-    near = near_pairs(z, curves, sites.columns, np.full(len(sites.columns), REACH), counters)
+    nothing = np.zeros(curves.first.size, np.bool_)
+    near = near_pairs(z, curves, sites.columns, REACH, counters)
     for k in range(closed.size):
         near[old.pair[k]] |= closed[k]
     near &= ~kept_open
@@ -248,7 +243,7 @@ def contact_places(
     marks, room, weights = np.zeros(count + moving.size, np.bool_), np.empty((2, count)), np.empty((4, 2, STENCIL))
     for k in range(count):
         curve, j = fixed.curve[k], known[k]
-        between = not ends.rigid[curve] and not ends.rigid[fixed.other[k]] and curve != fixed.other[k]
+        between = not sites.rigid[curve] and not sites.rigid[fixed.other[k]] and curve != fixed.other[k]
         if j >= 0 and closed[j]:
             marks[k], fixed.force[k], fixed.side[k] = True, old.force[j], old.side[j]
             fixed.piece[k], fixed.xi[k], fixed.foot[k], fixed.eta[k] = old.piece[j], old.xi[j], old.foot[j], old.eta[j]
@@ -261,4 +256,4 @@ def contact_places(
         if curves.angle[fixed.piece[k]] < 0:
             fixed.side[k] = corner_sides[curve]
     marks[count:] = closed[moving]
-    return fixed, moving, marks
+    return joined(fixed, picked(old, moving)), marks

@@ -45,8 +45,10 @@ dξ = −(λ_ξ + λ_ξu + λ_ξF dF)/λ_ξξ.  At a corner C_A' = 0 and all der
 from math import hypot, sqrt
 from typing import NamedTuple, Protocol
 
+import numpy as np
+
 from cprbm.chain import compiled
-from cprbm.contact.closest import curve_jet, lost_at, thickness_between
+from cprbm.contact.closest import curve_jet, curve_point, lost_at, thickness_between
 from cprbm.contact.curve import STENCIL, CurveArrays
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -157,21 +159,16 @@ class Row(NamedTuple):
     """Row of a place in the linear system, the place's change eliminated.
 
     Attributes:
+        frame: derivatives of λ at the place.
         value: g + F c, which a closed place makes zero.
         by_force: derivative of the value by F.
-        qq, qe, ee, shift: coefficients of the Hessian of λ, qq q² + 2 qe q e + ee e² + shift λ_ξu².
-        slope, curvature, slope_by_force: λ_ξ, λ_ξξ, λ_ξF.
+        shift: the Hessian of λ is qq q² + 2 qe q e + ee e² + shift λ_ξu².
     """
 
+    frame: Frame
     value: float
     by_force: float
-    qq: float
-    qe: float
-    ee: float
     shift: float
-    slope: float
-    curvature: float
-    slope_by_force: float
 
 
 @compiled
@@ -216,6 +213,21 @@ def gap_frame(z: Array, curves: CurveArrays, places: Places, k: int, weights: Ar
 
 
 @compiled
+def touching_points(
+    z: Array, curves: CurveArrays, places: Places, which: Ints
+) -> tuple[Array, Array]:  # pragma: no cover
+    """Points (k, 2, 2) of some places on both curves, and normals (k, 2) from the feet to the places."""
+    points, normals, weights = np.empty((which.size, 2, 2)), np.empty((which.size, 2)), np.empty((4, 2, STENCIL))
+    for i in range(which.size):
+        k = which[i]
+        frame = gap_frame(z, curves, places, k, weights)
+        normals[i, 0], normals[i, 1] = frame.nx, frame.ny
+        points[i, 0] = curve_point(z, curves, places.piece[k], places.xi[k], weights[0])
+        points[i, 1] = curve_point(z, curves, places.foot[k], places.eta[k], weights[0])
+    return points, normals
+
+
+@compiled
 def _lost(
     curves: CurveArrays, places: Places, k: int
 ) -> tuple[float, float, float, float, float, float]:  # pragma: no cover
@@ -256,32 +268,24 @@ def gap_row(
     _add(vectors[TANGENT], at_b, weights[1], f.tx, f.ty, -1.0)
     if not places.at_point[k]:
         _add(vectors[TURN], at_b, weights[3], f.nx, f.ny, 1.0)
-    if not places.moves[k]:
-        vectors[COUPLING] = vectors[GRADIENT]
-        return Row(f.gap, 0.0, f.qq, f.qe, f.ee, 0.0, f.slope, f.curvature, 0.0)
-    if f.curvature == 0.0:
+    value, by_force, shift = f.gap + force * f.lost, f.lost + force * f.by_force, 0.0
+    if places.moves[k] and f.curvature != 0.0:
+        shift = -1.0 / f.curvature
+        _add(vectors[SHIFT], 0, weights[2], f.nx, f.ny, 1.0)
         for i in range(LOCAL):
-            foot = f.foot_q * vectors[TANGENT, i] + f.foot_e * vectors[TURN, i]
-            vectors[COUPLING, i] = vectors[GRADIENT, i] + 0.5 * force * f.foot_lost * foot
-        by_force = f.lost + force * f.by_force
-        return Row(f.gap + force * f.lost, by_force, f.qq, f.qe, f.ee, 0.0, 0.0, 0.0, 0.0)
-    _add(vectors[SHIFT], 0, weights[2], f.nx, f.ny, 1.0)
-    lean = f.slope_by_force
+            vectors[SHIFT, i] += f.along * (f.qq * vectors[TANGENT, i] + f.qe * vectors[TURN, i])
+            vectors[GRADIENT, i] += shift * f.slope * vectors[SHIFT, i]
+    lean = shift * f.slope_by_force
     for i in range(LOCAL):
-        q, e = vectors[TANGENT, i], vectors[TURN, i]
-        vectors[SHIFT, i] += f.along * (f.qq * q + f.qe * e)
-        vectors[GRADIENT, i] -= vectors[SHIFT, i] * f.slope / f.curvature
-        foot = 0.5 * f.foot_lost * (f.foot_q * q + f.foot_e * e)
-        vectors[COUPLING, i] = vectors[GRADIENT, i] + force * (foot - vectors[SHIFT, i] * lean / f.curvature)
-    value = f.gap + force * f.lost - f.slope * (f.slope + force * lean) / f.curvature
-    by_force = f.lost + force * (f.by_force - lean * lean / f.curvature)
-    return Row(value, by_force, f.qq, f.qe, f.ee, -1.0 / f.curvature, f.slope, f.curvature, lean)
+        foot = 0.5 * f.foot_lost * (f.foot_q * vectors[TANGENT, i] + f.foot_e * vectors[TURN, i])
+        vectors[COUPLING, i] = vectors[GRADIENT, i] + force * (foot + lean * vectors[SHIFT, i])
+    value += f.slope * (shift * f.slope + force * lean)
+    return Row(f, value, by_force + force * lean * f.slope_by_force, shift)
 
 
 @compiled
 def local_indices(curves: CurveArrays, places: Places, k: int, index: Ints) -> None:  # pragma: no cover
     """Write the unknowns (LOCAL,) of a place's vectors; an unknown may come twice."""
-    for i in range(STENCIL):
-        a, b = curves.stencil[places.piece[k], i], curves.stencil[places.foot[k], i]
-        index[2 * i], index[2 * i + 1] = a, a + 1
-        index[2 * STENCIL + 2 * i], index[2 * STENCIL + 2 * i + 1] = b, b + 1
+    a, b = curves.stencil[places.piece[k]], curves.stencil[places.foot[k]]
+    index[: 2 * STENCIL : 2], index[1 : 2 * STENCIL : 2] = a, a + 1
+    index[2 * STENCIL :: 2], index[2 * STENCIL + 1 :: 2] = b, b + 1

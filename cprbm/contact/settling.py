@@ -4,8 +4,6 @@ A foot is the closest point near the last foot.  A moving place makes λ station
 unknowns follows from the linear equation of :mod:`cprbm.contact.gap`.
 """
 
-from math import hypot
-
 import numpy as np
 
 from cprbm.chain import compiled
@@ -43,15 +41,13 @@ def new_counters() -> Ints:
 
 
 @compiled
-def near_pairs(z: Array, curves: CurveArrays, pairs: Ints, reach: Array, counters: Ints) -> Flags:  # pragma: no cover
-    """Whether the boxes of two curves (pairs, 2) are nearer than ``reach`` (pairs,); one test per pair."""
-    boxes, near = curve_boxes(z, curves), np.empty(len(pairs), np.bool_)
-    for k in range(len(pairs)):
-        a, b = boxes[pairs[k, 0]], boxes[pairs[k, 1]]
-        counters[BOX_TESTS] += 1
-        apart = max(a[0] - b[2], b[0] - a[2], a[1] - b[3], b[1] - a[3])
-        near[k] = apart < reach[k]
-    return near
+def near_pairs(z: Array, curves: CurveArrays, pairs: Ints, reach: float, counters: Ints) -> Flags:  # pragma: no cover
+    """Whether the boxes of two curves (pairs, 2) are nearer than ``reach``; one test per pair."""
+    boxes = curve_boxes(z, curves)
+    a, b = boxes[pairs[:, 0]], boxes[pairs[:, 1]]
+    counters[BOX_TESTS] += len(pairs)
+    apart = np.maximum(a[:, :2] - b[:, 2:], b[:, :2] - a[:, 2:])
+    return np.asarray((apart[:, 0] < reach) & (apart[:, 1] < reach))
 
 
 @compiled
@@ -173,21 +169,15 @@ def settle_near(
     A place and the curve beneath move by at most the sum of the weights' sizes times the nodes' way.  The weights grow
     along a rigid curve; half the gap leaves them room.  Moving and sharing places and beams with themselves have none.
     """
-    weights, sharing = np.empty((4, 2, STENCIL)), np.zeros(closed.size, np.bool_)
-    for k in range(closed.size):
-        if places.shares[k] != 0:
-            sharing[k], sharing[k + places.shares[k]] = True, True
+    weights, sharing = np.empty((4, 2, STENCIL)), places.shares != 0
+    sharing[(np.arange(closed.size) + places.shares)[sharing]] = True
     for k in range(closed.size):
         if room[k] > 0.0 and not closed[k]:
             continue
         settle_place(z, curves, places, k, gaps, curvatures, counters, steps, weights)
         room[k] = 0.0
         if not (places.moves[k] or sharing[k] or places.curve[k] == places.other[k]):
-            way = 0.0
-            for part in range(2):
-                for i in range(STENCIL):
-                    way += abs(weights[part, 0, i]) + abs(weights[part, 1, i])
-            room[k] = 0.5 * gaps[k] / way
+            room[k] = 0.5 * gaps[k] / np.abs(weights[:2]).sum()
 
 
 @compiled
@@ -211,13 +201,12 @@ def move_places(
         if not places.moves[k]:
             continue
         row = gap_row(z, curves, places, k, vectors, weights)
-        if row.curvature == 0.0:
+        if row.shift == 0.0:
             continue
         local_indices(curves, places, k, index)
-        slope = row.slope + row.slope_by_force * by_force[k]
-        for i in range(LOCAL):
-            slope += vectors[SHIFT, i] * change[index[i]]
-        whole, piece, at = -slope / abs(row.curvature), places.piece[k], places.xi[k]
+        slope = row.frame.slope + row.frame.slope_by_force * by_force[k]
+        slope += (vectors[SHIFT] * change[index]).sum()
+        whole, piece, at = -slope * abs(row.shift), places.piece[k], places.xi[k]
         step = min(limit, max(-limit, whole)) * share
         places.piece[k], places.xi[k], ended = moved_along(curves, places.curve[k], piece, at, step)
         largest = max(largest, 0.0 if ended and places.xi[k] == at and places.piece[k] == piece else abs(whole))
@@ -242,14 +231,12 @@ def sweeps_any_point(
 ) -> bool:  # pragma: no cover
     """True if a beam sweeps over one of the ``points`` of :class:`cprbm.contact.candidates.Geometry` in a step."""
     old, new = curve_boxes(before, curves), curve_boxes(after, curves)
+    low, high = np.minimum(old[:, :2], new[:, :2]), np.maximum(old[:, 2:], new[:, 2:])
     for k in range(len(points)):
         a, b, piece, at_end = points[k]
         counters[BOX_TESTS] += 1
-        met = True
-        for i in range(2):
-            for c, d in ((a, b), (b, a)):
-                met = met and min(old[c, i], new[c, i]) < max(old[d, i + 2], new[d, i + 2])
-        if met and _sweeps_over(before, after, curves, b, piece, float(at_end)):
+        apart = max((low[a] - high[b]).max(), (low[b] - high[a]).max())
+        if apart < 0.0 and _sweeps_over(before, after, curves, b, piece, float(at_end)):
             return True
     return False
 
@@ -270,7 +257,7 @@ def _sweeps_over(
         bx, by = curve_point(before, curves, point, at, weights)
         cx, cy = curve_point(after, curves, piece, xi, weights)
         dx, dy = curve_point(after, curves, point, at, weights)
-        nearest = min(hypot(ax - bx, ay - by), hypot(cx - dx, cy - dy))
+        nearest = min(np.hypot(ax - bx, ay - by), np.hypot(cx - dx, cy - dy))
         beside = nearest > depth_beyond(curves, piece, thickness_between(curves, piece, xi, point, at))
         if beside and (ax - bx) * (cx - dx) + (ay - by) * (cy - dy) < 0.0:
             return True

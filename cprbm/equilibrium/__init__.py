@@ -1,13 +1,11 @@
 """Equilibria of a mechanism: Newton's method, exact elimination with inertia, certificate, stability."""
 
 from cprbm.equilibrium.certificate import certify
-from cprbm.equilibrium.columns import contact_columns, contact_terms
+from cprbm.equilibrium.columns import contact_columns, contact_terms, squares_of
 from cprbm.equilibrium.contact_set import NotConvergedError, with_fixed_places
 from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.neighbours import least_between
-from cprbm.equilibrium.rank import repeated_rows
-from cprbm.equilibrium.sharing import balanced_forces, shared_multipliers
-from cprbm.equilibrium.solving import Solved, at_state, equilibrium
+from cprbm.equilibrium.solving import Solved, at_state, balanced_forces, equilibrium, repeated_rows, shared_multipliers
 from cprbm.equilibrium.stability import Mode, blocked, softest
 from cprbm.equilibrium.system import State, System, hidden_forces, rest_state, system_of
 
@@ -31,6 +29,7 @@ __all__ = [
     "rest_state",
     "shared_multipliers",
     "softest",
+    "squares_of",
     "system_of",
     "with_fixed_places",
 ]

@@ -7,17 +7,18 @@ H          Hessian of the Lagrangian without contacts
 F, λ       force of a closed place; a place adds −F λ to the Lagrangian, :mod:`cprbm.contact.gap`
 a          column of the force, minus the derivative of the row's value by the unknowns
 c          minus the derivative of the value by F
-V, S       local motions q, e, λ_ξu of a place, and their coefficients: −F V S Vᵀ is the Hessian of −F λ
+V, s       local motions of a place and their coefficients: −F Σ s (V·du)² is the Hessian of −F λ
 =========  =====================================================================================
 
-With a variable y for every local motion the second derivatives of a place leave the chains' pattern alone:
+The form of a place in q and e is the sum of two squares, λ_ξu² is the third.  With a variable y for every local motion
+the second derivatives of a place leave the chains' pattern alone:
 
     [ H + V R Vᵀ  a ]      [ H    V      a  ]
-    [    aᵀ       c ]  =>  [ Vᵀ  −R⁻¹    0  ],    R = −F S.
+    [    aᵀ       c ]  =>  [ Vᵀ  −R⁻¹    0  ],    R = −F s.
                            [ aᵀ   0      c  ]
 
 By Sylvester's law the left matrix has as many negative eigenvalues as the right matrix, less the negative eigenvalues
-of −R⁻¹ = S⁻¹/F.  Two places with a shared force have a common column, the sum of both.
+of −R⁻¹ = 1/(F s).  Two places with a shared force have a common column, the sum of both.
 
 A column has entries at the nodes of two pieces, at most six nodes each: it reaches one chain or two.
 """
@@ -55,63 +56,56 @@ def contact_terms(geometry: Geometry, z: Array, places: Places, closed: Flags) -
 
 
 @compiled
+def squares_of(
+    a: float, b: float, c: float
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:  # pragma: no cover
+    """The form a x² + 2 b x y + c y² as the sum of two squares: coefficient and unit vector of either square."""
+    mean, half = 0.5 * (a + c), 0.5 * (a - c)
+    size, lean = np.hypot(half, b), 0.5 * np.arctan2(b, half)
+    return (mean + size, np.cos(lean), np.sin(lean)), (mean - size, -np.sin(lean), np.cos(lean))
+
+
+@compiled
 def contact_columns(
     z: Array, curves: CurveArrays, places: Places, closed: Flags, gradient: Array
 ) -> Columns:  # pragma: no cover
     """Columns of the places marked ``closed``; adds the gradient of all −F λ by the unknowns to ``gradient``."""
-    number, forces, count = np.zeros(closed.size, np.int64), 0, 0
-    for k in range(closed.size):
-        number[k] = forces
-        forces += closed[k] and places.shares[k] == 0
-        count += closed[k]
-    values, most = np.zeros(forces), forces + MOTIONS * count
-    diagonal, beside = np.zeros(most), np.zeros(most)
+    own, count = closed & (places.shares == 0), int(np.count_nonzero(closed))
+    number, forces = np.cumsum(own) - 1, int(np.count_nonzero(own))
+    values, diagonal = np.zeros(forces), np.zeros(forces + MOTIONS * count)
     most = (1 + MOTIONS) * LOCAL * count
     entries = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most)
     vectors, weights, index = np.empty((5, LOCAL)), np.empty((4, 2, STENCIL)), np.empty(LOCAL, np.int64)
-    used, at, negative = 0, forces, 0
+    used, at = 0, forces
     for k in range(closed.size):
         if not closed[k]:
             continue
         row = gap_row(z, curves, places, k, vectors, weights)
         local_indices(curves, places, k, index)
-        own, F = number[k + places.shares[k]], places.force[k]
-        values[own] += row.value
-        diagonal[own] -= row.by_force
+        column, F = int(number[k + places.shares[k]]), places.force[k]
+        values[column] += row.value
+        diagonal[column] -= row.by_force
         for i in range(LOCAL):
             gradient[index[i]] -= F * vectors[GRADIENT, i]
-        used = _add_entries(entries, used, own, index, vectors[COUPLING], -1.0)
-        if F == 0.0:
-            continue
-        if row.ee != 0.0 or row.qe != 0.0:
-            scale = F * (row.qq * row.ee - row.qe * row.qe)
-            diagonal[at], diagonal[at + 1], beside[at + 1] = row.ee / scale, row.qq / scale, -row.qe / scale
-            negative += 1 if F * scale < 0.0 else (2 if F * (row.qq + row.ee) < 0.0 else 0)
-            used = _add_entries(entries, used, at, index, vectors[TANGENT], 1.0)
-            used = _add_entries(entries, used, at + 1, index, vectors[TURN], 1.0)
-            at += 2
-        elif row.qq != 0.0:
-            diagonal[at] = 1.0 / (F * row.qq)
-            negative += diagonal[at] < 0.0
-            used = _add_entries(entries, used, at, index, vectors[TANGENT], 1.0)
-            at += 1
-        if row.shift != 0.0:
-            diagonal[at] = 1.0 / (F * row.shift)
-            negative += diagonal[at] < 0.0
-            used = _add_entries(entries, used, at, index, vectors[SHIFT], 1.0)
-            at += 1
-    return Columns(
-        values, negative, diagonal[:at], beside[:at], entries[0][:used], entries[1][:used], entries[2][:used]
-    )
+        used = _add_entries(entries, used, column, index, -vectors[COUPLING])
+        (one, ax, ay), (other, bx, by) = squares_of(row.frame.qq, row.frame.qe, row.frame.ee)
+        for s, q, e, shift in ((one, ax, ay, 0.0), (other, bx, by, 0.0), (row.shift, 0.0, 0.0, 1.0)):
+            if F * s != 0.0:
+                motion = q * vectors[TANGENT] + e * vectors[TURN] + shift * vectors[SHIFT]
+                diagonal[at], used = 1.0 / (F * s), _add_entries(entries, used, at, index, motion)
+                at += 1
+    of_entries, unknown, value = entries
+    negative = int(np.count_nonzero(diagonal[forces:at] < 0.0))
+    return Columns(values, negative, diagonal[:at], np.zeros(at), of_entries[:used], unknown[:used], value[:used])
 
 
 @compiled
 def _add_entries(
-    entries: tuple[Ints, Ints, Array], used: int, column: int, index: Ints, vector: Array, factor: float
+    entries: tuple[Ints, Ints, Array], used: int, column: int, index: Ints, vector: Array
 ) -> int:  # pragma: no cover
     """Append the entries of a column; the number of all entries."""
     for i in range(LOCAL):
         if vector[i] != 0.0:
-            entries[0][used], entries[1][used], entries[2][used] = column, index[i], factor * vector[i]
+            entries[0][used], entries[1][used], entries[2][used] = column, index[i], vector[i]
             used += 1
     return used

@@ -38,13 +38,12 @@ from cprbm.contact import (
 from cprbm.equilibrium.contact_set import (
     NotConvergedError,
     Touched,
-    arc_of,
     passed_through,
     solve_set,
     with_fixed_places,
 )
 from cprbm.equilibrium.factors import Springs
-from cprbm.equilibrium.iteration import OVERLAP, beside_points
+from cprbm.equilibrium.iteration import OVERLAP, arcs_of, beside_points
 from cprbm.equilibrium.neighbours import ISOLATED, LIGHT, as_point, given_up, short_runs
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
@@ -148,7 +147,7 @@ def _at_ends(geometry: Geometry, solved: Touched) -> Contacts | None:
     """Contacts with the ends of beams in the place of corners that have left the round ends; None without any."""
     contacts, places = solved.contacts, solved.contacts.places
     kept, closed = copied(places), contacts.closed.copy()
-    arcs, moved = arc_of(geometry, places), False
+    arcs, moved = arcs_of(geometry.arrays, places), False
     for k in np.flatnonzero(contacts.closed & places.at_point & on_edge(geometry.arrays, places)).tolist():
         if is_left(geometry, solved.state.z, places, k):
             mine = ~places.moves & (places.pair == places.pair[k]) & (places.curve == places.other[k])
@@ -165,14 +164,14 @@ def _leaving_corners(geometry: Geometry, solved: Touched) -> tuple[Places, Flags
     contacts, places, z = solved.contacts, solved.contacts.places, solved.state.z
     replaced = np.zeros(len(contacts.closed), dtype=bool)
     created = taken(places, replaced)
-    arcs = arc_of(geometry, places)
+    arcs = arcs_of(geometry.arrays, places)
     for k in np.flatnonzero(contacts.closed & ~places.at_point & on_edge(geometry.arrays, places)).tolist():
         if not is_left(geometry, z, places, k):
             continue
         trial = left_corner(geometry, z, places, k, contacts.sides, contacts.counters)
         mine = contacts.closed & (places.pair == places.pair[k]) & (np.arange(len(arcs)) != k)
         if trial is not None and np.all(
-            np.abs(arcs[mine] - arc_of(geometry, trial)) > ISOLATED * geometry.arrays.span[trial.piece]
+            np.abs(arcs[mine] - arcs_of(geometry.arrays, trial)) > ISOLATED * geometry.arrays.span[trial.piece]
         ):
             replaced[k], created = True, joined(created, trial)
     return created, replaced
@@ -185,7 +184,7 @@ def _come_near(geometry: Geometry, solved: Touched) -> Contacts | None:
     along one face does not see another face come near.
     """
     z, contacts = solved.state.z, solved.contacts
-    late = near_pairs(z, geometry.arrays, geometry.columns, np.full(len(geometry.pairs), REACH), contacts.counters)
+    late = near_pairs(z, geometry.arrays, geometry.sites.columns, REACH, contacts.counters)
     late[list(contacts.kept_open)] = False
     late[contacts.places.pair] &= geometry.has_faces[contacts.places.pair]
     if not late.any():
@@ -209,7 +208,7 @@ def _flattest(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
 def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
     """Contacts after moving places become joints again; the joints within a piece share the force."""
     places, closed = copied(contacts.places), contacts.closed.copy()
-    arcs, span, given_up = arc_of(geometry, places), geometry.arrays.span[places.piece], set(contacts.given_up)
+    arcs, span, given_up = arcs_of(geometry.arrays, places), geometry.arrays.span[places.piece], set(contacts.given_up)
     for k in np.flatnonzero(gone).tolist():
         given_up |= {(int(places.pair[k]), int(places.piece[k]) + e) for e in range(-ISOLATED, ISOLATED + 1)}
         share = 1.0 - np.abs(arcs - arcs[k]) / span[k]
@@ -233,7 +232,7 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
         return None
     replaced = np.zeros(len(contacts.closed), dtype=bool)
     created = taken(places, replaced)
-    arcs, span = arc_of(geometry, places), curves.span[places.piece]
+    arcs, span = arcs_of(geometry.arrays, places), curves.span[places.piece]
     depth = beside_points(curves, places, contacts.closed)[1]
     for first, last in runs.tolist():
         # the joints of a run are neighbours
@@ -247,12 +246,12 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
                 raise NotConvergedError("a contact's curves overlap between two joints")
             continue
         overlaps = contacts.closed[best] or gap < -OVERLAP - depth[best]
-        if not overlaps or curvature <= 0.0 or not movable(curves, geometry.ends, trial)[0]:
+        if not overlaps or curvature <= 0.0 or not movable(curves, geometry.sites, trial)[0]:
             continue
-        at = arc_of(geometry, trial)[0]
+        at = arcs_of(geometry.arrays, trial)[0]
         others = contacts.closed & (places.pair == places.pair[best]) & (places.curve == places.curve[best])
         others[run] = False
-        around = np.concatenate([arcs[others], arc_of(geometry, created)[created.pair == places.pair[best]]])
+        around = np.concatenate([arcs[others], arcs_of(geometry.arrays, created)[created.pair == places.pair[best]]])
         lonely = not np.any(np.abs(around - at) < ISOLATED * span[best])
         if lonely and np.any(np.abs(arcs[run] - at) < span[best]):
             replaced[run] = contacts.closed[run]

@@ -1,16 +1,37 @@
 """Newton's method with an active set of contact places.
 
 Every iteration moves the feet, opens pulling places, closes overlapping places, and solves the linear system of the
-closed places.  Where the set returns, the linearised problem chooses the set
-(:mod:`cprbm.equilibrium.complementary`).  The first iteration keeps the set: under new targets it is the prediction
-along the path's tangent.  A moving place is an unknown; a closed moving place stands for the fixed places within a
-piece.
+closed places.  Where the set returns, the linearised problem chooses the set.  The first iteration keeps the set:
+under new targets it is the prediction along the path's tangent.  A moving place is an unknown; a closed moving place
+stands for the fixed places within a piece.
+
+**Linearised problem**, a linear complementarity problem in the contact forces.
+
+=======  ====================================================================================
+symbol   meaning
+=======  ====================================================================================
+F        contact forces of all places that may close, after the correction
+w        gaps of the linearised problem
+G, r     border with the columns of these places, and its load; index f: forces, o: all other unknowns
+M, q     compliance of the forces, gaps without any force
+L        Cholesky's factor of M
+=======  ====================================================================================
+
+The elimination of all other unknowns leaves
+
+    w = q + M F,    F ≥ 0,    w ≥ 0,    F w = 0,    M = G_fo G_oo⁻¹ G_of − G_ff.
+
+M is positive definite where the state without contacts is a minimum.  Then F is the least-squares solution with F ≥ 0
+of Lᵀ F = −L⁻¹ q (Lawson and Hanson 1974), and the solution is unique.  Newton's method with this set in every iteration
+is the method of Josephy (1979) for F ≥ 0, g ≥ 0.  An exchange of all places with a wrong sign instead may return to the
+same sets: the forces of a zone that is too long alternate in sign from joint to joint.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import LinAlgError, cholesky, solve_triangular
 
 from cprbm.contact import (
     FINDING,
@@ -21,7 +42,6 @@ from cprbm.contact import (
     Places,
     contact_places,
     copied,
-    joined,
     matched,
     on_edge,
     separations,
@@ -30,9 +50,9 @@ from cprbm.contact import (
     taken,
 )
 from cprbm.equilibrium.columns import contact_terms
-from cprbm.equilibrium.complementary import closed_forces
-from cprbm.equilibrium.factors import Springs, new_work, pulls
+from cprbm.equilibrium.factors import SingularError, Springs, factored_border, pulls, solved_border
 from cprbm.equilibrium.iteration import (
+    arcs_of,
     change_set,
     closable,
     follow_leaders,
@@ -40,7 +60,7 @@ from cprbm.equilibrium.iteration import (
     settle_set,
     step_with_columns,
 )
-from cprbm.equilibrium.linear import Numbers, Work, reduced_system
+from cprbm.equilibrium.linear import Bordered, Numbers, reduced_system
 from cprbm.equilibrium.neighbours import ISOLATED
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
@@ -63,11 +83,14 @@ RETURNS = 2
 FEW_CHANGES = 4
 """Places that may change together where the linearised problem is not convex."""
 
+SOFT = 1e-14
+"""Compliance of every place over the largest: two places at one point share their force."""
+
 ARRIVED = 1e-6
 """Largest last change of a moving place, pieces."""
 
-Linear = tuple[Array, Numbers, Flags, Array, Array, Array, Work]
-Settling = tuple[CurveArrays, Places, Flags, Array, Array, Array, Ints]
+Linear = tuple[Array, Numbers, Flags, Array, Array, Array]
+Settling = tuple[CurveArrays, Places, Flags, Array, Array, Array, Ints, Ints]
 
 
 class NotConvergedError(Exception):
@@ -99,8 +122,8 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     kept_open[list(contacts.kept_open)] = True
     apart = taken(old, np.zeros(0, dtype=np.int64)) if contacts.apart is None else contacts.apart
     sides = contacts.sides, contacts.corner_sides, kept_open, old, contacts.closed, apart
-    places, moving, closed = contact_places(z, geometry.arrays, geometry.sites, *sides, contacts.counters)
-    return replace(contacts, places=joined(places, taken(old, moving)), closed=closed)
+    places, closed = contact_places(z, geometry.arrays, geometry.sites, *sides, contacts.counters)
+    return replace(contacts, places=places, closed=closed)
 
 
 def passed_through(
@@ -138,25 +161,25 @@ def solve_set(system: System, start: State, iterations: int, springs: Springs | 
     """
     geometry, contacts, z, driven = system.geometry, start.contacts, start.z.copy(), start.driven
     z[system.rows.first :][~driven] = start.target[~driven] * ~start.repeated[~driven]
-    m, work, curves = system.numbers, new_work(system), geometry.arrays
+    m, curves = system.numbers, geometry.arrays
     places, closed = copied(contacts.places), contacts.closed.copy()
     gaps, curvatures, room = np.empty(len(closed)), np.empty(len(closed)), np.zeros(len(closed))
-    linear = z, m, driven, start.target, *pulls(system, springs), work
-    settling = curves, places, closed, gaps, curvatures, room, contacts.counters
-    settle_near(z, *settling, FINDING)
+    linear = z, m, driven, start.target, *pulls(system, springs)
+    settling = curves, places, closed, gaps, curvatures, room, contacts.counters, geometry.sites.columns
+    settle_near(z, *settling[:-1], FINDING)
     seen: dict[bytes, int] = {}
     last, returned = np.inf, False
     for iteration in range(1, iterations + 1):
         before = closed.copy()
-        if iteration > 1:
-            _change_set(geometry, linear, settling, returned=returned)
+        if returned:
+            _choose_set(geometry, linear, settling)
+        size, moved = _step(geometry, linear, settling, settles=iteration > 1 and not returned)
         changed = bool(np.any(closed != before))
         if changed:
             times = seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
             if times > 2 * RETURNS:
                 raise NotConvergedError("the set of closed places returns")
             returned = returned or times > RETURNS or iteration >= FREE_CHANGES
-        size, moved = _step(geometry, linear, settling)
         if not np.isfinite(size):
             raise NotConvergedError("the correction is not finite")
         size = size if moved < ARRIVED else max(size, moved)
@@ -172,46 +195,44 @@ def solve_set(system: System, start: State, iterations: int, springs: Springs | 
 def _settle_set(geometry: Geometry, z: Array, settling: Settling, most: int, steps: int = 0) -> int:
     """Settle places in at most ``steps`` and change the set; the number of places with a wrong sign."""
     if geometry.law is None:
-        return settle_set(z, *settling, geometry.columns, most, steps)
-    curves, places, closed, gaps, *_ = settling
-    settle_near(z, *settling, steps)
+        return settle_set(z, *settling, most, steps)
+    curves, places, closed, gaps, *_, columns = settling
+    settle_near(z, *settling[:-1], steps)
     geometry.law.write_gaps(z, places, gaps)
-    return change_set(curves, places, closed, gaps, geometry.columns, most)
+    return change_set(curves, places, closed, gaps, columns, most)
 
 
-def _change_set(geometry: Geometry, linear: Linear, settling: Settling, *, returned: bool) -> None:
-    """Close overlapping places and open pulling places; where the set has ``returned`` by the linearised problem.
-
-    Where the linearised problem is not convex, a few places change together, or the worst place alone.
-    """
-    wrong = _settle_set(geometry, linear[0], settling, 0 if returned else len(settling[2]))
-    if returned and wrong and not _choose_set(geometry, linear, settling):
-        _settle_set(geometry, linear[0], settling, wrong if wrong <= FEW_CHANGES else 1)
-
-
-def _step(geometry: Geometry, linear: Linear, settling: Settling) -> tuple[float, float]:
-    """Sizes of a Newton step, :func:`cprbm.equilibrium.iteration.step_with_columns`.
+def _step(geometry: Geometry, linear: Linear, settling: Settling, *, settles: bool) -> tuple[float, float]:
+    """Sizes of a Newton step, :func:`cprbm.equilibrium.iteration.step_with_columns`, after a change of the set.
 
     Raises:
         NotConvergedError: the system is singular.
     """
-    z, (curves, places, closed, _, _, room, _) = linear[0], settling
+    z, (curves, places, closed, gaps, curvatures, room, counters, pairs) = linear[0], settling
     try:
         if geometry.law is None:
-            return newton_step(*linear, curves, places, closed, room)
+            known = gaps, curvatures, room, counters, pairs, int(settles)
+            return newton_step(*linear, curves, places, closed, *known)
+        if settles:
+            _settle_set(geometry, z, settling, len(closed))
         return step_with_columns(*linear, curves, places, closed, room, *contact_terms(geometry, z, places, closed))
     except np.linalg.LinAlgError as singular:
         raise NotConvergedError("the system is singular") from singular
 
 
-def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> bool:
-    """Close the places that press in the linearised problem and open all others; False if the problem is not convex.
+def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> None:
+    """Close the places that press in the linearised problem and open all others, where a place has a wrong sign.
+
+    Where the problem is not convex, a few places change together, or the worst place alone.
 
     Raises:
         NotConvergedError: joints close beside a moving place.
     """
+    wrong = _settle_set(geometry, linear[0], settling, 0)
+    if not wrong:
+        return
     z, m, curves, places, closed, gaps = linear[0], linear[1], *settling[:4]
-    allowed, beside, depth = closable(curves, places, closed, geometry.columns)
+    allowed, beside, depth = closable(curves, places, closed, settling[-1])
     leaders = np.arange(len(closed)) + places.shares
     trial = ((allowed & np.isfinite(gaps)) | (closed & ~beside))[leaders]
     columns, gradient = contact_terms(geometry, z, places, trial)
@@ -219,20 +240,42 @@ def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> bool:
     own = trial & (places.shares == 0)
     pressed = closed_forces(bordered, reduced, m.border.size, places.force[own], np.where(closed, 0.0, depth)[own])
     if pressed is None:
-        return False
+        _settle_set(geometry, z, settling, wrong if wrong <= FEW_CHANGES else 1)
+        return
     closed[:] = False
     closed[own] = pressed
     follow_leaders(places, closed)
-    arcs, joints = arc_of(geometry, places), closed & ~places.moves
+    arcs, joints = arcs_of(curves, places), closed & ~places.moves
     points = np.flatnonzero(closed & places.moves & ~on_edge(curves, places))
     near = np.abs(arcs[joints, None] - arcs[points]) < ISOLATED * curves.span[places.piece[points]]
     if np.any(near & (places.pair[joints, None] == places.pair[points])):
         raise NotConvergedError("a point of contact becomes a length")
-    return True
 
 
-def arc_of(geometry: Geometry, places: Places) -> Array:
-    """Arc lengths of places on their beams: of the feet of corners."""
-    corner = on_edge(geometry.arrays, places)
-    piece, at = np.where(corner, places.foot, places.piece), np.where(corner, places.eta, places.xi)
-    return np.asarray(geometry.arrays.arc[piece] + at * geometry.arrays.span[piece])
+def closed_forces(bordered: Bordered, reduced: Array, size: int, forces: Array, room: Array) -> Flags | None:
+    """Which forces of a border press in the linearised problem; None where the problem is not convex.
+
+    Args:
+        bordered, reduced: border with the columns of all places that may close, and its load.
+        size: number of border columns without contacts.
+        forces: present forces (forces,).
+        room: allowed overlaps (forces,).
+    """
+    from scipy.optimize import nnls  # sets that settle at once load no optimisers
+
+    count = len(forces)
+    if count == 0:
+        return np.zeros(0, dtype=bool)  # SciPy's nnls frees its memory twice without unknowns
+    G = np.tril(bordered.border) + np.tril(bordered.border, -1).T
+    mine = np.zeros(len(G), dtype=bool)
+    mine[size : size + count] = True
+    beside = G[np.ix_(mine, ~mine)]
+    try:
+        solved = solved_border(*factored_border(G[np.ix_(~mine, ~mine)]), np.column_stack([beside.T, reduced[~mine]]))
+        M = beside @ solved[:, :-1] - G[np.ix_(mine, mine)]
+        L = cholesky(M + SOFT * np.max(np.diag(M), initial=0.0) * np.eye(count), lower=True)
+        q = reduced[mine] - beside @ solved[:, -1] - M @ forces + room
+        return np.asarray(nnls(L.T, -solve_triangular(L, q, lower=True))[0] > 0.0)
+    except (SingularError, LinAlgError, ValueError, RuntimeError):
+        # no minimum without contacts, numbers without a limit, or no least-squares solution
+        return None

@@ -24,7 +24,6 @@ So the Hessian has neg(A) + neg(G) negative eigenvalues.  The equalities account
 rest is the number of independent directions with falling energy.
 """
 
-from math import cos, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -47,65 +46,68 @@ class Beams(NamedTuple):
 
 
 class Border(NamedTuple):
-    """Coupling of chains and border.
+    """Columns of the border.
 
     Attributes:
         first: number of the chains' unknowns; column i is the unknown ``first`` + i, then come springs.
         size: number of border columns.
         rows: border column of the first multiplier.
-        begin, column: columns that reach a chain, ordered by chain, and the first of each chain (beams + 1,).
-        entry_beam, entry_slot: chain of an entry of B, and number of the column among the chain's columns.
-        entry_local, entry_row, entry_value: unknown of the chain, row (−1: spring) and value.
     """
 
     first: int
     size: int
     rows: int
-    begin: Ints
-    column: Ints
-    entry_beam: Ints
-    entry_slot: Ints
-    entry_local: Ints
-    entry_row: Ints
-    entry_value: Array
 
 
-class Reached(NamedTuple):
-    """Columns of rows and closed places by the chains that they reach.
+class Coupling(NamedTuple):
+    """Entries of B, of rows, springs and closed places, and X by the chains.
 
     Attributes:
-        begin, column: columns that reach a chain, ordered by chain, and the first of each chain (beams + 1,).
+        column, unknown, value: border column, unknown and value of an entry.
+        beam: chain of an entry; −1 for an entry beside the border's unknowns.
+        slot, row: number of the column among the chain's columns, first value of the unknown's row in ``solved``.
+        begin, reached: border columns that reach a chain, ordered by chain, and the first of each chain (beams + 1,).
         offset: first value of each chain in ``solved`` (beams + 1,).
         solved: X of all chains, by unknowns and columns.
-        entry_beam, entry_slot: of the entries of closed places; −1 for an entry beside the border's unknowns.
     """
 
-    begin: Ints
     column: Ints
+    unknown: Ints
+    value: Array
+    beam: Ints
+    slot: Ints
+    row: Ints
+    begin: Ints
+    reached: Ints
     offset: Ints
     solved: Array
-    entry_beam: Ints
-    entry_slot: Ints
+
+
+class Chains(NamedTuple):
+    """Factors of the chains: coupling and compliance of the Hessian's blocks, inverse pivots and ratios of T."""
+
+    coupling: Array
+    compliance: Array
+    pivot: Array
+    ratio: Array
 
 
 @compiled
-def factor_chains(beams: Beams, blocks: Blocks, pivot: Array, ratio: Array) -> int:  # pragma: no cover
-    """Write the inverse pivots of T of all chains, and their ratios; the number of negative pivots."""
-    negative = 0
+def factored_chains(beams: Beams, blocks: Blocks) -> tuple[Chains, int]:  # pragma: no cover
+    """Factors of all chains, and the number of negative pivots of all T."""
+    negative, pivot, ratio = 0, blocks.turn.copy(), np.zeros(blocks.turn.size)
     for beam in range(beams.first.size):
         start = beams.first_link[beam]
+        pivot[start] += beams.springs[beam, 2]
         for j in range(start, start + beams.links[beam]):
-            pivot[j] = blocks.turn[j]
-            if j == start:
-                pivot[j] += beams.springs[beam, 2]
-            else:
+            if j > start:
                 ratio[j] = blocks.next_turn[j - 1] * pivot[j - 1]
                 pivot[j] -= ratio[j] * blocks.next_turn[j - 1]
             if pivot[j] == 0.0:
                 pivot[j] = LEAST_PIVOT
             negative += pivot[j] < 0.0
             pivot[j] = 1.0 / pivot[j]
-    return negative
+    return Chains(blocks.coupling, blocks.compliance, pivot, ratio), negative
 
 
 @compiled
@@ -165,123 +167,81 @@ def _sum_places(coupling: Array, compliance: Array, m: int, place: Array, x: Arr
 
 
 @compiled
-def solve_columns(
-    beams: Beams, beam: int, blocks: Blocks, pivot: Array, ratio: Array, x: Array
-) -> None:  # pragma: no cover
+def solve_columns(beams: Beams, beam: int, chains: Chains, x: Array) -> None:  # pragma: no cover
     """Solve A X = B in place; ``x`` (unknowns, columns) belongs to a chain.
 
     All columns are in the inner loops, which the processor does at once.
     """
     m, start = beams.links[beam], beams.first_link[beam]
     end = start + m
-    place = _sum_forces(blocks.coupling[start:end], m, x)
-    _solve_angles(pivot[start:end], ratio[start:end], m, x)
+    place = _sum_forces(chains.coupling[start:end], m, x)
+    _solve_angles(chains.pivot[start:end], chains.ratio[start:end], m, x)
     for axis in range(2):
         place[axis] /= beams.springs[beam, axis]
         x[axis] = place[axis]
-    _sum_places(blocks.coupling[start:end], blocks.compliance[start:end], m, place, x)
+    _sum_places(chains.coupling[start:end], chains.compliance[start:end], m, place, x)
 
 
 @compiled
-def border_block(z: Array, rows: RowArrays, driven: Flags, border: Border, G: Array) -> None:  # pragma: no cover
-    """Write D: rows beside bodies and carried nodes, second derivatives by rotations, springs."""
-    first, at = border.first, border.rows
-    for r in range(driven.size):
-        if not driven[r]:
-            G[at + r, at + r] = 1.0
-    for c in range(at + driven.size, border.size):
-        G[c, c] = 1.0
-    for t in range(rows.linear_row.size):
-        r, i = rows.linear_row[t], rows.linear_index[t] - first
-        if i >= 0 and driven[r]:
-            G[at + r, i] += rows.linear_factor[t]
-            G[i, at + r] += rows.linear_factor[t]
-    for t in range(rows.turning_row.size):
-        r, i = rows.turning_row[t], rows.turning_index[t] - first
-        a, b = cos(z[i + first]), sin(z[i + first])
-        A, B = rows.turning_cos[t], rows.turning_sin[t]
-        G[i, i] -= z[rows.first + r] * (A * a + B * b)
-        if driven[r]:
-            G[at + r, i] += B * a - A * b
-            G[i, at + r] += B * a - A * b
+def border_entries(
+    z: Array, rows: RowArrays, beams: Beams, driven: Flags, border: Border, columns: Columns
+) -> tuple[Ints, Ints, Array]:  # pragma: no cover
+    """Column, unknown and value of the entries of prescribed rows, of springs, and of closed places."""
+    linear, turning = np.flatnonzero(driven[rows.linear_row]), np.flatnonzero(driven[rows.turning_row])
+    angle, count = rows.turning_index[turning], 3 * beams.first.size
+    slope = rows.turning_sin[turning] * np.cos(z[angle]) - rows.turning_cos[turning] * np.sin(z[angle])
+    held = (beams.first.reshape((-1, 1)) + np.array([0, 1, PER_LINK - 1])).ravel()
+    row, springs = np.concatenate((rows.linear_row[linear], rows.turning_row[turning])), np.sqrt(beams.springs).ravel()
+    of_springs = border.size - count + np.arange(count)
+    return (
+        np.concatenate((border.rows + row, of_springs, border.size + columns.entry_column)),
+        np.concatenate((rows.linear_index[linear], angle, held, columns.entry_index)),
+        np.concatenate((rows.linear_factor[linear], slope, springs, columns.entry_value)),
+    )
 
 
 @compiled
-def reached_chains(beams: Beams, border: Border, columns: Columns) -> Reached:  # pragma: no cover
-    """Chains that the columns of rows and closed places reach, X zero."""
-    count, entries = beams.first.size, columns.entry_index.size
-    entry_beam, entry_slot = np.searchsorted(beams.first, columns.entry_index, "right") - 1, np.full(entries, -1)
-    slot, reach = np.full((count, columns.diagonal.size), -1), 0
-    for t in range(entries):
-        beam, c = entry_beam[t], columns.entry_column[t]
-        if columns.entry_index[t] < border.first:
-            reach += slot[beam, c] < 0
-            slot[beam, c] = 0
+def coupled_chains(
+    beams: Beams, border: Border, size: int, entries: tuple[Ints, Ints, Array]
+) -> Coupling:  # pragma: no cover
+    """Entries by chain, and X with the entries for values; ``size`` is the number of all columns."""
+    count, (column, unknown, value) = beams.first.size, entries
+    beam = np.searchsorted(beams.first, unknown, "right") - 1
+    row, slot, slots = np.empty_like(beam), np.empty_like(beam), np.full((count, size), -1)
+    for t in range(value.size):
+        if unknown[t] < border.first:
+            slots[beam[t], column[t]] = 0
         else:
-            entry_beam[t] = -1
+            beam[t] = -1
+    reached = np.empty(np.count_nonzero(slots == 0), np.int64)
     begin, offset = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
-    column = np.empty(border.column.size + reach, np.int64)
-    for beam in range(count):
-        own = border.column[border.begin[beam] : border.begin[beam + 1]]
-        end = begin[beam] + own.size
-        column[begin[beam] : end] = own
-        for c in range(columns.diagonal.size):
-            if slot[beam, c] == 0:
-                slot[beam, c], column[end] = end - begin[beam], border.size + c
-                end += 1
-        begin[beam + 1] = end
-        offset[beam + 1] = offset[beam] + (end - begin[beam]) * (2 + PER_LINK * beams.links[beam])
-    for t in range(entries):
-        if entry_beam[t] >= 0:
-            entry_slot[t] = slot[entry_beam[t], columns.entry_column[t]]
-    return Reached(begin, column, offset, np.zeros(offset[count]), entry_beam, entry_slot)
+    for k in range(count):
+        own = np.flatnonzero(slots[k] == 0)
+        slots[k][own] = np.arange(own.size)
+        begin[k + 1], offset[k + 1] = begin[k] + own.size, offset[k] + own.size * (2 + PER_LINK * beams.links[k])
+        reached[begin[k] : begin[k + 1]] = own
+    solved = np.zeros(offset[count])
+    for t in range(value.size):
+        k = beam[t]
+        if k >= 0:
+            slot[t] = slots[k, column[t]]
+            row[t] = offset[k] + (unknown[t] - beams.first[k]) * (begin[k + 1] - begin[k])
+            solved[row[t] + slot[t]] += value[t]
+    return Coupling(column, unknown, value, beam, slot, row, begin, reached, offset, solved)
 
 
 @compiled
-def _subtract_product(
-    reached: Reached, beam: int, slot: int, local: int, value: float, G: Array
-) -> None:  # pragma: no cover
-    """Subtract an entry of B times a row of X from G."""
-    begin = reached.begin[beam]
-    at, row = reached.offset[beam] + local * (reached.begin[beam + 1] - begin), G[reached.column[begin + slot]]
-    for other in range(slot + 1):
-        row[reached.column[begin + other]] -= value * reached.solved[at + other]
-
-
-@compiled
-def eliminate(
-    beams: Beams, blocks: Blocks, pivot: Array, ratio: Array, driven: Flags, border: Border, columns: Columns, G: Array
-) -> tuple[int, Reached]:  # pragma: no cover
-    """Add the columns' block to G and subtract B X; the number of negative pivots of all T, and the columns' X."""
-    negative = factor_chains(beams, blocks, pivot, ratio)
-    reached = reached_chains(beams, border, columns)
-    begin, offset, solved = reached.begin, reached.offset, reached.solved
-    for c in range(columns.diagonal.size):
-        at = border.size + c
-        G[at, at] += columns.diagonal[c]
-        G[at, at - 1] += columns.beside[c]
-    for t in range(border.entry_beam.size):
-        beam, r = border.entry_beam[t], border.entry_row[t]
-        if r < 0 or driven[r]:
-            at = offset[beam] + border.entry_local[t] * (begin[beam + 1] - begin[beam]) + border.entry_slot[t]
-            solved[at] += border.entry_value[t]
-    for t in range(columns.entry_index.size):
-        beam, i = reached.entry_beam[t], columns.entry_index[t]
-        if beam >= 0:
-            at = offset[beam] + (i - beams.first[beam]) * (begin[beam + 1] - begin[beam]) + reached.entry_slot[t]
-            solved[at] += columns.entry_value[t]
-        else:
-            G[border.size + columns.entry_column[t], i - border.first] += columns.entry_value[t]
+def eliminate(beams: Beams, chains: Chains, border: Border, coupling: Coupling, G: Array) -> None:  # pragma: no cover
+    """Solve for X, add the border's own entries to G and subtract B X."""
+    column, begin, offset, solved = coupling.column, coupling.begin, coupling.offset, coupling.solved
     for beam in range(beams.first.size):
         x = solved[offset[beam] : offset[beam + 1]].reshape((-1, begin[beam + 1] - begin[beam]))
-        solve_columns(beams, beam, blocks, pivot, ratio, x)
-    for t in range(border.entry_beam.size):
-        if border.entry_row[t] < 0 or driven[border.entry_row[t]]:
-            of_entry = border.entry_beam[t], border.entry_slot[t], border.entry_local[t]
-            _subtract_product(reached, of_entry[0], of_entry[1], of_entry[2], border.entry_value[t], G)
-    for t in range(columns.entry_index.size):
-        beam = reached.entry_beam[t]
-        if beam >= 0:
-            local = columns.entry_index[t] - beams.first[beam]
-            _subtract_product(reached, beam, reached.entry_slot[t], local, columns.entry_value[t], G)
-    return negative, reached
+        solve_columns(beams, beam, chains, x)
+    for t in range(column.size):
+        beam, of_column = coupling.beam[t], G[column[t]]
+        if beam < 0:
+            of_column[coupling.unknown[t] - border.first] += coupling.value[t]
+        else:
+            for other in range(coupling.slot[t] + 1):
+                product = coupling.value[t] * solved[coupling.row[t] + other]
+                of_column[coupling.reached[begin[beam] + other]] -= product

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg.lapack import dsytrf, dsytrs
 
-from cprbm.chain import empty_blocks
 from cprbm.equilibrium.columns import contact_terms
-from cprbm.equilibrium.linear import Bordered, Work, linearise, reduced_load, restored
+from cprbm.equilibrium.linear import Bordered, linearise, reduced_load, restored
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -37,7 +36,6 @@ class Factors:
 
     Attributes:
         system, driven: mechanism, and rows with a prescribed value.
-        work: factors of the chains.
         bordered: border with the columns of the closed places.
         factored, order: factors of the border.
         lost: number of independent directions with falling energy while the closed places stay closed.
@@ -45,30 +43,22 @@ class Factors:
 
     system: System
     driven: Flags
-    work: Work
     bordered: Bordered
     factored: Array
     order: Ints
     lost: int
 
-    def solve(self, load: Array) -> Array:
-        """Solution (size,) of the Hessian's system; closed places stay closed, prescribed multipliers unchanged."""
-        return self.solve_both(load, np.zeros(0))[0]
-
     def solve_both(self, load: Array, values: Array) -> tuple[Array, Array]:
-        """Solution (size,), and changes of the contact forces (forces,) for loads of their rows (at most forces,)."""
+        """Solution (size,) of the Hessian's system, and changes of the contact forces (forces,).
+
+        Prescribed multipliers stay unchanged, and closed places closed, but for ``values`` (at most forces,).
+        """
         m, bordered, solution = self.system.numbers, self.bordered, np.array(load)
-        reduced = reduced_load(m, self.work, self.driven, bordered, values, solution)
+        both = np.pad(values, (0, len(bordered.columns.diagonal) - len(values)))
+        reduced = reduced_load(m.beams, m.border, bordered.chains, bordered.coupling, self.driven, both, solution)
         within = solved_border(self.factored, self.order, reduced)
-        restored(m.beams, m.border, bordered.reached, within, solution)
+        restored(m.beams, m.border, bordered.coupling, within, solution)
         return solution, within[m.border.size : m.border.size + len(bordered.columns.values)]
-
-
-def new_work(system: System) -> Work:
-    """Arrays for the chains' factors, to write into."""
-    count = len(system.metric)
-    blocks = empty_blocks(count, count - len(system.beams.first))
-    return Work(blocks, np.zeros(count), np.zeros(count))
 
 
 def pulls(system: System, springs: Springs | None) -> tuple[Array, Array]:
@@ -85,10 +75,10 @@ def factorise(system: System, state: State, springs: Springs | None = None) -> t
     Raises:
         SingularError: no number is left to divide by.
     """
-    m, work, pulled = system.numbers, new_work(system), pulls(system, springs)
+    m, pulled = system.numbers, pulls(system, springs)
     columns, gradient = contact_terms(system.geometry, state.z, state.contacts.places, state.contacts.closed)
-    bordered = linearise(state.z, m, state.driven, state.target, *pulled, work, columns, gradient)
-    return factors_of(system, state.driven, work, bordered), gradient
+    bordered = linearise(state.z, m, state.driven, state.target, *pulled, columns, gradient)
+    return factors_of(system, state.driven, bordered), gradient
 
 
 def factored_border(border: Array) -> tuple[Array, Ints]:
@@ -108,7 +98,7 @@ def solved_border(factored: Array, order: Ints, load: Array) -> Array:
     return np.asarray(dsytrs(factored, order, load)[0])
 
 
-def factors_of(system: System, driven: Flags, work: Work, bordered: Bordered) -> Factors:
+def factors_of(system: System, driven: Flags, bordered: Bordered) -> Factors:
     """Factors from a border.
 
     Raises:
@@ -120,4 +110,4 @@ def factors_of(system: System, driven: Flags, work: Work, bordered: Bordered) ->
         raise SingularError("the border has a pivot without a limit")
     of_border = int(np.count_nonzero(~blocks & (pivots < 0.0))) + int(np.count_nonzero(blocks)) // 2
     equalities = int(np.count_nonzero(driven)) + len(columns.values) + columns.negative
-    return Factors(system, driven, work, bordered, factored, order, bordered.negative + of_border - equalities)
+    return Factors(system, driven, bordered, factored, order, bordered.negative + of_border - equalities)

@@ -5,7 +5,7 @@ A Newton step solves the border by LU factors, :mod:`cprbm.equilibrium.iteration
 has symmetric factors of the border with the inertia, :mod:`cprbm.equilibrium.factors`.
 """
 
-from math import isfinite
+from math import cos, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +22,17 @@ from cprbm.chain import (
     row_values,
 )
 from cprbm.contact import Columns
-from cprbm.equilibrium.elimination import Beams, Border, Reached, border_block, eliminate, solve_columns
+from cprbm.equilibrium.elimination import (
+    Beams,
+    Border,
+    Chains,
+    Coupling,
+    border_entries,
+    coupled_chains,
+    eliminate,
+    factored_chains,
+    solve_columns,
+)
 from cprbm_scene.answer import Array, Flags, Ints
 
 LARGEST_TURN = 0.5
@@ -42,39 +52,33 @@ class Numbers(NamedTuple):
     motions: Ints
 
 
-class Work(NamedTuple):
-    """Factors of the chains: blocks, inverse pivots and ratios of T."""
-
-    blocks: Blocks
-    pivot: Array
-    ratio: Array
-
-
 class Bordered(NamedTuple):
     """Border after the elimination of the chains.
 
     Attributes:
         border: G, lower triangle.
         negative: number of negative pivots of all T.
-        columns, reached: of the closed places, and X.
+        columns: of the closed places.
+        chains, coupling: factors of the chains, and their coupling with the border.
     """
 
     border: Array
     negative: int
     columns: Columns
-    reached: Reached
+    chains: Chains
+    coupling: Coupling
 
 
 @compiled
 def add_gradient(
-    z: Array, m: Numbers, driven: Flags, target: Array, stiffness: Array, anchor: Array, blocks: Blocks, gradient: Array
-) -> None:  # pragma: no cover
-    """Add the gradient of the Lagrangian without contacts to ``gradient``; write the blocks of the Hessian.
+    z: Array, m: Numbers, driven: Flags, target: Array, stiffness: Array, anchor: Array, gradient: Array
+) -> Blocks:  # pragma: no cover
+    """Blocks of the Hessian; adds the gradient of the Lagrangian without contacts to ``gradient``.
 
     Springs of the ``stiffness`` (links,) pull the links' angles to the ``anchor`` (links,).
     """
     first = m.rows.first
-    evaluate_chains(z, m.links, m.joints, blocks, gradient)
+    blocks = evaluate_chains(z, m.links, m.joints, gradient)
     add_row_gradient(z, m.rows, z[first:], gradient)
     for j in range(m.angles.size):
         blocks.turn[j] += stiffness[j]
@@ -82,47 +86,38 @@ def add_gradient(
     values = row_values(z, m.rows)
     for r in range(driven.size):
         gradient[first + r] = values[r] - target[r] if driven[r] else 0.0
+    return blocks
 
 
 @compiled
 def reduced_load(
-    m: Numbers, work: Work, driven: Flags, bordered: Bordered, values: Array, load: Array
+    beams: Beams, border: Border, chains: Chains, coupling: Coupling, driven: Flags, values: Array, load: Array
 ) -> Array:  # pragma: no cover
-    """Load of the border; solves the chains in place. ``values`` (at most forces,) are the load of the forces."""
-    beams, border, columns, reached = m.beams, m.border, bordered.columns, bordered.reached
-    reduced = np.zeros(len(bordered.border))
-    for i in range(border.first, load.size):
-        reduced[i - border.first] = load[i]
-    for r in range(driven.size):
-        if not driven[r]:
-            reduced[border.rows + r] = 0.0
-    reduced[border.size : border.size + values.size] = values
+    """Load of the border; solves the chains in place. ``values`` (columns,) are the load of the closed places."""
+    reduced = np.concatenate((load[border.first :], np.zeros(border.size - load.size + border.first), values))
+    reduced[border.rows : border.rows + driven.size] *= driven
     for beam in range(beams.first.size):
         first, size = beams.first[beam], 2 + PER_LINK * beams.links[beam]
-        solve_columns(beams, beam, work.blocks, work.pivot, work.ratio, load[first : first + size].reshape((-1, 1)))
-    for t in range(border.entry_beam.size):
-        beam, r = border.entry_beam[t], border.entry_row[t]
-        if r < 0 or driven[r]:
-            value = border.entry_value[t] * load[beams.first[beam] + border.entry_local[t]]
-            reduced[border.column[border.begin[beam] + border.entry_slot[t]]] -= value
-    for t in range(columns.entry_index.size):
-        if reached.entry_beam[t] >= 0:
-            reduced[border.size + columns.entry_column[t]] -= columns.entry_value[t] * load[columns.entry_index[t]]
+        solve_columns(beams, beam, chains, load[first : first + size].reshape((-1, 1)))
+    for t in range(coupling.value.size):
+        if coupling.beam[t] >= 0:
+            reduced[coupling.column[t]] -= coupling.value[t] * load[coupling.unknown[t]]
     return reduced
 
 
 @compiled
-def restored(beams: Beams, border: Border, reached: Reached, solution: Array, load: Array) -> None:  # pragma: no cover
+def restored(
+    beams: Beams, border: Border, coupling: Coupling, solution: Array, load: Array
+) -> None:  # pragma: no cover
     """Turn the chains' solution ``load`` into the whole solution, in place; ``solution`` belongs to the border."""
     for beam in range(beams.first.size):
-        column = reached.column[reached.begin[beam] : reached.begin[beam + 1]]
-        y, at, first = solution[column], reached.offset[beam], beams.first[beam]
+        y = solution[coupling.reached[coupling.begin[beam] : coupling.begin[beam + 1]]]
+        at, first = coupling.offset[beam], beams.first[beam]
         for i in range(first, first + 2 + PER_LINK * beams.links[beam]):
             for q in range(y.size):
-                load[i] -= reached.solved[at + q] * y[q]
+                load[i] -= coupling.solved[at + q] * y[q]
             at += y.size
-    for i in range(border.first, load.size):
-        load[i] = solution[i - border.first]
+    load[border.first :] = solution[: load.size - border.first]
 
 
 @compiled
@@ -133,17 +128,23 @@ def linearise(
     target: Array,
     stiffness: Array,
     anchor: Array,
-    work: Work,
     columns: Columns,
     gradient: Array,
 ) -> Bordered:  # pragma: no cover
     """Border at a state with the columns of closed places; adds the gradient without contacts to ``gradient``."""
-    add_gradient(z, m, driven, target, stiffness, anchor, work.blocks, gradient)
-    size = m.border.size + columns.diagonal.size
-    G = np.zeros((size, size))
-    border_block(z, m.rows, driven, m.border, G)
-    negative, reached = eliminate(m.beams, work.blocks, work.pivot, work.ratio, driven, m.border, columns, G)
-    return Bordered(G, negative, columns, reached)
+    blocks = add_gradient(z, m, driven, target, stiffness, anchor, gradient)
+    border, springs = m.border, np.ones(m.beams.springs.size)
+    G = np.diag(np.concatenate((np.zeros(border.rows), np.where(driven, 0.0, 1.0), springs, columns.diagonal)))
+    for t in range(m.rows.turning_row.size):
+        angle, mu = m.rows.turning_index[t], z[m.rows.first + m.rows.turning_row[t]]
+        bent = m.rows.turning_cos[t] * cos(z[angle]) + m.rows.turning_sin[t] * sin(z[angle])
+        G[angle - border.first, angle - border.first] -= mu * bent
+    for c in np.flatnonzero(columns.beside):
+        G[border.size + c, border.size + c - 1] += columns.beside[c]
+    coupling = coupled_chains(m.beams, border, len(G), border_entries(z, m.rows, m.beams, driven, border, columns))
+    chains, negative = factored_chains(m.beams, blocks)
+    eliminate(m.beams, chains, border, coupling, G)
+    return Bordered(G, negative, columns, chains, coupling)
 
 
 @compiled
@@ -154,24 +155,20 @@ def reduced_system(
     target: Array,
     stiffness: Array,
     anchor: Array,
-    work: Work,
     columns: Columns,
     gradient: Array,
 ) -> tuple[Bordered, Array, Array]:  # pragma: no cover
     """Border, the chains' solution for minus the whole gradient, and the border's load; arguments as of linearise."""
-    bordered = linearise(z, m, driven, target, stiffness, anchor, work, columns, gradient)
-    load = -gradient
-    return bordered, load, reduced_load(m, work, driven, bordered, columns.values, load)
+    bordered = linearise(z, m, driven, target, stiffness, anchor, columns, gradient)
+    load, values = -gradient, np.zeros(columns.diagonal.size)
+    values[: columns.values.size] = columns.values
+    return bordered, load, reduced_load(m.beams, m.border, bordered.chains, bordered.coupling, driven, values, load)
 
 
 @compiled
 def correction(change: Array, motions: Ints, turns: Ints) -> tuple[float, float]:  # pragma: no cover
     """Size of a change (size,) of the unknowns, inf if not finite, and the share that turns no part too far."""
-    size, turn = 0.0, 0.0
-    for i in motions:
-        if not isfinite(change[i]):
-            return np.inf, 0.0
-        size = max(size, abs(change[i]))
-    for i in turns:
-        turn = max(turn, abs(change[i]))
-    return size, min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0
+    moved, turn = np.abs(change[motions]), np.abs(change[turns]).max()
+    if not np.all(np.isfinite(moved)):
+        return np.inf, 0.0
+    return moved.max(), min(1.0, LARGEST_TURN / turn) if turn > 0.0 else 1.0

@@ -7,7 +7,7 @@ import numpy as np
 
 from cprbm.chain import compiled
 from cprbm.contact import CORNER, FINDING, CurveArrays, Places, Sites, movable, picked, settle
-from cprbm.equilibrium.iteration import OVERLAP, beside_points, place_on_beam
+from cprbm.equilibrium.iteration import OVERLAP, arcs_of, beside_points
 from cprbm_scene.answer import Array, Flags, Ints
 
 NEIGHBOURS = 1.6
@@ -35,18 +35,11 @@ LIGHT = 0.02
 @compiled
 def joints_of(curves: CurveArrays, places: Places, columns: Ints, pair: int) -> tuple[Ints, Flags]:  # pragma: no cover
     """Joints of a pair's first curve in order (k,), and whether each joint is a neighbour of the next (k,)."""
-    joints, count = np.empty(places.pair.size, np.int64), 0
-    for k in range(places.pair.size):
-        own = places.pair[k] == pair and places.curve[k] == columns[pair, 0]
-        rolled_end = places.curve[k] == places.other[k] and places.xi[k] == 1.0
-        if own and not places.moves[k] and places.shares[k] == 0 and not rolled_end:
-            joints[count] = k
-            count += 1
-    beside = np.zeros(count, np.bool_)
-    for i in range(count - 1):
-        apart = place_on_beam(curves, places, joints[i + 1])[1] - place_on_beam(curves, places, joints[i])[1]
-        beside[i] = apart < NEIGHBOURS * curves.span[places.piece[joints[i]]]
-    return joints[:count], beside
+    own = (places.pair == pair) & (places.curve == columns[pair, 0]) & ~places.moves & (places.shares == 0)
+    joints = np.flatnonzero(own & ~((places.curve == places.other) & (places.xi == 1.0)))
+    arcs, beside = arcs_of(curves, places)[joints], np.zeros(joints.size, np.bool_)
+    beside[:-1] = arcs[1:] - arcs[:-1] < NEIGHBOURS * curves.span[places.piece[joints[:-1]]]
+    return joints, beside
 
 
 @compiled
@@ -55,20 +48,11 @@ def minima_of(
 ) -> Ints:  # pragma: no cover
     """Open joints of a pair with the locally least gap, without a closed neighbour."""
     joints, beside = joints_of(curves, places, columns, pair)
-    found, count = np.empty(joints.size, np.int64), 0
-    for i in range(joints.size):
-        k = joints[i]
-        least = not closed[k] and gaps[k] < WITHIN * curves.span[places.piece[k]]
-        if i > 0:
-            j = joints[i - 1]
-            least = least and not closed[j] and (gaps[k] <= gaps[j] or not beside[i - 1])
-        if i < joints.size - 1:
-            j = joints[i + 1]
-            least = least and not closed[j] and (gaps[k] <= gaps[j] or not beside[i])
-        if least:
-            found[count] = k
-            count += 1
-    return found[:count]
+    gap, free, apart = gaps[joints], ~closed[joints], ~beside[:-1]
+    least = free & (gap < WITHIN * curves.span[places.piece[joints]])
+    least[:-1] &= free[1:] & ((gap[:-1] <= gap[1:]) | apart)
+    least[1:] &= free[:-1] & ((gap[1:] <= gap[:-1]) | apart)
+    return joints[least]
 
 
 @compiled
@@ -83,15 +67,15 @@ def as_point(
     trial, gap, curvature = picked(places, np.array([k])), np.empty(1), np.empty(1)
     trial.moves[0], trial.force[0] = True, force
     settle(z, curves, trial, gap, curvature, counters, FINDING)
-    curve, piece, found = trial.curve[0], trial.piece[0], place_on_beam(curves, trial, 0)[1]
-    apart = abs(found - place_on_beam(curves, places, k)[1])
+    curve, piece, found = trial.curve[0], trial.piece[0], arcs_of(curves, trial)[0]
+    apart = abs(found - arcs_of(curves, places)[k])
     at_corner = trial.at_point[0] and curves.corner[trial.foot[0]] == CORNER
     settle(z, curves, trial, gap, curvature, counters, 1)
     low, high = np.inf, -np.inf
     for near in range(max(piece - 1, curves.first[curve]), min(piece + 1, curves.last[curve]) + 1):
         lean = curves.thickening[near] / curves.span[near]
         low, high = min(low, lean), max(high, lean)
-    moved = abs(place_on_beam(curves, trial, 0)[1] - found)
+    moved = abs(arcs_of(curves, trial)[0] - found)
     restless = high - low > LEANING and moved > RESTING * curves.span[piece]
     if at_corner or restless or apart > NEIGHBOURS * curves.span[piece]:
         return trial, np.inf, 0.0
@@ -106,7 +90,7 @@ def least_between(
     least = np.inf
     for k in minima_of(curves, places, closed, gaps, sites.columns, pair):
         trial, gap, curvature = as_point(z, curves, places, k, 0.0, counters)
-        if curvature > 0.0 and movable(curves, sites.ends, trial)[0]:
+        if curvature > 0.0 and movable(curves, sites, trial)[0]:
             least = min(least, gap)
     return least
 
@@ -114,12 +98,10 @@ def least_between(
 @compiled
 def _is_crowded(curves: CurveArrays, places: Places, closed: Flags, k: int) -> bool:  # pragma: no cover
     """True if another closed place of the pair is too near for an isolated point of contact beside a joint."""
-    arc, reach = place_on_beam(curves, places, k)[1], (ISOLATED - NEIGHBOURS) * curves.span[places.piece[k]]
-    for j in range(closed.size):
-        same = places.pair[j] == places.pair[k] and places.curve[j] == places.curve[k]
-        if closed[j] and same and j != k and abs(place_on_beam(curves, places, j)[1] - arc) < reach:
-            return True
-    return False
+    arcs, others = arcs_of(curves, places), closed & (places.pair == places.pair[k])
+    others &= (places.curve == places.curve[k]) & (np.arange(closed.size) != k)
+    near = np.abs(arcs - arcs[k]) < (ISOLATED - NEIGHBOURS) * curves.span[places.piece[k]]
+    return bool(np.any(others & near))
 
 
 @compiled
@@ -161,19 +143,14 @@ def given_up(
     """
     count = closed.size
     gone, light = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
-    if not np.any(places.moves):
-        return gone, light
-    allowed, near = movable(curves, sites.ends, places), np.zeros(count, np.bool_)
+    allowed, arcs = movable(curves, sites, places), arcs_of(curves, places)
     for k in range(count):
-        if not places.moves[k] or curves.angle[places.piece[k]] < 0:
-            continue
-        arc, span, force = place_on_beam(curves, places, k)[1], curves.span[places.piece[k]], 0.0
-        for j in range(count):
-            apart = abs(place_on_beam(curves, places, j)[1] - arc)
-            near[j] = places.pair[j] == places.pair[k] and places.curve[j] == places.curve[k] and closed[j]
-            near[j] = near[j] and not places.moves[j] and span <= apart < ISOLATED * span
-            force += places.force[j] if near[j] else 0.0
-        gone[k] = force > least * places.force[k] or not (closed[k] and curvatures[k] > 0.0 and allowed[k])
-        if not gone[k]:
-            light |= near
+        if places.moves[k] and curves.angle[places.piece[k]] >= 0:
+            apart, span = np.abs(arcs - arcs[k]), curves.span[places.piece[k]]
+            near = closed & ~places.moves & (places.pair == places.pair[k]) & (places.curve == places.curve[k])
+            near &= (span <= apart) & (apart < ISOLATED * span)
+            heavy = places.force[near].sum() > least * places.force[k]
+            gone[k] = heavy or not (closed[k] and curvatures[k] > 0.0 and allowed[k])
+            if not gone[k]:
+                light |= near
     return gone, light

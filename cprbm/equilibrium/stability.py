@@ -79,13 +79,13 @@ def _touching(solved: Solved) -> tuple[Contacts, Flags]:
     geometry, z, contacts = solved.system.geometry, solved.state.z, solved.state.contacts
     curves, places = geometry.arrays, contacts.places
     for pair in range(0 if geometry.joints_alone else len(geometry.pairs)):
-        for k in minima_of(curves, contacts.places, contacts.closed, solved.gaps, geometry.columns, pair):
+        for k in minima_of(curves, contacts.places, contacts.closed, solved.gaps, geometry.sites.columns, pair):
             trial, gap, curvature = as_point(z, curves, contacts.places, k, 0.0, contacts.counters)
-            if abs(gap) < TOUCHING and curvature > 0.0 and movable(curves, geometry.ends, trial)[0]:
+            if abs(gap) < TOUCHING and curvature > 0.0 and movable(curves, geometry.sites, trial)[0]:
                 places = joined(places, trial)
     closed = np.concatenate([contacts.closed, np.zeros(len(places.pair) - len(contacts.closed), dtype=bool)])
     every = replace(contacts, places=places, closed=closed)
-    allowed = closable(curves, places, closed, geometry.columns)[0]
+    allowed = closable(curves, places, closed, geometry.sites.columns)[0]
     return every, ~closed & allowed & (places.shares == 0) & (np.abs(every.gaps(geometry, z)) < TOUCHING)
 
 

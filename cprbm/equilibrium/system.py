@@ -2,7 +2,7 @@
 
 A state has unknowns z, rows with a prescribed value, and targets of the rows: the value f*, or the
 multiplier μ* of a row with prescribed force.  Repeated rows are left out
-(:mod:`cprbm.equilibrium.rank`).
+(:mod:`cprbm.equilibrium.solving`).
 """
 
 from dataclasses import dataclass
@@ -106,7 +106,8 @@ def system_of(mechanism: Mechanism, geometry: Geometry) -> System:
     nodes = np.concatenate([mechanism.beam_nodes(name) for name in mechanism.chains])
     angles = links.first + PER_LINK - 1
     rotations = [index + 2 for index in mechanism.bodies.values()]
-    border = _border(mechanism, rows, beams)
+    first = int(beams.first[-1] + 2 + PER_LINK * beams.links[-1])
+    border = Border(first, rows.first - first + len(rows.constant) + beams.springs.size, rows.first - first)
     return System(
         mechanism=mechanism,
         links=links,
@@ -153,38 +154,7 @@ def rest_state(system: System) -> State:
 def _beams(m: Mechanism) -> Beams:
     """Chains with springs of the size of their own bending stiffness."""
     counts = np.array([chain.links for chain in m.chains.values()], dtype=np.int64)
-    springs = []
-    for chain in m.chains.values():
-        turning = float(np.median(chain.stiffness))
-        pulling = turning / chain.links / chain.length**2
-        springs.append((pulling, pulling, turning))
+    turning = np.array([np.median(chain.stiffness) for chain in m.chains.values()])
+    pulling = turning / counts / np.array([chain.length for chain in m.chains.values()]) ** 2
     first = np.array(list(m.starts.values()), dtype=np.int64)
-    return Beams(first, counts, np.cumsum(counts) - counts, np.array(springs))
-
-
-def _border(m: Mechanism, rows: RowArrays, beams: Beams) -> Border:
-    """Entries of the rows and the springs at the chains, and their pairs of a border column and a chain."""
-    first = int(beams.first[-1] + 2 + PER_LINK * beams.links[-1])
-    column = rows.first - first
-    size = column + len(rows.constant) + 3 * len(beams.first)
-    inner = rows.linear_index < first
-    springs = size - 3 * len(beams.first) + np.arange(3 * len(beams.first))
-    index = np.concatenate([rows.linear_index[inner], (beams.first[:, None] + [0, 1, PER_LINK - 1]).ravel()])
-    columns = np.concatenate([column + rows.linear_row[inner], springs])
-    row = np.concatenate([rows.linear_row[inner], np.full(len(springs), -1)])
-    value = np.concatenate([rows.linear_factor[inner], np.sqrt(beams.springs).ravel()])
-    beam = np.searchsorted(beams.first, index, side="right") - 1
-    pairs, pair = np.unique(np.column_stack([beam, columns]), axis=0, return_inverse=True)
-    begin = np.searchsorted(pairs[:, 0], np.arange(len(beams.first) + 1)).astype(np.int64)
-    return Border(
-        first=first,
-        size=size,
-        rows=column,
-        begin=begin,
-        column=pairs[:, 1].astype(np.int64),
-        entry_beam=beam.astype(np.int64),
-        entry_slot=(pair.ravel() - begin[beam]).astype(np.int64),
-        entry_local=(index - beams.first[beam]).astype(np.int64),
-        entry_row=row.astype(np.int64),
-        entry_value=value,
-    )
+    return Beams(first, counts, np.cumsum(counts) - counts, np.column_stack([pulling, pulling, turning]))

@@ -19,7 +19,7 @@ import numpy as np
 from cprbm.chain import Mechanism
 from cprbm.contact import Columns, Geometry, Places, places_at
 from cprbm.equilibrium import contact_columns
-from cprbm.paper.fit import Boundary, fitted, fitted_columns, write_basis, write_fitted_gaps
+from cprbm.paper.fit import Boundary, basis_of, fitted, fitted_columns, fitted_gaps
 from cprbm_scene import BeamContact, LineContact, Mistake, Scene, SceneError, SelfContact
 from cprbm_scene.answer import Array, Flags, Ints
 from cprbm_scene.clearance import overlap_at_rest
@@ -132,9 +132,7 @@ class FittedLaw:
         for pair, boundary in self.boundaries.items():
             mine = places.pair == pair
             if mine.any():
-                found = np.empty(len(boundary.joints))
-                write_fitted_gaps(z, boundary, found)
-                gaps[mine], places.at_point[mine] = found, False
+                gaps[mine], places.at_point[mine] = fitted_gaps(z, boundary), False
 
     def columns(self, z: Array, places: Places, closed: Flags, gradient: Array) -> Columns:
         """Columns of all places marked ``closed``; adds the gradient of all −F λ to ``gradient``."""
@@ -149,10 +147,8 @@ class FittedLaw:
         """Force (2,) on a constrained joint, normal to the boundary."""
         boundary = self.boundaries[int(places.pair[k])]
         j = int(np.count_nonzero(places.pair[:k] == places.pair[k]))
-        fit, basis = fitted(z, boundary), np.empty((3, boundary.degree + 1))
-        write_basis(z[boundary.joints[j] + boundary.along], fit.middle, fit.width, basis)
-        force = np.ones(2)
-        force[boundary.along] = -basis[1] @ fit.q
+        fit, force, a = fitted(z, boundary), np.ones(2), z[[boundary.joints[j] + boundary.along]]
+        force[boundary.along] = -(basis_of(a, fit.middle, fit.width, boundary.degree)[1] @ fit.q).item()
         return np.asarray(boundary.sense * places.force[k] * force)
 
     def invalid(self, z: Array, places: Places, closed: Flags) -> str:
@@ -203,7 +199,8 @@ def paper_geometry(m: Mechanism, every: Geometry, degree: int) -> Geometry:
     longest = max(float(np.max(np.diff(chain.borders))) for chain in m.chains.values())
     law = FittedLaw(boundaries, every, BEYOND * longest, m.units.length) if boundaries else None
     possible = places_at(every.arrays, np.array(rows + fitted_rows, dtype=np.int64))
-    return replace(every, pairs=pairs, possible=possible, law=law, joints_alone=True)
+    sites = every.sites._replace(possible=possible, sharing=np.zeros_like(every.sites.sharing))
+    return replace(every, pairs=pairs, sites=sites, law=law, joints_alone=True)
 
 
 def refuse_contacts(scene: Scene) -> None:

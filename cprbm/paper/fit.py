@@ -34,13 +34,13 @@ The offset points turn, dA_i = dx_i + A_τ dτ_i, and with them goes Σ t_i dτ_
 beside the diagonal; a point's block has its two eigenvectors (:mod:`cprbm.equilibrium.columns`).
 """
 
-from math import atan2, cos, hypot, sin
 from typing import NamedTuple
 
 import numpy as np
 
 from cprbm.chain import compiled
 from cprbm.contact import Columns
+from cprbm.equilibrium import squares_of
 from cprbm_scene.answer import Array, Flags, Ints
 
 REAL = 1e-14
@@ -71,7 +71,7 @@ class Fit(NamedTuple):
     """The polynomial at a state.
 
     ``points`` (2, n) A and B, ``offsets`` (2, n) n_i, ``turns`` (2, n) derivatives of A and B by τ; ``V``
-    (n, 3, degree + 1) V, V′, V″; ``inverse`` G; q; ``middle`` and half ``width`` of the range.
+    (3, n, degree + 1) V, V′, V″; ``inverse`` G; q; ``middle`` and half ``width`` of the range.
     """
 
     points: Array
@@ -85,56 +85,45 @@ class Fit(NamedTuple):
 
 
 @compiled
-def write_basis(x: float, middle: float, width: float, values: Array) -> None:  # pragma: no cover
-    """Write the Chebyshev polynomials and two derivatives (3, degree + 1)."""
-    t = (x - middle) / width
-    values[0, 0], values[1, 0], values[2, 0] = 1.0, 0.0, 0.0
-    values[0, 1], values[1, 1], values[2, 1] = t, 1.0 / width, 0.0
-    for r in range(2, values.shape[1]):
-        values[0, r] = 2.0 * t * values[0, r - 1] - values[0, r - 2]
-        values[1, r] = 2.0 * (values[0, r - 1] / width + t * values[1, r - 1]) - values[1, r - 2]
-        values[2, r] = 2.0 * (2.0 * values[1, r - 1] / width + t * values[2, r - 1]) - values[2, r - 2]
+def basis_of(x: Array, middle: float, width: float, degree: int) -> Array:  # pragma: no cover
+    """Chebyshev polynomials and two derivatives (3, k, degree + 1) at some places (k,)."""
+    t, V = (x - middle) / width, np.zeros((3, x.size, degree + 1))
+    V[0, :, 0], V[0, :, 1], V[1, :, 1] = 1.0, t, 1.0 / width
+    for r in range(2, degree + 1):
+        V[0, :, r] = 2.0 * t * V[0, :, r - 1] - V[0, :, r - 2]
+        V[1, :, r] = 2.0 * (V[0, :, r - 1] / width + t * V[1, :, r - 1]) - V[1, :, r - 2]
+        V[2, :, r] = 2.0 * (2.0 * V[1, :, r - 1] / width + t * V[2, :, r - 1]) - V[2, :, r - 2]
+    return V
 
 
 @compiled
 def fitted(z: Array, b: Boundary) -> Fit:  # pragma: no cover
     """The polynomial through the offset points."""
-    n, size, x, y = b.points.size, b.degree + 1, b.along, 1 - b.along
-    points, offsets, turns, V = np.empty((2, n)), np.empty((2, n)), np.empty((2, n)), np.empty((n, 3, size))
-    for i in range(n):
-        tau = 0.5 * (z[b.angles[i]] + z[b.angles[i + 1]])
-        nx, ny = -b.offset * sin(tau), b.offset * cos(tau)
-        points[x, i], points[y, i] = z[b.points[i]] + nx, z[b.points[i] + 1] + ny
-        offsets[x, i], offsets[y, i] = nx, ny
-        turns[x, i], turns[y, i] = -ny, nx
+    n, x, y, tau = b.points.size, b.along, 1 - b.along, 0.5 * (z[b.angles[:-1]] + z[b.angles[1:]])
+    points, offsets, turns = np.empty((2, n)), np.empty((2, n)), np.empty((2, n))
+    offsets[x], offsets[y] = -b.offset * np.sin(tau), b.offset * np.cos(tau)
+    points[x], points[y] = z[b.points] + offsets[x], z[b.points + 1] + offsets[y]
+    turns[x], turns[y] = -offsets[y], offsets[x]
     low, high = points[0].min(), points[0].max()
     middle, width = 0.5 * (low + high), 0.5 * (high - low)
-    for i in range(n):
-        write_basis(points[0, i], middle, width, V[i])
-    values = np.ascontiguousarray(V[:, 0])
-    inverse = np.ascontiguousarray(np.linalg.inv(values.T @ values))
-    return Fit(points, offsets, turns, V, inverse, inverse @ (values.T @ points[1]), middle, width)
+    V = basis_of(points[0], middle, width, b.degree)
+    inverse = np.ascontiguousarray(np.linalg.inv(V[0].T @ V[0]))
+    return Fit(points, offsets, turns, V, inverse, inverse @ (V[0].T @ points[1]), middle, width)
 
 
 @compiled
-def write_fitted_gaps(z: Array, b: Boundary, gaps: Array) -> None:  # pragma: no cover
-    """Write the gaps (m,) of the constrained joints."""
-    fit, basis = fitted(z, b), np.empty((3, b.degree + 1))
-    for j in range(b.joints.size):
-        a, o = z[b.joints[j] + b.along], z[b.joints[j] + 1 - b.along]
-        write_basis(a, fit.middle, fit.width, basis)
-        gaps[j] = b.sense * (o - basis[0] @ fit.q)
+def fitted_gaps(z: Array, b: Boundary) -> Array:  # pragma: no cover
+    """Gaps (m,) of the constrained joints."""
+    fit, a, o = fitted(z, b), z[b.joints + b.along], z[b.joints + 1 - b.along]
+    return np.asarray(b.sense * (o - basis_of(a, fit.middle, fit.width, b.degree)[0] @ fit.q))
 
 
 @compiled
 def derivatives_of_fit(b: Boundary, fit: Fit) -> Array:  # pragma: no cover
     """K (degree + 1, 2 n)."""
-    n = b.points.size
-    load = np.zeros((b.degree + 1, 2 * n))
-    for i in range(n):
-        P = fit.V[i] @ fit.q
-        load[:, i] = -fit.V[i, 1] * (P[0] - fit.points[1, i]) - fit.V[i, 0] * P[1]
-        load[:, n + i] = fit.V[i, 0]
+    n, load = b.points.size, np.empty((b.degree + 1, 2 * b.points.size))
+    load[:, :n] = -fit.V[1].T * (fit.V[0] @ fit.q - fit.points[1]) - fit.V[0].T * (fit.V[1] @ fit.q)
+    load[:, n:] = fit.V[0].T
     return fit.inverse @ load
 
 
@@ -163,30 +152,26 @@ def _new_square(out: Local, square: float) -> Array:  # pragma: no cover
 
 @compiled
 def _add_curvature(b: Boundary, fit: Fit, out: Local, K: Array, w: Array, basis: Array) -> None:  # pragma: no cover
-    """Append the columns of the second derivative; ``basis`` (k, 3, degree + 1) are the polynomials at the a_j."""
-    n, k, mu, slope = b.points.size, w.size, np.zeros(b.degree + 1), np.zeros(K.shape[1])
-    for c in range(k):
-        slope += w[c] * (basis[c, 0] @ K)
-        mu -= w[c] * (fit.inverse @ basis[c, 0])
-        square = w[c] * (basis[c, 2] @ fit.q)
-        if square != 0.0:
-            _new_square(out, square)[c] = 1.0
-    U = np.empty((n, 3))
+    """Append the columns of the second derivative; ``basis`` (3, k, degree + 1) are the polynomials at the a_j."""
+    n, k, V = b.points.size, w.size, fit.V
+    slope, mu, squares = w @ (basis[0] @ K), -(fit.inverse @ (w @ basis[0])), w * (basis[2] @ fit.q)
+    P0, P1, P2 = V[0] @ fit.q, V[1] @ fit.q, V[2] @ fit.q
+    U0, U1, U2 = V[0] @ mu, V[1] @ mu, V[2] @ mu
+    bent = U2 * (P0 - fit.points[1]) + 2.0 * U1 * P1 + U0 * P2
+    turn = -slope[:n] * fit.offsets[0] - slope[n:] * fit.offsets[1]
+    for c in np.flatnonzero(squares):
+        _new_square(out, squares[c])[c] = 1.0
     for i in range(n):
-        P, U[i] = fit.V[i] @ fit.q, fit.V[i] @ mu
-        half, cross = 0.5 * (U[i, 2] * (P[0] - fit.points[1, i]) + U[i, 0] * P[2]) + U[i, 1] * P[1], -U[i, 1]
-        lean, size = 0.5 * atan2(cross, half), hypot(half, cross)
-        for value, A, B in ((half + size, cos(lean), sin(lean)), (half - size, -sin(lean), cos(lean))):
-            if abs(value) > REAL * size:
+        for value, A, B in squares_of(bent[i], -U1[i], 0.0):
+            if abs(value) > REAL * np.hypot(bent[i], U1[i]):
                 vector = _new_square(out, value)
                 vector[2 * k + i], vector[2 * k + n + i] = A, B
-        turn = -slope[i] * fit.offsets[0, i] - slope[n + i] * fit.offsets[1, i]
-        if turn != 0.0:
-            _new_square(out, turn)[2 * k + 2 * n + i] = 1.0
+        if turn[i] != 0.0:
+            _new_square(out, turn[i])[2 * k + 2 * n + i] = 1.0
     for r in range(b.degree + 1):
         at = out.numbers[0]
-        out.vectors[at, :k] = w * basis[:, 1, r]
-        out.vectors[at, 2 * k : 2 * k + n] = U[:, 1] * fit.V[:, 0, r] + U[:, 0] * fit.V[:, 1, r]
+        out.vectors[at, :k] = w * basis[1, :, r]
+        out.vectors[at, 2 * k : 2 * k + n] = U1 * V[0, :, r] + U0 * V[1, :, r]
         out.vectors[at + 1, 2 * k : 2 * k + 2 * n] = K[r]
         out.beside[at + 1] = -1.0
         out.numbers[:] += np.array([2, 1])
@@ -195,39 +180,32 @@ def _add_curvature(b: Boundary, fit: Fit, out: Local, K: Array, w: Array, basis:
 @compiled
 def _entries(b: Boundary, fit: Fit, joints: Ints, vectors: Array) -> tuple[Ints, Ints, Array]:  # pragma: no cover
     """Entries of vectors over the local coordinates: column, unknown, value."""
-    k, n, count, used = joints.size, b.points.size, len(vectors), 0
-    index, local = np.empty(2 * k + 3 * n + 1, np.int64), np.empty(2 * k + 3 * n + 1)
-    index[:k], index[k : 2 * k] = b.joints[joints] + b.along, b.joints[joints] + 1 - b.along
-    index[2 * k : 2 * k + n], index[2 * k + n : 2 * k + 2 * n] = b.points + b.along, b.points + 1 - b.along
-    index[2 * k + 2 * n :] = b.angles
-    most = count * index.size
-    columns, unknowns, values = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most)
-    for c in range(count):
-        local[: 2 * k + 2 * n], local[2 * k + 2 * n :] = vectors[c, : 2 * k + 2 * n], 0.0
-        A, B, tau = vectors[c, 2 * k :].reshape((3, n))
-        turn = 0.5 * (A * fit.turns[0] + B * fit.turns[1] + tau)
-        local[2 * k + 2 * n : -1] += turn
-        local[2 * k + 2 * n + 1 :] += turn
-        for j in np.flatnonzero(local):
-            columns[used], unknowns[used], values[used] = c, index[j], local[j]
-            used += 1
-    return columns[:used], unknowns[:used], values[:used]
+    k, n = joints.size, b.points.size
+    across, along = 1 - b.along, b.along
+    held, points = b.joints[joints], b.points
+    index = np.concatenate((held + along, held + across, points + along, points + across, b.angles))
+    first = 2 * k + 2 * n
+    turn = vectors[:, 2 * k : 2 * k + n] * fit.turns[0] + vectors[:, 2 * k + n : first] * fit.turns[1]
+    turn = 0.5 * (turn + vectors[:, first:])
+    local = np.zeros((len(vectors), index.size))
+    local[:, :first] = vectors[:, :first]
+    local[:, first:-1] += turn
+    local[:, first + 1 :] += turn
+    columns, at = np.nonzero(local)
+    return columns, index[at], local.ravel()[columns * index.size + at]
 
 
 @compiled
 def fitted_columns(z: Array, b: Boundary, force: Array, closed: Flags, gradient: Array) -> Columns:  # pragma: no cover
     """Columns of the constrained joints marked ``closed`` (m,); adds the gradient of −Σ F g to ``gradient``."""
-    n, size, joints, fit = b.points.size, b.degree + 1, np.flatnonzero(closed), fitted(z, b)
+    n, joints, fit = b.points.size, np.flatnonzero(closed), fitted(z, b)
     k, K, w = joints.size, derivatives_of_fit(b, fit), b.sense * force[joints]
-    most = 2 * k + 3 * n + 2 * size
+    most = 2 * k + 3 * n + 2 * (b.degree + 1)
     out = Local(np.zeros((most, 2 * k + 3 * n)), np.zeros(most), np.zeros(most), np.array([k, 0]))
-    values, basis = np.empty(k), np.empty((k, 3, size))
-    for c in range(k):
-        a, o = z[b.joints[joints[c]] + b.along], z[b.joints[joints[c]] + 1 - b.along]
-        write_basis(a, fit.middle, fit.width, basis[c])
-        values[c] = b.sense * (o - basis[c, 0] @ fit.q)
-        out.vectors[c, c], out.vectors[c, k + c] = b.sense * (basis[c, 1] @ fit.q), -b.sense
-        out.vectors[c, 2 * k : 2 * k + 2 * n] = b.sense * (basis[c, 0] @ K)
+    basis = basis_of(z[b.joints[joints] + b.along], fit.middle, fit.width, b.degree)
+    values = b.sense * (z[b.joints[joints] + 1 - b.along] - basis[0] @ fit.q)
+    out.vectors[:k, :k], out.vectors[:k, k : 2 * k] = np.diag(b.sense * (basis[1] @ fit.q)), -b.sense * np.eye(k)
+    out.vectors[:k, 2 * k : 2 * k + 2 * n] = b.sense * (basis[0] @ K)
     if np.any(w != 0.0):
         _add_curvature(b, fit, out, K, w, basis)
     count, negative = out.numbers

@@ -51,12 +51,12 @@ class Inspection:
     def crossed(self, solved: Solved) -> str:
         """Sentence on a contact whose beams have crossed; empty without such a contact."""
         z, counters = solved.state.z, new_counters()
-        arrays, pairs = self.geometry.arrays, self.geometry.columns
-        near = near_pairs(z, arrays, pairs, np.zeros(len(pairs)), counters)
+        arrays, pairs = self.geometry.arrays, self.geometry.sites.columns
+        near = near_pairs(z, arrays, pairs, 0.0, counters)
         places = fixed_places(self.geometry, z, self.sides, near, counters)
         gaps = np.empty(len(places.pair))
         settle(z, arrays, places, gaps, np.empty(len(gaps)), counters, 0)
-        rigid, angles = self.geometry.ends.rigid[places.other], z[solved.system.angles]
+        rigid, angles = self.geometry.sites.rigid[places.other], z[solved.system.angles]
         before = solved.system.joints.before
         sag = SAG * float(solved.system.metric.max() * np.abs(angles[before + 1] - angles[before]).max())
         thickness = arrays.thickness[places.piece] + arrays.thickness[places.foot] * ~rigid
@@ -75,7 +75,7 @@ class Inspection:
         for boundary, name, _ in _pressed_boundaries(solved):
             if boundary.degree + 1 < len(boundary.points):
                 fit = fitted(solved.state.z, boundary)
-                misfit = float(np.abs(fit.V[:, 0] @ fit.q - fit.points[1]).max()) * unit, where
+                misfit = float(np.abs(fit.V[0] @ fit.q - fit.points[1]).max()) * unit, where
                 self.misfits[name] = max(misfit, self.misfits.get(name, misfit))
 
     def sentences(self, solved: Solved) -> list[str]:

@@ -25,8 +25,8 @@ from numpy.typing import ArrayLike
 from cprbm.chain import END, ends_of, stop_angle
 from cprbm.contact import Geometry
 from cprbm.continuation.path import potential
-from cprbm.results.statics import NO_FORCE, Statics, cross, pin_moments, stop_moment
-from cprbm.results.view import View
+from cprbm.results.statics import Statics, cross, pin_moments, stop_moment
+from cprbm.results.view import Pressed, View
 from cprbm_scene import Probe
 from cprbm_scene.answer import Array, ContactState, PointForces, contact_states, frozen_array
 from cprbm_scene.question_records import Quantity
@@ -107,14 +107,14 @@ def _from_ground(view: View, source: str, target: str) -> bool:
 
 def contact_force(view: View, contact: str) -> float:
     """Magnitude of the resultant on the first beam."""
-    return float(np.hypot(*sum((each.forces[0] for each in view.pressed[contact]), NO_FORCE)))
+    return float(np.hypot(*view.pressed[contact].forces[:, 0].sum(axis=0)))
 
 
 def contact_centre(view: View, contact: str) -> list[float]:
     """Arc length of the resultant on the first beam; empty for an open contact."""
     found = view.pressed[contact]
-    weights = [float(np.hypot(*each.forces[0])) for each in found]
-    return [float(np.average([each.arcs[0] for each in found], weights=weights))] if sum(weights) > 0.0 else []
+    weights = np.hypot(*found.forces[:, 0].T)
+    return [float(np.average(found.arcs[:, 0], weights=weights))] if weights.sum() > 0.0 else []
 
 
 def closing_load(view: View, contact: str) -> list[float]:
@@ -132,7 +132,8 @@ def _moment(view: View, of: str) -> float:
             if isinstance(joint, PinnedEnd) and view.scene.body_of(joint.point) == record.body:
                 about = view.end(record.beam, end)[1]
                 held = sum(moment for _, _, moment in pin_moments(view, of))
-                return float(held + sum(cross(each.places[0] - about, each.forces[0]) for each in view.pressed[of]))
+                found = view.pressed[of]
+                return float(held + cross(found.places[:, 0] - about, found.forces[:, 0]).sum())
     return 0.0
 
 
@@ -140,7 +141,7 @@ def touching_places(view: View) -> dict[str, Array]:
     """Positions (k, 2), m, of the closed contacts."""
     units, found = view.mechanism.units, {}
     for name, pressed in view.pressed.items():
-        places = [each.surface for each in pressed]
+        places = [*pressed.surface]
         places += [view.end(beam, end)[1] for beam, end, _ in pin_moments(view, name)]
         if places:
             found[name] = frozen_array(np.array(places) * units.length + units.origin)
@@ -159,28 +160,28 @@ def states_of_contacts(view: View, forces: PointForces, touching: Mapping[str, A
 
 def _is_shared(view: View, contact: str) -> bool:
     """True if a joint beside a weld or an own pin takes a part of the force."""
-    found = view.pressed[contact]
-    return any(each.share for each in found) or (bool(found) and any(True for _ in pin_moments(view, contact)))
+    shares = view.pressed[contact].shares
+    return bool(shares.any()) or (len(shares) > 0 and any(True for _ in pin_moments(view, contact)))
 
 
 def contact_ends(view: View, contact: str) -> list[float]:
     """Arc lengths on the first beam at which the first zone begins and the last zone ends; empty without contact."""
     geometry, found = view.solved.system.geometry, view.pressed[contact]
     pins = [view.end(beam, end)[0] for beam, end, _ in pin_moments(view, contact)]
-    if not found and not pins:
+    sizes = np.hypot(*found.forces[:, 0].T)
+    if not len(sizes) and not pins:
         return []
-    heavy = NEGLIGIBLE * max((float(np.hypot(*each.forces[0])) for each in found), default=0.0)
-    found = [each for each in found if np.hypot(*each.forces[0]) >= heavy]
-    arcs = [each.arcs[0] for each in found] + pins
+    found = Pressed(*(column[sizes >= NEGLIGIBLE * sizes.max(initial=0.0)] for column in found))
+    arcs = [*found.arcs[:, 0].tolist(), *pins]
     low, high = min(arcs), max(arcs)
     pair = next(k for k, each in enumerate(geometry.pairs) if each.name == contact)
-    of_joints = all(each.on_first or each.moves for each in found) and not geometry.pairs[pair].itself
-    if (len(found) < ZONE and not pins) or not of_joints:
+    of_joints = np.all(found.on_first | found.moves) and not geometry.pairs[pair].itself
+    if (len(found.arcs) < ZONE and not pins) or not of_joints:
         return [low, high]
     length = float(geometry.curves[geometry.pairs[pair].first].arcs[-1])
-    clamps = [0.0 if each.share > 0 else length for each in found if each.share]
+    clamps = [0.0 if share > 0 else length for share in found.shares.tolist() if share]
     begin, end = min([low, *clamps]), max([high, *clamps])
-    held = [*pins, *clamps, *(each.arcs[0] for each in found if each.moves)]
+    held = [*pins, *clamps, *found.arcs[found.moves, 0].tolist()]
     return [
         begin if begin in held else _zone_end(view, geometry, pair, low, sense=-1.0),
         end if end in held else _zone_end(view, geometry, pair, high, sense=1.0),

@@ -129,8 +129,9 @@ def _contacts(view: View) -> Iterator[PointForce]:
             yield from _spread_forces(view, name, geometry)
             continue
         targets = (contact.beams[0], getattr(contact, "body", contact.beams[-1]))
-        for each in view.pressed[name]:
-            for target, s, place, force in zip(targets, each.arcs, each.places, each.forces, strict=True):
+        found = view.pressed[name]
+        for arcs, places, forces in zip(found.arcs.tolist(), found.places, found.forces, strict=True):
+            for target, s, place, force in zip(targets, arcs, places, forces, strict=True):
                 yield PointForce(name, target, s if target in view.scene.beams else nan, place, force, 0.0)
         for beam, end, moment in pin_moments(view, name):
             yield from _at_end(view, name, beam, end, NO_FORCE, moment)

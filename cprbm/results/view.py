@@ -17,10 +17,10 @@ from typing import NamedTuple
 import numpy as np
 
 from cprbm.chain import Mechanism, hidden_angles
-from cprbm.contact import STENCIL, gap_frame
+from cprbm.contact import taken, touching_points
 from cprbm.equilibrium import Solved, hidden_forces, shared_multipliers
 from cprbm_scene import Scene
-from cprbm_scene.answer import Array
+from cprbm_scene.answer import Array, Flags, Ints
 
 LINE_POINTS = 2
 """Points of a shape per link."""
@@ -65,19 +65,24 @@ class Samples:
 
 
 class Pressed(NamedTuple):
-    """A closed place, in units: ``arcs`` on both curves of the pair, ``places`` and ``forces`` there.
+    """Closed places of a contact, in units, ascending along the first beam.
 
-    ``surface`` is the position between both neutral lines where the curves touch; ``moves`` marks a point contact;
-    ``share`` is the offset of the place with the same force, beside a weld; ``on_first``: on the pair's first curve.
+    Attributes:
+        arcs: arc lengths on both curves of the pair (k, 2); of a beam with itself the smaller counts as the first.
+        places, forces: positions and forces there (k, 2, 2).
+        surface: positions (k, 2) between both neutral lines where the curves touch.
+        moves: marks of point contacts (k,).
+        shares: offsets of the places with the same force, beside a weld (k,).
+        on_first: whether the place is on the pair's first curve (k,).
     """
 
-    arcs: list[float]
-    places: tuple[Array, ...]
-    forces: tuple[Array, ...]
+    arcs: Array
+    places: Array
+    forces: Array
     surface: Array
-    moves: bool
-    share: int
-    on_first: bool
+    moves: Flags
+    shares: Ints
+    on_first: Flags
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,34 +160,28 @@ class View:
         return hidden_forces(system, self.z, self.z[system.rows.first :])
 
     @cached_property
-    def pressed(self) -> dict[str, list[Pressed]]:
-        """Closed places of all contacts, ascending along the first beam."""
+    def pressed(self) -> dict[str, Pressed]:
+        """Closed places of all contacts."""
         geometry, contacts, z = self.solved.system.geometry, self.solved.state.contacts, self.z
-        arrays, places, law = geometry.arrays, contacts.places, geometry.law
-        weights, found = np.empty((4, 2, STENCIL)), {name: list[Pressed]() for name in self.scene.contacts}
-        for k in np.flatnonzero(contacts.closed).tolist():
-            frame, pair = gap_frame(z, arrays, places, k, weights), geometry.pairs[places.pair[k]]
-            pieces, params = np.array([places.piece[k], places.foot[k]]), np.array([places.xi[k], places.eta[k]])
-            nodes, normal = arrays.stencil[pieces], np.array([frame.nx, frame.ny])
-            along = ((weights[:2, 0] + 1j * weights[:2, 1]) * (z[nodes] + 1j * z[nodes + 1])).sum(axis=1)
-            at = np.column_stack([along.real, along.imag])
-            force = float(places.force[k]) * normal
-            if law is not None and law.measures(places)[k]:
-                force = law.force(z, places, k)
-                normal = force / np.hypot(*force) if force.any() else normal
-            surface = at[0] - normal * (arrays.thickness[pieces[0]] + params[0] * arrays.thickening[pieces[0]])
-            arcs = (arrays.arc[pieces] + params * arrays.span[pieces]).tolist()
-            on_first = bool(places.curve[k] == pair.first)
-            # of a beam with itself the smaller arc length counts as the first
-            backward = arcs[0] > arcs[1] if places.curve[k] == places.other[k] else not on_first
-            one = Pressed(
-                arcs[::-1] if backward else arcs,
-                (at[1], at[0]) if backward else (at[0], at[1]),
-                (-force, force) if backward else (force, -force),
-                surface,
-                bool(places.moves[k]),
-                int(places.shares[k]),
-                on_first,
-            )
-            found[pair.name].append(one)
-        return {name: sorted(pressed, key=lambda each: each.arcs[0]) for name, pressed in found.items()}
+        arrays, law, which = geometry.arrays, geometry.law, np.flatnonzero(contacts.closed)
+        at, normals = touching_points(z, arrays, contacts.places, which)
+        places = taken(contacts.places, which)
+        force = places.force[:, None] * normals
+        if law is not None:
+            for k in np.flatnonzero(law.measures(places) & (places.force != 0.0)).tolist():
+                force[k] = law.force(z, contacts.places, int(which[k]))
+                normals[k] = force[k] / np.hypot(*force[k])
+        half = arrays.thickness[places.piece] + places.xi * arrays.thickening[places.piece]
+        surface, forces = at[:, 0] - normals * half[:, None], np.stack([force, -force], axis=1)
+        pieces, params = np.stack([places.piece, places.foot], axis=1), np.stack([places.xi, places.eta], axis=1)
+        arcs = arrays.arc[pieces] + params * arrays.span[pieces]
+        on_first = np.asarray(places.curve == geometry.sites.columns[places.pair, 0])
+        backward = np.where(places.curve == places.other, arcs[:, 0] > arcs[:, 1], ~on_first)
+        for both in (arcs, at, forces):
+            both[backward] = both[backward, ::-1]
+        every = Pressed(arcs, at, forces, surface, places.moves, places.shares, on_first)
+        names = np.array([pair.name for pair in geometry.pairs], dtype=object)[places.pair]
+        order = np.argsort(arcs[:, 0], kind="stable")
+        return {
+            name: Pressed(*(column[order[names[order] == name]] for column in every)) for name in self.scene.contacts
+        }

@@ -124,7 +124,7 @@ def test_by_how_much_a_polynomial_misses_its_points_is_measured_and_told():
     phi = phi[np.abs(0.025 * np.cos(phi)) <= 0.00625]
     height = 0.027 * np.sin(phi)
     fit = fitted(np.array(m.rest), fitted_boundary(m, "contact", 1)[0])
-    misfit = np.abs(fit.V[:, 0] @ fit.q - fit.points[1]).max() * m.units.length
+    misfit = np.abs(fit.V[0] @ fit.q - fit.points[1]).max() * m.units.length
     assert misfit == pytest.approx(np.max(np.abs(height - height.mean())), rel=1e-9)
     said = [note for note in cprbm.answer(hinge(), settings).notes if "misses the points" in note]
     assert len(said) == 1

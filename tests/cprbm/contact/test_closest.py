@@ -95,12 +95,12 @@ def test_boxes_hold_their_curves_and_pass_far_pairs_over():
     count = len(geometry.pairs)
     points = [at(curve, z, np.linspace(0.0, curve.arcs[-1], 301)) for curve in geometry.curves]
     for distance in (0.0, 0.1, 1.0):
-        near = near_pairs(z, geometry.arrays, geometry.columns, np.full(count, distance), counters)
+        near = near_pairs(z, geometry.arrays, geometry.sites.columns, distance, counters)
         for pair, is_near in zip(geometry.pairs, near, strict=True):
             first, second = (points[k] for k in (pair.first, pair.second))
             apart = np.abs(first[:, None] - second[None, :]).min()
             assert is_near or apart > distance
-    far = near_pairs(z, geometry.arrays, geometry.columns, np.full(count, -10.0), counters)
+    far = near_pairs(z, geometry.arrays, geometry.sites.columns, -10.0, counters)
     assert not far.any()
     assert counters[BOX_TESTS] == 4 * count
     assert counters[SEARCHES] == counters[GAPS] == 0
@@ -120,4 +120,4 @@ def test_a_scene_without_contacts_has_no_curves_and_no_places():
     alone = m.scene.model_copy(update={"contacts": {}})
     m.scene = alone
     geometry = contact_geometry(m)
-    assert len(geometry.arrays.stencil) == len(geometry.possible.pair) == 0
+    assert len(geometry.arrays.stencil) == len(geometry.sites.possible.pair) == 0

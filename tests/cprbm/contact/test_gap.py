@@ -43,9 +43,9 @@ def vectors_over_unknowns(geometry, z, places, k):
 
 def form(row, spread):
     """Hessian of λ over all unknowns."""
-    q, e, m = spread[TANGENT], spread[TURN], spread[SHIFT]
+    q, e, m, f = spread[TANGENT], spread[TURN], spread[SHIFT], row.frame
     mixed = np.outer(q, e) + np.outer(e, q)
-    return row.qq * np.outer(q, q) + row.qe * mixed + row.ee * np.outer(e, e) + row.shift * np.outer(m, m)
+    return f.qq * np.outer(q, q) + f.qe * mixed + f.ee * np.outer(e, e) + row.shift * np.outer(m, m)
 
 
 def touched(geometry, places):
@@ -136,7 +136,7 @@ def test_points_with_lost_compliance_are_variational(sampled, name):
         places = single(start, 0, moves=True, force=FORCE)
         _, curvature = settled(geometry, z, places, FINDING)
         row, spread = vectors_over_unknowns(geometry, z, places, 0)
-        moving = 0.02 < places.xi[0] < 0.98 and curvature[0] > 0.2 and abs(row.slope) < 1e-12
+        moving = 0.02 < places.xi[0] < 0.98 and curvature[0] > 0.2 and abs(row.frame.slope) < 1e-12
         if not moving and (name != "corner" or places.at_point[0]):
             continue
         unknowns = touched(geometry, places)
@@ -214,12 +214,12 @@ def least_point(seed, between):
     z = random_state(m, geometry, rest, seed)
     places = all_places(geometry, z, rest)
     gaps, _ = settled(geometry, z, places)
-    mine = (places.pair == 0) & (places.curve == geometry.columns[0, 0]) & (places.xi < 1.0)
+    mine = (places.pair == 0) & (places.curve == geometry.sites.columns[0, 0]) & (places.xi < 1.0)
     best = np.flatnonzero(mine)[np.argmin(gaps[mine])]
     point = single(places, best, moves=True, force=FORCE)
     gap = settled(geometry, z, point, FINDING)[0][0]
     row, _ = vectors_over_unknowns(geometry, z, point, 0)
-    return (gap, row.value, row.by_force) if abs(row.slope) < 1e-12 and not point.at_point[0] else None
+    return (gap, row.value, row.by_force) if abs(row.frame.slope) < 1e-12 and not point.at_point[0] else None
 
 
 def test_exchanged_beams_have_the_same_least_gap():

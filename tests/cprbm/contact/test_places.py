@@ -41,8 +41,8 @@ def test_places_may_move_but_in_the_end_link_at_a_weld():
     places = all_places(geometry, np.array(m.rest), np.array(m.rest))
     inner = taken(places, np.array([0, 0, 11]))
     inner.piece[:], inner.xi[:] = [0, 1, 12], 0.5
-    assert movable(geometry.arrays, geometry.ends, inner).tolist() == [False, True, True]
-    assert not movable(geometry.arrays, geometry.ends, taken(places, places.xi == 1.0)).any()
+    assert movable(geometry.arrays, geometry.sites, inner).tolist() == [False, True, True]
+    assert not movable(geometry.arrays, geometry.sites, taken(places, places.xi == 1.0)).any()
 
 
 def test_ends_of_the_second_beam_are_places_too():

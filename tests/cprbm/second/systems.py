@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cprbm.chain import add_rows, empty_blocks, mechanism_of
+from cprbm.chain import add_rows, mechanism_of
 from cprbm.contact import contact_geometry
 from cprbm.equilibrium.factors import pulls
 from cprbm.equilibrium.linear import add_gradient
@@ -78,14 +78,8 @@ def disturbed(system, seed, size):
 def gradient(system, state):
     """Gradient of the Lagrangian."""
     found = np.zeros(system.size)
-    add_gradient(state.z, system.numbers, state.driven, state.target, *pulls(system, None), blocks(system), found)
+    add_gradient(state.z, system.numbers, state.driven, state.target, *pulls(system, None), found)
     return found
-
-
-def blocks(system):
-    """Empty blocks of a system."""
-    count = len(system.metric)
-    return empty_blocks(count, count - len(system.beams.first))
 
 
 def dense_hessian(system, state):
@@ -101,4 +95,4 @@ def dense_hessian(system, state):
     return 0.5 * (matrix + matrix.T)
 
 
-__all__ = ["blocks", "built", "dense_hessian", "disturbed", "edited", "gradient", "loop"]
+__all__ = ["built", "dense_hessian", "disturbed", "edited", "gradient", "loop"]
