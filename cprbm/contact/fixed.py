@@ -174,10 +174,13 @@ def matched(curves: CurveArrays, places: Places, others: Places) -> Ints:  # pra
             continue
         for step in range(count):
             j = (at + step) % count
-            of_curve = places.pair[k] == others.pair[j] and places.curve[k] == others.curve[j]
-            alike = places.moves[k] == others.moves[j] and is_fixed(curves, others, j)
-            at_place = places.moves[k] or (places.piece[k] == others.piece[j] and places.xi[k] == others.xi[j])
-            if of_curve and alike and at_place:
+            if (
+                places.pair[k] == others.pair[j]
+                and places.curve[k] == others.curve[j]
+                and places.moves[k] == others.moves[j]
+                and is_fixed(curves, others, j)
+                and (places.moves[k] or (places.piece[k] == others.piece[j] and places.xi[k] == others.xi[j]))
+            ):
                 found[k], at = j, j + 1
                 break
     return found

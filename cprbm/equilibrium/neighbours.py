@@ -143,6 +143,8 @@ def given_up(
     """
     count = closed.size
     gone, light = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
+    if not np.any(places.moves):
+        return gone, light
     allowed, arcs = movable(curves, sites, places), arcs_of(curves, places)
     for k in range(count):
         if places.moves[k] and curves.angle[places.piece[k]] >= 0:
