@@ -54,6 +54,9 @@ KICKS = 5
 SAME = 1e-3
 """Relative difference of two energies' decreases that counts as none: a mirror image differs by the residual."""
 
+ROUND_OFF = 1e-12
+"""Relative difference of two energies that counts as none."""
+
 
 def descend(system: System, saddle: Solved, curvature: float, target: Array, acting: Flags, iterations: int) -> Solved:
     """The minimum under ``target``, by decrease of the energy from a state with a smallest ``curvature`` near zero.
@@ -68,7 +71,7 @@ def descend(system: System, saddle: Solved, curvature: float, target: Array, act
     for _ in range(STEPS):
         step = _step(system, state, strength, acting, iterations)
         moved = _moved(system, state, step.state) if step is not None else np.inf
-        if step is None or moved > LONGEST or potential(system, step.state) > energy + 1e-12 * abs(energy):
+        if step is None or moved > LONGEST or potential(system, step.state) > energy + ROUND_OFF * abs(energy):
             strength *= STIFFER
             if strength > stiffest:
                 break
@@ -80,7 +83,7 @@ def descend(system: System, saddle: Solved, curvature: float, target: Array, act
                 if blocked(found).lost == 0:
                     return found
                 # a saddle above the state, such as the begin of the descent, is not on the way down
-                if kicks < KICKS and potential(system, found.state) <= energy + 1e-12 * abs(energy):
+                if kicks < KICKS and potential(system, found.state) <= energy + ROUND_OFF * abs(energy):
                     kicks += 1
                     state, strength = _kicked(system, found.state, softest(found).curvature, acting, iterations)
                     energy, last = potential(system, state), 0.0
@@ -112,8 +115,9 @@ def _kicked(system: System, start: State, curvature: float, acting: Flags, itera
                 steps.append(step.state)
         if steps:
             energies = [potential(system, state) for state in steps]
-            fallen = potential(system, start) - min(energies)
-            return steps[int(energies[0] - min(energies) > SAME * abs(fallen))], strength
+            energy = potential(system, start)
+            equal = SAME * abs(energy - min(energies)) + ROUND_OFF * abs(energy)
+            return steps[int(energies[0] - min(energies) > equal)], strength
         strength *= STIFFER
     raise NotConvergedError("the descent does not begin")
 
