@@ -7,9 +7,10 @@ from typing import Annotated, Literal, cast
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from cprbm_scene import Mistake, Scene, SceneError
+from cprbm_scene import Mistake, Scene
 from cprbm_scene.freedoms import FREEDOMS, Freedoms, unsupported
 from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import refuse_broken
 from cprbm_scene.solving import Requirement, refuse
 
 FEWEST_LINKS = 2
@@ -72,10 +73,9 @@ class Settings(BaseModel):
         wrong += [
             (beam, str(named.get(beam, "nothing")), fewest) for beam in scene.beams if named.get(beam, 0) < FEWEST_LINKS
         ]
-        if wrong:
-            raise SceneError(
-                [Mistake(f"settings.links.{beam}", found, allowed, scene.file) for beam, found, allowed in wrong]
-            )
+        refuse_broken(
+            *(Mistake(f"settings.links.{beam}", found, allowed, scene.file) for beam, found, allowed in wrong)
+        )
         met: tuple[Requirement, ...] = ("overlap at rest", "edge", "from", "together")
         if scene.contacts and self.formulation == "auto" and contacts_may_hold(scene):
             met += ("support",)

@@ -30,7 +30,9 @@ CLOSED_PIPE = 141
 
 def code_of(*, incomplete: bool, undecided: bool = False) -> int:
     """Exit code of a finished command: an incomplete result counts more than an undecided result."""
-    return next((code for code, met in ((INCOMPLETE, incomplete), (UNDECIDED, undecided)) if met), 0)
+    if incomplete:
+        return INCOMPLETE
+    return UNDECIDED if undecided else 0
 
 
 End = tuple[str, int]

@@ -79,15 +79,14 @@ def ends_of(scene: Scene, beam: str) -> tuple[BeamEnd, BeamEnd]:
 
 def apart_ends(m: Mechanism) -> list[tuple[str, str]]:
     """Beams with ends drawn apart from their points, in a scene with an assembly."""
-    found = []
-    for beam in m.scene.beams if m.scene.assembly is not None else ():
-        nodes = m.chains[beam].nodes[[0, -1]]
-        for end, node, record in zip(END, nodes, ends_of(m.scene, beam), strict=True):
-            if isinstance(record, PinnedEnd):
-                gap = node - m.units.place(m.scene.place_of(record.point))
-                if hypot(*gap) > APART * m.chains[beam].length:
-                    found.append((beam, end))
-    return found
+    beams = m.scene.beams if m.scene.assembly is not None else ()
+    return [
+        (beam, end)
+        for beam in beams
+        for end, node, record in zip(END, m.chains[beam].nodes[[0, -1]], ends_of(m.scene, beam), strict=True)
+        if isinstance(record, PinnedEnd)
+        and hypot(*(node - m.units.place(m.scene.place_of(record.point)))) > APART * m.chains[beam].length
+    ]
 
 
 def _guides(m: Mechanism) -> Iterator[Row]:
@@ -113,8 +112,7 @@ def _beam_ends(m: Mechanism) -> Iterator[Row]:
                 form = node_coordinate(int(node), direction) - m.point(record.point, direction)
                 yield Row(f"{beam}@{end}.{axis}", form)
             if isinstance(record, WeldedEnd):
-                body = m.scene.body_of(record.point)
-                yield Row(f"{beam}@{end}.turn", m.angle(beam, link) - m.rotation(body))
+                yield Row(f"{beam}@{end}.turn", m.angle(beam, link) - m.rotation(m.scene.body_of(record.point)))
 
 
 def _body_pins(m: Mechanism) -> Iterator[Row]:

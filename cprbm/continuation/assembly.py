@@ -30,8 +30,9 @@ from cprbm.continuation.driver import Driver, StepError
 from cprbm.continuation.path import Way
 from cprbm.equilibrium import NotConvergedError, Solved, State, System, equilibrium, repeated_rows, rest_state
 from cprbm.settings import Settings, loose_bodies
-from cprbm_scene import Ending, Mistake, SceneError
+from cprbm_scene import Ending, Mistake
 from cprbm_scene.answer import Array, Flags
+from cprbm_scene.mistakes import refuse_broken
 from cprbm_scene.statement import SlidingBody
 
 PASSED = 1e-6
@@ -96,7 +97,7 @@ def _assemble(system: System, driver: Driver, loose: Flags, moments: Mapping[str
     held = without_repeated(system, replace(state, driven=state.driven | loose, target=loaded + apart))
     driver.solved = equilibrium(system, held, driver.settings.iterations)
     _part(driver, Way(loaded + apart, loaded), "the ends go to their points")
-    _check_stops(system, driver.solved.state)
+    refuse_broken(*_forbidden(system, driver.solved.state.z))
     driver.acting = system.limits
     _part(driver, Way(loaded, zero), "the moments of the assembly go away")
 
@@ -114,13 +115,8 @@ def _loose_rows(system: System) -> Flags:
     return np.array([row.name in names for row in system.mechanism.rows], dtype=bool)
 
 
-def _check_stops(system: System, state: State) -> None:
-    mistakes = list(_forbidden(system, state.z))
-    if mistakes:
-        raise SceneError(mistakes)
-
-
 def _forbidden(system: System, z: Array) -> Iterator[Mistake]:
+    """Stops that the assembled state violates."""
     scene = system.mechanism.scene
     for name, stop in scene.stops.items():
         angle = stop_angle(system.mechanism, name).value(z)
@@ -138,10 +134,12 @@ def landing_rows(m: Mechanism) -> Iterator[Row]:
     """Rows that prescribe s of the loose bodies."""
     for name in loose_bodies(m.scene) if m.scene.contacts else ():
         body = m.scene.bodies[name]
-        if isinstance(body, SlidingBody):
-            yield Row(f"landing.{name}", m.displacement(next(iter(body.points)), unit_direction(body.along)))
-        else:
-            yield Row(f"landing.{name}", m.rotation(name))
+        form = (
+            m.displacement(next(iter(body.points)), unit_direction(body.along))
+            if isinstance(body, SlidingBody)
+            else m.rotation(name)
+        )
+        yield Row(f"landing.{name}", form)
 
 
 def landed(system: System, first: Solved, iterations: int) -> Solved:
@@ -178,7 +176,7 @@ def _landed(system: System, first: Solved, row: int, iterations: int) -> Solved:
 
     def gap(s: float) -> float:
         solved = moved(s, apart)
-        return min(least_gap(system.geometry, solved.state.z, solved.state.contacts, pair) for pair in apart) + CLOSED
+        return min(least_gap(system.geometry, solved.state, pair) for pair in apart) + CLOSED
 
     with suppress(NotConvergedError):  # contacts that press may hold the body
         if pressing(first):

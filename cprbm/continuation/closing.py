@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.contact import TOUCHING, Contacts, Geometry, taken, touching_as_drawn
+from cprbm.contact import TOUCHING, Geometry, taken, touching_as_drawn
 from cprbm.continuation.path import tangent
 from cprbm.equilibrium import (
     NotConvergedError,
@@ -80,10 +80,10 @@ def event_values(solved: Solved, acting: Flags) -> Array:
     return np.where(solved.system.limits & acting, values, np.inf)
 
 
-def first_event(
+def stop_changes(
     before: Solved, after: Solved, acting: Flags, solve: Callable[[float, frozenset[int]], Solved]
-) -> StopChange | None:
-    """The first stop that closes or opens in a step; None without any.
+) -> list[StopChange]:
+    """Stops that close or open in a step.
 
     Args:
         before, after: the step.
@@ -97,7 +97,7 @@ def first_event(
 
     happened = np.flatnonzero(end < -HAPPENED).tolist()
     shares = [0.0 if begin[row] <= HAPPENED else located(partial(value, row)) for row in happened]
-    return min((StopChange(*change) for change in zip(shares, happened, strict=True)), default=None)
+    return [StopChange(*change) for change in zip(shares, happened, strict=True)]
 
 
 def located(event: Callable[[float], float]) -> float:
@@ -168,9 +168,10 @@ class ContactChange(NamedTuple):
     early: float = 0.0
 
 
-def least_gap(geometry: Geometry, z: Array, contacts: Contacts, pair: int) -> float:
+def least_gap(geometry: Geometry, state: State, pair: int) -> float:
     """Least gap of an open pair, between joints too; inf if the curves are far apart."""
-    full = with_fixed_places(geometry, z, replace(contacts, kept_open=frozenset()))
+    z, contacts = state.z, replace(state.contacts, kept_open=frozenset())
+    full = with_fixed_places(geometry, z, contacts)
     gaps = full.gaps(geometry, z)
     mine = gaps[full.places.pair == pair]
     least = float(mine.min(initial=np.inf))
@@ -195,9 +196,9 @@ def pressing_names(solved: Solved) -> frozenset[str]:
 
 def drawn_names(system: System, state: State) -> frozenset[str]:
     """Names of the contacts that touch in a state as drawn: such contacts neither close nor open later."""
-    geometry, contacts = system.geometry, state.contacts
-    at_ends = touching_as_drawn(geometry, state.z, contacts)
-    gaps = {pair: least_gap(geometry, state.z, contacts, pair) for pair in range(len(geometry.pairs))}
+    geometry = system.geometry
+    at_ends = touching_as_drawn(geometry, state.z, state.contacts)
+    gaps = {pair: least_gap(geometry, state, pair) for pair in range(len(geometry.pairs))}
     return frozenset(geometry.pairs[pair].name for pair, gap in gaps.items() if pair in at_ends or gap < TOUCHING)
 
 
@@ -232,10 +233,10 @@ class Pressed(NamedTuple):
         return float(solved.state.contacts.places.force[self.places(solved)].sum())
 
 
-def first_change(
+def contact_changes(
     before: Solved, after: Solved, solve: Callable[[float, frozenset[int]], Solved]
-) -> ContactChange | None:
-    """The first pair that closes or opens in a step.
+) -> list[ContactChange]:
+    """The first closing of pairs, and the openings of pairs, in a step.
 
     Args:
         before, after: the step.
@@ -245,17 +246,16 @@ def first_change(
         NotConvergedError: a state on the way was not found.
     """
     old, new = pressing(before), pressing(after)
-    found = _closing(before, after, new - old, solve)
-    for pair in sorted(old - new):
-        found += _opening(pair, solve)
-    return min(found, default=None)
+    opening = [change for pair in sorted(old - new) for change in _opening(pair, solve)]
+    return _closing(before, after, new - old, solve) + opening
 
 
 def _closing(
     before: Solved, after: Solved, pairs: frozenset[int], solve: Callable[[float, frozenset[int]], Solved]
 ) -> list[ContactChange]:
     """The first closing of some pairs; empty for pairs that touch already, or stay apart when kept open."""
-    apart = frozenset(pair for pair in pairs if _gap(before, pair) > TOUCHING)
+    geometry = before.system.geometry
+    apart = frozenset(pair for pair in pairs if least_gap(geometry, before.state, pair) > TOUCHING)
     if not apart:
         return []
 
@@ -263,11 +263,11 @@ def _closing(
 
     def gap(share: float) -> tuple[float, float]:
         solved = solve(share, apart) if share else before
-        moved = solved.state.z + ALONG * tangent(solved, change)
-        gaps = {pair: _gap(solved, pair) for pair in apart}
+        moved = replace(solved.state, z=solved.state.z + ALONG * tangent(solved, change))
+        gaps = {pair: least_gap(geometry, solved.state, pair) for pair in apart}
         first[share] = min(gaps, key=lambda pair: gaps[pair])
         found = gaps[first[share]]
-        overlap, slopes[share] = found + CLOSED, (_gap(solved, first[share], moved) - found) / ALONG
+        overlap, slopes[share] = found + CLOSED, (least_gap(geometry, moved, first[share]) - found) / ALONG
         return overlap if abs(overlap) > LOCATED * CLOSED else 0.0, slopes[share]
 
     end = gap(1.0)
@@ -287,7 +287,8 @@ def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> lis
 
     def force(share: float) -> float:
         solved = solve(share, frozenset())
-        return Pressed(pair).force(solved) if pair in pressing(solved) else -_gap(solved, pair)
+        is_closed = pair in pressing(solved)
+        return Pressed(pair).force(solved) if is_closed else -least_gap(solved.system.geometry, solved.state, pair)
 
     begin, end = force(0.0), force(1.0)
     if not begin > 0.0 > end:
@@ -302,9 +303,3 @@ def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> lis
     if force(share) > LET_GO * begin:
         raise NotConvergedError("a contact lets go under force")
     return [ContactChange(share, frozenset([pair]), closes=False, first=pair)]
-
-
-def _gap(solved: Solved, pair: int, z: Array | None = None) -> float:
-    """g at a state, or at other unknowns ``z``; a pair without places is far apart."""
-    geometry, state = solved.system.geometry, solved.state
-    return least_gap(geometry, state.z if z is None else z, state.contacts, pair)

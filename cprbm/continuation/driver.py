@@ -20,7 +20,7 @@ choice of the stage a branch with two ways on ends, and others are passed only t
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cache, partial
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 
@@ -28,11 +28,11 @@ from cprbm.continuation.closing import (
     ContactChange,
     StopChange,
     changed,
-    first_change,
-    first_event,
+    contact_changes,
     kept_open,
     may_close,
     pressing_names,
+    stop_changes,
 )
 from cprbm.continuation.critical import (
     ASKED,
@@ -47,8 +47,8 @@ from cprbm.continuation.descent import descend
 from cprbm.continuation.path import Reached, Way, energy_before, jumped, turned
 from cprbm.equilibrium import NotConvergedError, Solved, State, System, blocked, certify, equilibrium, softest
 from cprbm.settings import Settings
-from cprbm_scene import Ending, Loss
-from cprbm_scene.answer import Array, Flags
+from cprbm_scene import Ending, Event, Loss
+from cprbm_scene.answer import Flags
 
 CAREFUL_TURN = 0.2
 """Largest turn in a step, rad, where no critical point may be passed."""
@@ -69,7 +69,7 @@ TRAIL = 30
 """Minima that are kept."""
 
 Beyond = Literal["stop", "jump"] | None
-Change = StopChange | ContactChange | None
+Change = StopChange | ContactChange
 
 
 class StepError(Exception):
@@ -92,14 +92,6 @@ class Passed:
     width: float
     landed: Solved | None = None
     after: float | None = None
-
-
-class ContactEvent(NamedTuple):
-    """Closing or opening of the contact ``name`` at a ``value`` (SI) of the stepped load or drive."""
-
-    name: str
-    value: float
-    closes: bool
 
 
 @dataclass(eq=False)
@@ -125,7 +117,7 @@ class Driver:
     reached: float = 0.0
     spent: int = 0
     passed: list[Passed] = field(default_factory=list)
-    events: list[ContactEvent] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
     drawn: frozenset[str] = frozenset()
     touching: frozenset[str] = frozenset()
 
@@ -160,13 +152,13 @@ class Driver:
             if change is not None:
                 trail = self._changed(way, at, change, beyond)
 
-    def _trial(self, way: Way, t: float, largest: float) -> tuple[float, Solved, Change] | StepError:
+    def _trial(self, way: Way, t: float, largest: float) -> tuple[float, Solved, Change | None] | StepError:
         """Fraction and state at the end of the next step, and the change there, or why there is no step."""
         begin = self.reached
 
         @cache  # events ask again for the states at the ends of the step and at the located share
         def solve(share: float, pairs: frozenset[int]) -> Solved:
-            target = self._held(way.target(begin + share * (t - begin)))
+            target = way.target(begin + share * (t - begin))
             # a state between has other sides and other closed places: only the begin of the step is certified
             return self._equilibrium(replace(kept_open(self.solved.state, pairs), target=target))
 
@@ -174,7 +166,9 @@ class Driver:
             solved = solve(1.0, frozenset())
             # an event is not sought in a step that is too long
             self._check_turn(solved, largest)
-            change, at = self._first_event(solved, solve), t
+            changes: list[Change] = [*stop_changes(self.solved, solved, self.acting, solve)]
+            changes += contact_changes(self.solved, solved, solve)
+            at, change = t, min(changes, key=lambda change: change.share, default=None)
             if change is not None:
                 at, opened = begin + change.share * (t - begin), frozenset[int]()
                 if isinstance(change, ContactChange) and change.closes:
@@ -188,7 +182,7 @@ class Driver:
         certificate, ending = certify(solved, self.settings.tolerance, 0, self.acting, with_curvature=False)
         if ending is not Ending.COMPLETED:
             return StepError(ending, certificate.failures[0])
-        if jumped(self.solved, solved, (at - begin) * self._held(way.change)):
+        if jumped(self.solved, solved, (at - begin) * way.change):
             return StepError(Ending.STEP_TOO_SMALL, "the links went another way than the path's tangents")
         return at, solved, change
 
@@ -203,21 +197,10 @@ class Driver:
             sentence = f"a link turned by {turn:.2f} rad in one load step"
             raise StepError(Ending.STEP_TOO_SMALL, sentence, too_long=True)
 
-    def _first_event(self, solved: Solved, solve: Callable[..., Solved]) -> Change:
-        """The first stop or contact that changes in a step; None without any."""
-        stop = first_event(self.solved, solved, self.acting, solve)
-        contact = first_change(self.solved, solved, solve)
-        found = [change for change in (stop, contact) if change is not None]
-        return min(found, key=lambda change: change.share, default=None)
-
     def _equilibrium(self, state: State) -> Solved:
         solved = equilibrium(self.system, state, self.settings.iterations)
         self.spent += solved.iterations
         return solved
-
-    def _held(self, target: Array) -> Array:
-        """Targets, or changes, with zeros for stops: a closed stop stays at the limit, an open stop has no force."""
-        return np.where(self.system.limits, 0.0, target)
 
     def _accept(self, way: Way, t: float, solved: Solved, trail: list[Reached]) -> None:
         # a contact that closes without an event has touched at the begin of the step
@@ -230,11 +213,11 @@ class Driver:
         """Add the contacts ``closed`` or ``opened`` at fractions of the way since the last state to the events."""
         before, self.touching = self.touching, names | self.drawn
         names = self.touching
-        self.events += [ContactEvent(name, way.value(closed), closes=True) for name in sorted(names - before)]
+        self.events += [Event(way.stage, name, "closes", way.value(closed)) for name in sorted(names - before)]
         if opened is not None:
-            self.events += [ContactEvent(name, way.value(opened), closes=False) for name in sorted(before - names)]
+            self.events += [Event(way.stage, name, "opens", way.value(opened)) for name in sorted(before - names)]
 
-    def _changed(self, way: Way, t: float, change: StopChange | ContactChange, beyond: Beyond) -> list[Reached]:
+    def _changed(self, way: Way, t: float, change: Change, beyond: Beyond) -> list[Reached]:
         """Close or open a stop or contacts at the present state; the trail from there on.
 
         Raises:
@@ -269,7 +252,7 @@ class Driver:
         Raises:
             StepError: the solve ends.
         """
-        point = contact_ends(trail, t) or critical_point(trail, t, self._held(way.change))
+        point = contact_ends(trail, t) or critical_point(trail, t, way.change)
         if point is None:
             point = self._locked(way, t, trail, refused)
         return self._leave(way, point, beyond)
@@ -283,7 +266,7 @@ class Driver:
         if self.system.lengthening:
             raise refused
         solved = self.solved
-        beam, longer = locked_beam(solved, self._held(way.change))
+        beam, longer = locked_beam(solved, way.change)
         limit = taut_value(trail, way, t)
         if limit is not None:
             where = f"forces grow without limit as {way.name} comes to {limit:.6g}"
@@ -308,24 +291,23 @@ class Driver:
         passed = partial(Passed, point, way.value(point.t), abs(way.value(point.width) - way.value(0.0)))
         if beyond == "stop" or (beyond is None and point.has_two_ways) or len(self.passed) >= ENDS:
             self.passed.append(passed())
-            raise StepError(Ending.BRANCH_ENDS, self._told(way, point))
+            raise StepError(Ending.BRANCH_ENDS, self._sentence(way, point))
         furthest = max(point.t, self.reached) + 10.0 * point.width
         for ahead in AHEAD:
             t = min(1.0, furthest + ahead * max(0.0, 1.0 - furthest))
-            target = self._held(way.target(t))
-            descent = partial(descend, self.system, point.start, point.curvature, target, self.acting)
+            descent = partial(descend, self.system, point.start, point.curvature, way.target(t), self.acting)
             landed = self._landed(descent, point, beside=beyond is None)
             if landed is not None:
-                self.passed.append(passed(landed, energy_before(landed, self._held(way.change), t - point.t)))
+                self.passed.append(passed(landed, energy_before(landed, way.change, t - point.t)))
                 self._note(way, pressing_names(landed), t)
                 self.solved, self.reached = landed, t
                 return [Reached(t, landed)]
         self.passed.append(passed())
         if beyond == "jump":
-            raise StepError(Ending.STEP_TOO_SMALL, f"no minimum found to which {self._told(way, point)} leads")
-        raise StepError(Ending.BRANCH_ENDS, self._told(way, point))
+            raise StepError(Ending.STEP_TOO_SMALL, f"no minimum found to which {self._sentence(way, point)} leads")
+        raise StepError(Ending.BRANCH_ENDS, self._sentence(way, point))
 
-    def _told(self, way: Way, point: CriticalPoint) -> str:
+    def _sentence(self, way: Way, point: CriticalPoint) -> str:
         return f"{point.sentence} at {way.name} = {way.value(point.t):.6g}" if way.name else point.sentence
 
     def _landed(self, descent: Callable[[int], Solved], point: CriticalPoint, *, beside: bool) -> Solved | None:

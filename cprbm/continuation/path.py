@@ -48,12 +48,16 @@ SMALLEST_WORK = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Way:
-    """Targets of all rows at the begin and the end (rows,), and values (SI) and name of the stepped load or drive."""
+    """Targets of all rows at the begin and the end (rows,), values (SI) and name of the stepped load or drive, stage.
+
+    The targets of stops are zero: a closed stop stays at the limit, an open stop has no force.
+    """
 
     begin: Array
     end: Array
     values: tuple[float, float] = (0.0, 1.0)
     name: str = ""
+    stage: str = ""
 
     @property
     def change(self) -> Array:

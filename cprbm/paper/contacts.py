@@ -23,6 +23,7 @@ from cprbm.paper.fit import Boundary, basis_of, fitted, fitted_columns, fitted_g
 from cprbm_scene import BeamContact, LineContact, Mistake, Scene, SceneError, SelfContact
 from cprbm_scene.answer import Array, Flags, Ints
 from cprbm_scene.clearance import overlap_at_rest
+from cprbm_scene.mistakes import refuse_broken
 
 FEWEST_POINTS = 3
 """Related joints of either beam."""
@@ -49,11 +50,18 @@ def fitted_boundary(m: Mechanism, name: str, degree: int) -> tuple[Boundary, str
     if hints is None:
         allowed = "the boundary's beam and the axis, which the formulation 'paper' needs"
         raise SceneError([Mistake(f"contacts.{name}.paper", "nothing", allowed, scene.file)])
-    for beam in contact.between:
-        if contact.thick and scene.beams[beam].tapered:
-            found = f"contact of two beams by the edges of {beam!r}, whose thickness varies"
-            allowed = "thick = false, a beam of one thickness, or the formulation 'auto'"
-            raise SceneError([Mistake(f"contacts.{name}.thick", found, allowed, scene.file)])
+    refuse_broken(
+        *(
+            Mistake(
+                f"contacts.{name}.thick",
+                f"contact of two beams by the edges of {beam!r}, whose thickness varies",
+                "thick = false, a beam of one thickness, or the formulation 'auto'",
+                scene.file,
+            )
+            for beam in contact.between
+            if contact.thick and scene.beams[beam].tapered
+        )
+    )
     other = next(beam for beam in contact.between if beam != hints.boundary)
     points = related_joints(m, name, hints.boundary, FEWEST_POINTS)
     joints = related_joints(m, name, other, FEWEST_POINTS)
@@ -98,12 +106,11 @@ def related_joints(m: Mechanism, contact: str, beam: str, fewest: int) -> Ints:
         axis, (low, high) = ("x", related.x) if related.x is not None else ("y", related.y or (-np.inf, np.inf))
         along = (chain.nodes[1:-1] * m.units.length + m.units.origin)[:, "xy".index(axis)]
         joints = joints[(along >= low) & (along <= high)]
-        if len(joints) and joints[-1] - joints[0] >= len(joints):
-            found = "a range that holds two separate parts of the beam"
-            raise SceneError([Mistake(key, found, "a range that holds one part", m.scene.file)])
-    if len(joints) < fewest:
-        found = f"{len(joints)} related joints of {beam} at {chain.links - 1} links"
-        raise SceneError([Mistake(key, found, f"at least {fewest}: a wider range or more links", m.scene.file)])
+        found, allowed = "a range that holds two separate parts of the beam", "a range that holds one part"
+        refuse_broken(np.any(np.diff(joints) > 1) and Mistake(key, found, allowed, m.scene.file))
+    found = f"{len(joints)} related joints of {beam} at {chain.links - 1} links"
+    allowed = f"at least {fewest}: a wider range or more links"
+    refuse_broken(len(joints) < fewest and Mistake(key, found, allowed, m.scene.file))
     return joints.astype(np.int64)
 
 
@@ -209,14 +216,28 @@ def refuse_contacts(scene: Scene) -> None:
     Raises:
         SceneError: a beam touches itself, or a line has a convex corner on the beam's side.
     """
-    for name, contact in scene.contacts.items():
-        if isinstance(contact, SelfContact):
-            allowed = "a kind that the formulation 'paper' offers, or the formulation 'auto'"
-            raise SceneError([Mistake(f"contacts.{name}.kind", repr(contact.kind), allowed, scene.file)])
-        if isinstance(contact, LineContact) and _has_convex_corner(contact):
-            found = "a line with a corner that stands out, which presses a beam between its joints"
-            allowed = "a line without such a corner, or the formulation 'auto'"
-            raise SceneError([Mistake(f"contacts.{name}.points", found, allowed, scene.file)])
+    refuse_broken(
+        *(
+            Mistake(
+                f"contacts.{name}.kind",
+                repr(contact.kind),
+                "a kind that the formulation 'paper' offers, or the formulation 'auto'",
+                scene.file,
+            )
+            for name, contact in scene.contacts.items()
+            if isinstance(contact, SelfContact)
+        ),
+        *(
+            Mistake(
+                f"contacts.{name}.points",
+                "a line with a corner that stands out, which presses a beam between its joints",
+                "a line without such a corner, or the formulation 'auto'",
+                scene.file,
+            )
+            for name, contact in scene.contacts.items()
+            if isinstance(contact, LineContact) and _has_convex_corner(contact)
+        ),
+    )
 
 
 def _has_convex_corner(line: LineContact) -> bool:

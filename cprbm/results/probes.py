@@ -78,10 +78,9 @@ def probe_values(statics: Statics, stage: str) -> dict[str, Array]:
 
 def _reaction(statics: Statics, of: str) -> tuple[Array, float]:
     """Force and moment of the ground at a point or on a sliding body, or of the drives of a point or body."""
-    view, sources = statics.view, {of}
-    for name, drive in view.scene.drives.items():
-        if of == (drive.point if isinstance(drive, DisplacementDrive) else drive.body):
-            sources.add(name)
+    view, drives = statics.view, statics.view.scene.drives.items()
+    moved = {name: drive.point if isinstance(drive, DisplacementDrive) else drive.body for name, drive in drives}
+    sources = {of, *(name for name, part in moved.items() if part == of)}
     force, moment = np.zeros(2), 0.0
     for each in statics.forces:
         if each.source in sources and _from_ground(view, each.source, each.target):
@@ -139,13 +138,10 @@ def _moment(view: View, of: str) -> float:
 
 def touching_places(view: View) -> dict[str, Array]:
     """Positions (k, 2), m, of the closed contacts."""
-    units, found = view.mechanism.units, {}
-    for name, pressed in view.pressed.items():
-        places = [*pressed.surface]
-        places += [view.end(beam, end)[1] for beam, end, _ in pin_moments(view, name)]
-        if places:
-            found[name] = frozen_array(np.array(places) * units.length + units.origin)
-    return found
+    units, places = view.mechanism.units, {name: [*pressed.surface] for name, pressed in view.pressed.items()}
+    for name, of in places.items():
+        of += [view.end(beam, end)[1] for beam, end, _ in pin_moments(view, name)]
+    return {name: frozen_array(np.array(of) * units.length + units.origin) for name, of in places.items() if of}
 
 
 def states_of_contacts(view: View, forces: PointForces, touching: Mapping[str, Array]) -> Mapping[str, ContactState]:

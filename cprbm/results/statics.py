@@ -44,12 +44,6 @@ from cprbm_scene.statement import (
 NO_FORCE = np.zeros(2)
 
 
-def all_forces(view: View) -> Iterator[PointForce]:
-    """Forces on beams and on bodies, fixed bodies included; loads excluded."""
-    for forces in (_joints, _guides, _drives, _pins, _stops, _contacts):
-        yield from forces(view)
-
-
 def stop_moment(view: View, name: str) -> float:
     """Moment of a stop on its beam."""
     return view.multipliers.get(f"{name}.most", 0.0) - view.multipliers.get(f"{name}.least", 0.0)
@@ -177,7 +171,8 @@ class Statics:
 
     def __init__(self, view: View) -> None:
         self.view = view
-        self.forces = tuple(all_forces(view))
+        kinds = _joints, _guides, _drives, _pins, _stops, _contacts
+        self.forces = tuple(force for forces in kinds for force in forces(view))
         self.cuts = cache(self._cuts)
 
     def state(self, beam: str) -> BeamState:
@@ -250,10 +245,10 @@ def _point_loads(view: View, beam: str) -> Iterator[PointForce]:
         at, line = load.at * view.mechanism.chains[beam].length, view.mechanism.chains[beam].line
         place = (line.weights(np.array([at])) @ view.nodes[beam])[0]
         if isinstance(load, BeamMoment):
-            yield PointForce(name, beam, at, place, np.zeros(2), value / units.moment)
+            force, moment = NO_FORCE, value / units.moment
         else:
-            force = value / units.force * np.array(unit_direction(load.direction))
-            yield PointForce(name, beam, at, place, force, 0.0)
+            force, moment = value / units.force * np.array(unit_direction(load.direction)), 0.0
+        yield PointForce(name, beam, at, place, force, moment)
 
 
 def _turned(n: Array, angle: Array) -> tuple[Array, Array]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from cprbm.chain import add_rows, mechanism_of
 from cprbm.contact import contact_geometry, hold_sections_upright
 from cprbm.continuation.assembly import assembled, landing_rows, without_repeated
-from cprbm.continuation.driver import ContactEvent, Driver, Passed, StepError
+from cprbm.continuation.driver import Driver, Passed, StepError
 from cprbm.continuation.path import Way, potential, turned
 from cprbm.equilibrium import NotConvergedError, System, certify, equilibrium, system_of
 from cprbm.paper.contacts import paper_geometry, refuse_contacts
@@ -110,7 +110,7 @@ class Run:
         except StepError as failure:
             return failure.ending, str(failure)
         first = self.scene.stages[0]
-        self._note_contacts(first, [ContactEvent(name, 0.0, closes=True) for name in sorted(self.driver.touching)])
+        self._note_contacts(first, [Event(first.name, name, "closes", 0.0) for name in sorted(self.driver.touching)])
         for stage in self.scene.stages:
             for station in stage.stations:
                 try:
@@ -159,7 +159,7 @@ class Run:
         for row in map(mechanism.row, names):
             end[row] = station * mechanism.rows[row].unit
         try:
-            driver.follow(Way(begin, end, (before, station), stage.steps), stage.beyond)
+            driver.follow(Way(begin, end, (before, station), stage.steps, stage.name), stage.beyond)
         finally:
             self._note(stage, driver.passed)
             self._note_contacts(stage, driver.events)
@@ -199,12 +199,11 @@ class Run:
             else:
                 self.critical.append(critical)
 
-    def _note_contacts(self, stage: Stage, events: list[ContactEvent]) -> None:
+    def _note_contacts(self, stage: Stage, events: list[Event]) -> None:
         """Add closings and openings on the way to a station to the answer."""
-        for event in events:
-            if event.closes:
-                self.closing.setdefault(event.name, (stage.steps, event.value))
-            self.events.append(Event(stage.name, event.name, "closes" if event.closes else "opens", event.value))
+        self.events += events
+        for event in (event for event in events if event.kind == "closes"):
+            self.closing.setdefault(event.contact, (stage.steps, event.value))
 
     def _station(self, driver: Driver, stage: Stage, station: float, certificate: Certificate) -> StationAnswer:
         """Answer at a station."""
@@ -212,10 +211,10 @@ class Run:
         view = View(driver.solved, self.samples, dict(self.values), closing)
         units, statics = self.system.mechanism.units, Statics(view)
         # the paper's contacts press on joints and turn links: no places of the line carry the forces
-        touching, told = touching_places(view), self.inspection is None
+        touching, shown = touching_places(view), self.inspection is None
         parts = self.system.mechanism.bodies.keys() | self.scene.beams.keys()
         forces = PointForces.collected(
-            (force for force in statics.forces if told and force.target in parts),
+            (force for force in statics.forces if shown and force.target in parts),
             units.length,
             units.force,
             (float(units.origin[0]), float(units.origin[1])),
@@ -228,7 +227,7 @@ class Run:
             touching=touching,
             certificate=certificate,
             branch=len(self.critical),
-            beams={beam: statics.state(beam) for beam in self.scene.beams if told},
+            beams={beam: statics.state(beam) for beam in self.scene.beams if shown},
             forces=forces,
             contacts=states_of_contacts(view, forces, touching),
             bodies={
