@@ -117,7 +117,7 @@ def recorded() -> dict[str, Any]:
 def numbers(scene: Scene) -> str:
     """Table of the recorded numbers at the last station, without stresses along beams."""
     last = scene.stages[-1]
-    factor, unit = axis_unit(scene, load_unit(scene, last), last.stations[-1])
+    factor, unit = axis_unit(scene, load_unit(scene, last.name), last.stations[-1])
     answers = [recorded()[f"{scene.name} {run}"]["stations"][-1] for run in (f"cprbm {N}", f"fea {n}")]
     lines = [
         f"The recorded numbers at {last.steps} = {_short(last.stations[-1] / factor, unit)} ({N} links and {n} finite "
@@ -131,7 +131,7 @@ def numbers(scene: Scene) -> str:
         if probe.quantity in STRESSES or not all(found):  # stresses, and probes without a value
             continue
         factor, unit = display_unit(
-            scene, unit_of(scene, probe, last), max(abs(each) for values in found for each in values)
+            scene, unit_of(scene, probe, last.name), max(abs(each) for values in found for each in values)
         )
         cells = [
             ", ".join(number(each / factor if abs(each) > NOTHING else 0.0, 5) for each in values) for values in found

@@ -113,6 +113,7 @@ def main(folder, kills, seed):
     ended = {"killed": 0, "finished": 0}
     page, numbers = set(), set()
     while ended["killed"] < kills:
+        begun = (out / ".unfinished").exists()
         status, _ = compared(folder, out, 1 + drawn.randrange(events // 2))
         if status == 0:
             ended["finished"] += 1
@@ -120,7 +121,8 @@ def main(folder, kills, seed):
             continue
         assert status == signal.SIGKILL, status
         ended["killed"] += 1
-        if not (out / ".unfinished").exists():  # just before it began, or at its very end
+        if not (out / ".unfinished").exists():  # just before the begin, or at the very end
+            ended["finished"] += begun
             page, numbers = set(), set()
             continue
         page_now, numbers_now = told(out)
