@@ -26,8 +26,8 @@ def new(name: str, out: Path, quiet: bool) -> None:  # noqa: FBT001 - click pass
     Raises:
         click.UsageError: the name is wrong, or the file exists.
     """
-    path = _free_path(out, name, "NAME", "another name")
-    write(path, first_scene(name, quote(f"{name}.toml")))
+    path = _free_path(out, name.removesuffix(".toml"), "NAME", "another name")
+    write(path, first_scene(path.stem, quote(path.name)))
     write(out / SCHEMA, _schema_text())
     if not quiet:
         click.echo(printable(f"{path}: change the scene, then run: cprbm compare {quote(str(path))}"))

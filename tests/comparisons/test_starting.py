@@ -51,7 +51,7 @@ def test_a_name_has_umlauts_and_spaces(tmp_path, capsys):
 
 
 def test_the_schema_is_one_and_stands_beside_the_scene(tmp_path, capsys):
-    run(["new", "one", "--out", str(tmp_path)])
+    run(["new", "one.toml", "--out", str(tmp_path)])  # a name may have the ending of the file
     capsys.readouterr()
     assert run(["schema"]) == 0
     said = json.loads(capsys.readouterr().out)
