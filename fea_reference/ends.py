@@ -20,6 +20,7 @@ the zone ends there itself.
 Of a contact in a point, χ is positive on either side: continued through the point, both sides reach zero beyond it, so
 that the zone would begin behind its end, or beside its pressure; or χ falls on the way out and has no zero inwards.
 Then it is the pressure's centre.  A contact in several points begins and ends in points of their own.
+Zones within the places that χ is read at are one contact: a penalty may press beside a sheared point.
 """
 
 import numpy as np
@@ -49,12 +50,12 @@ def ends(model: Model, system: System, touch: Touch) -> Array:
     outer = int(pressed[np.argmin(begins)]), int(pressed[np.argmax(stops)])
     found = np.array([_continued(model, system, touch, at, way) for at, way in zip(outer, (-1.0, 1.0), strict=True)])
     moment = (weight * touch.zeta.reshape(weight.shape)).sum(axis=1)
-    own = [zones.numbers == zones.numbers[at] for at in outer]
-    middle = np.array([moment[each].sum() / force[each].sum() for each in own])
+    order = np.argsort(zones.intervals[:, 0])
+    apart = zones.intervals[order[1:], 0] - zones.intervals[order[:-1], 1] > _READ[-1]
+    number = np.append(0, np.cumsum(apart))[np.argsort(order)]
+    middle = np.array([moment[number == number[at]].sum() / force[number == number[at]].sum() for at in outer])
     points = np.array([1.0, -1.0]) * (found - middle) > 0.0
-    if zones.numbers[outer[0]] == zones.numbers[outer[1]]:
-        points |= points[::-1]
-    return np.where(points, middle, found)
+    return np.where(points | (points[::-1] & (number[outer[0]] == number[outer[1]])), middle, found)
 
 
 def _continued(model: Model, system: System, touch: Touch, at: int, outwards: float) -> float:
