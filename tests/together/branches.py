@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH
-from tests.references import columns
 from tests.references.arch import Arch
 from tests.references.let_go import Held
 from tests.references.snap import Snap
@@ -128,16 +127,18 @@ def pinned_column(loads: list[float], *, beyond: str = "jump") -> dict[str, Any]
     )
 
 
-def column_between_pegs(angle: float) -> dict[str, Any]:
-    """Pinned at the origin and at a slide at the ``angle``, with a peg on either side of its middle."""
+def column_between_pegs(
+    loads: list[float], *, angle: float = 0.0, gap: float = 0.0, sides: tuple[str, ...] = ("left", "right"), beyond: str
+) -> dict[str, Any]:
+    """Pinned at the origin and at a slide at the ``angle``; pegs at the middle, a ``gap`` away over the length."""
     along, across = np.array([cos(angle), sin(angle)]), np.array([-sin(angle), cos(angle)])
     end, away = (LENGTH * along).tolist(), 0.05 * LENGTH
 
-    def peg(side: float) -> dict[str, Any]:
-        center = 0.5 * LENGTH * along + side * (away + 0.5 * THICKNESS + 2e-3 * LENGTH) * across
+    def peg(side: str) -> dict[str, Any]:
+        sense = 1.0 if side == "left" else -1.0
+        center = 0.5 * LENGTH * along + sense * (away + 0.5 * THICKNESS + gap * LENGTH) * across
         return {"kind": "beam-circle", "beam": "beam", "body": "wall", "center": center.tolist(), "radius": away}
 
-    euler = columns.critical("pinned") * FORCE
     return _scene(
         "column-between-pegs",
         bodies={
@@ -146,9 +147,9 @@ def column_between_pegs(angle: float) -> dict[str, Any]:
         },
         beams={"beam": {**_STRIP, "curve": _line([0.0, 0.0], end), "start": _pin("R"), "end": _pin("E")}},
         loads={"P": {"kind": "force", "point": "E", "direction": (-along).tolist()}},
-        contacts={"left": peg(1.0), "right": peg(-1.0)},
-        stages=[_stage("press", "P", [0.9 * euler, 1.2 * euler], "jump")],
-        probes=[{"of": name, "quantity": "force"} for name in ("left", "right")],
+        contacts={side: peg(side) for side in sides},
+        stages=[_stage("press", "P", [load * FORCE for load in loads], beyond)],
+        probes=[{"of": side, "quantity": "force"} for side in sides],
     )
 
 
