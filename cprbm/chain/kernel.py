@@ -249,8 +249,7 @@ def _turn_joint(
         P[0, 0, 0], P[0, 0, 1], P[0, 1, 0], P[0, 1, 1] = X * b * v, -X * a * v, -X * b * u, X * a * u
 
 
-@compiled
-def strain_energy(z: Array, links: Links, joints: Joints) -> float:  # pragma: no cover
+def strain_energy(z: Array, links: Links, joints: Joints) -> float:
     """Energy of joints and links at a solution of the link equations."""
     unloaded, angle = z.copy(), z[links.first + 4]
     unloaded[links.first + 2], unloaded[links.first + 3] = 0.0, 0.0

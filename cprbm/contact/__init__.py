@@ -26,7 +26,7 @@ from cprbm.contact.candidates import (
 from cprbm.contact.closest import lost_at
 from cprbm.contact.curve import BEND, CORNER, STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
 from cprbm.contact.edges import corner_sides, is_left, left_corner
-from cprbm.contact.fixed import REACH, Sites, contact_places, joined, matched, movable, picked
+from cprbm.contact.fixed import REACH, Sites, contact_places, is_movable, joined, matched, picked
 from cprbm.contact.gap import (
     COUPLING,
     GRADIENT,
@@ -96,12 +96,12 @@ __all__ = [
     "gap_row",
     "hold_sections_upright",
     "is_left",
+    "is_movable",
     "joined",
     "left_corner",
     "local_indices",
     "lost_at",
     "matched",
-    "movable",
     "move_places",
     "near_pairs",
     "new_counters",

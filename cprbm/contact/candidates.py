@@ -22,7 +22,7 @@ import numpy as np
 
 from cprbm.chain import Direction, Mechanism, unit_direction
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
-from cprbm.contact.fixed import FREE, Sites, is_straight, on_end_body, places_at_feet
+from cprbm.contact.fixed import FREE, Sites, is_on_end_body, is_straight, places_at_feet
 from cprbm.contact.gap import Law, Places, gap_frame
 from cprbm.contact.pairs import Pair, contact_pairs
 from cprbm.contact.settling import new_counters, settle
@@ -99,12 +99,11 @@ def hold_sections_upright(m: Mechanism, geometry: Geometry) -> None:
     contacts = open_contacts(geometry, z)
     pairs, curves = np.ones(len(geometry.pairs), dtype=bool), np.ones(len(geometry.curves), dtype=bool)
     places = places_at_feet(z, arrays, sites, contacts.sides, pairs, curves, contacts.counters)
-    straight, held = is_straight(arrays, places.foot), [on_end_body(arrays, sites, places, end) for end in (0, 1)]
     for k, gap in enumerate(_gaps_at(geometry, z, contacts, places)):
         curve, other = places.curve[k], places.other[k]
         for end, node in enumerate((arrays.first[curve], arrays.last[curve] + 1)):
             at_weld = sites.welded[curve, end] and places.piece[k] + places.xi[k] == node
-            if not at_weld or straight[k] or not held[end][k]:
+            if not at_weld or is_straight(arrays, places.foot[k]) or not is_on_end_body(arrays, sites, places, k, end):
                 continue
             beam, layer = geometry.curves[curve].beam, m.chains[geometry.curves[curve].beam].layer(end)
             if not sites.rigid[other]:

@@ -23,7 +23,7 @@ from cprbm.contact.candidates import Geometry, on_edge, taken
 from cprbm.contact.closest import curve_jet
 from cprbm.contact.corners import Corner
 from cprbm.contact.curve import STENCIL
-from cprbm.contact.fixed import movable
+from cprbm.contact.fixed import is_movable
 from cprbm.contact.gap import Places, gap_frame
 from cprbm.contact.settling import FINDING, find_feet, near_pairs, separations, settle
 from cprbm_scene.answer import Array, Ints
@@ -111,9 +111,9 @@ def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Arr
     settle(z, arrays, trial, gap, curvature, counters, FINDING)
     apart = arrays.arc[trial.piece] + trial.xi * arrays.span[trial.piece]
     apart -= arrays.arc[places.foot[k]] + places.eta[k] * arrays.span[places.foot[k]]
+    goes = not trial.at_point[0] and is_movable(arrays, geometry.sites, trial, 0)
     near = abs(apart[0]) < BESIDE * arrays.span[trial.piece[0]]
-    goes = near and curvature[0] > 0.0 and not trial.at_point[0] and movable(geometry.arrays, geometry.sites, trial)[0]
-    return trial if goes else None
+    return trial if near and goes and curvature[0] > 0.0 else None
 
 
 def _slopes(geometry: Geometry, z: Array, places: Places, k: int) -> tuple[float, float]:

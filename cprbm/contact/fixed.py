@@ -92,37 +92,37 @@ def joined(places: Places, others: Places) -> Places:  # pragma: no cover
 
 
 @compiled
-def is_straight(curves: CurveArrays, pieces: Ints) -> Flags:  # pragma: no cover
-    """Whether pieces are straight pieces of a body's edge."""
-    bends = np.abs(curves.real[:, 1, 2:][pieces]) + np.abs(curves.imaginary[:, 1, 2:][pieces])
-    speed = np.hypot(curves.real[:, 1, 1][pieces], curves.imaginary[:, 1, 1][pieces])
-    return np.asarray((curves.angle[pieces] < 0) & (bends.sum(axis=1) < PARALLEL * speed))
+def is_straight(curves: CurveArrays, piece: int) -> bool:  # pragma: no cover
+    """True for a straight piece of a body's edge."""
+    bends = np.abs(curves.real[piece, 1, 2:]).sum() + np.abs(curves.imaginary[piece, 1, 2:]).sum()
+    speed = np.hypot(curves.real[piece, 1, 1], curves.imaginary[piece, 1, 1])
+    return bool(curves.angle[piece] < 0 and bends < PARALLEL * speed)
 
 
 @compiled
-def on_end_body(curves: CurveArrays, sites: Sites, places: Places, end: int) -> Flags:  # pragma: no cover
-    """Whether the feet lie on, or beside a joint with, the body of the start (0) or end (1) of the places' curves.
+def is_on_end_body(curves: CurveArrays, sites: Sites, places: Places, k: int, end: int) -> bool:  # pragma: no cover
+    """True if a foot lies on, or beside a joint with, the body of the start (0) or end (1) of the place's curve.
 
     A body that slides along a straight edge keeps the gap of a welded end, as if the edge were on the body.
     """
-    curve, other, foot, own = places.curve, places.other, places.foot, sites.body[:, end][places.curve]
-    x, y = curves.real[:, 1, 1][foot], curves.imaginary[:, 1, 1][foot]
-    edge, beam = sites.slide[:, 0][other], sites.slide[:, end][curve]
-    across = np.abs(x * edge[:, 1] - y * edge[:, 0]) + np.abs(x * beam[:, 1] - y * beam[:, 0])
-    guided = sites.welded[:, end][curve] & is_straight(curves, foot) & (across < PARALLEL * np.hypot(x, y))
-    at_start = sites.rigid[other] | (foot <= curves.first[other] + BESIDE)
-    at_end = sites.rigid[other] | (foot >= curves.last[other] - BESIDE)
-    same = (at_start & (own == sites.body[:, 0][other])) | (at_end & (own == sites.body[:, 1][other]))
-    return np.asarray(guided | (same & (own != FREE)))
+    curve, other, foot = places.curve[k], places.other[k], places.foot[k]
+    own, rigid = sites.body[curve, end], sites.rigid[other]
+    x, y = curves.real[foot, 1, 1], curves.imaginary[foot, 1, 1]
+    edge, beam = sites.slide[other, 0], sites.slide[curve, end]
+    across = abs(x * edge[1] - y * edge[0]) + abs(x * beam[1] - y * beam[0])
+    guided = sites.welded[curve, end] and is_straight(curves, foot) and across < PARALLEL * np.hypot(x, y)
+    at_start = own == sites.body[other, 0] and (rigid or foot <= curves.first[other] + BESIDE)
+    at_end = own == sites.body[other, 1] and (rigid or foot >= curves.last[other] - BESIDE)
+    return bool(guided or (own != FREE and (at_start or at_end)))
 
 
 @compiled
-def movable(curves: CurveArrays, sites: Sites, places: Places) -> Flags:  # pragma: no cover
-    """Whether the places may move along their curves."""
-    at_first, at_last = places.piece == curves.first[places.curve], places.piece == curves.last[places.curve]
-    at_end = (at_first & (places.xi == 0.0)) | (at_last & (places.xi == 1.0))
-    held = (at_first & on_end_body(curves, sites, places, 0)) | (at_last & on_end_body(curves, sites, places, 1))
-    return np.asarray(~(at_end | held))
+def is_movable(curves: CurveArrays, sites: Sites, places: Places, k: int) -> bool:  # pragma: no cover
+    """True if a place may move along the place's curve."""
+    curve, piece, xi = places.curve[k], places.piece[k], places.xi[k]
+    at_first, at_last = piece == curves.first[curve], piece == curves.last[curve]
+    held_at_first = at_first and (xi == 0.0 or is_on_end_body(curves, sites, places, k, 0))
+    return not (held_at_first or (at_last and (xi == 1.0 or is_on_end_body(curves, sites, places, k, 1))))
 
 
 @compiled
@@ -142,20 +142,26 @@ def places_at_feet(
     mine = np.flatnonzero(near[sites.possible.pair])
     places, distance = picked(sites.possible, mine), np.empty(mine.size)
     find_feet(z, curves, places, distance, counters)
-    curve, other, foot, corner = places.curve, places.other, places.foot, curves.angle[places.piece] < 0
-    start, end = on_end_body(curves, sites, places, 0), on_end_body(curves, sites, places, 1)
-    before = places.piece - curves.first[curve] + places.xi.astype(np.int64)
-    behind = curves.last[curve] - curves.first[curve] + 1 - before
-    first = curve == sites.columns[:, 0][places.pair]
-    places.side[:] = np.where(corner, 0.0, np.where(first, sides[:, 0][places.pair], sides[:, 1][places.pair]))
-    # a corner is no place in an end link held by the corner's body
-    free = sites.welded[curve] & pressed[other].reshape((-1, 1))
-    start_held = np.where(corner, foot == curves.first[other], (before == 0) & ~free[:, 0])
-    end_held = np.where(corner, foot == curves.last[other], (behind == 0) & ~free[:, 1])
-    doubled = (curve == other) & (foot < places.piece) & (behind > 0)
-    places.shares[:] = np.where(start & (before == 1) & sites.sharing[:, 0][curve], 1, 0)
-    places.shares[np.flatnonzero(end & (behind == 1) & sites.sharing[:, 1][curve])] = -1
-    kept = ~((start & start_held) | (end & end_held)) & np.isfinite(distance) & ~doubled
+    kept = np.isfinite(distance)
+    for k in range(mine.size):
+        pair, curve, other, piece, foot = (
+            places.pair[k],
+            places.curve[k],
+            places.other[k],
+            places.piece[k],
+            places.foot[k],
+        )
+        before, corner = piece - curves.first[curve] + int(places.xi[k]), curves.angle[piece] < 0
+        behind = curves.last[curve] - curves.first[curve] + 1 - before
+        places.side[k] = 0.0 if corner else sides[pair, int(curve != sites.columns[pair, 0])]
+        kept[k] &= curve != other or foot >= piece or behind == 0
+        for end, links, last in ((0, before, curves.first[other]), (1, behind, curves.last[other])):
+            if is_on_end_body(curves, sites, places, k, end):
+                # a corner is no place in an end link held by the corner's body
+                at_weld = links == 0 and not (sites.welded[curve, end] and pressed[other])
+                kept[k] &= foot != last if corner else not at_weld
+                if links == 1 and sites.sharing[curve, end]:
+                    places.shares[k] = 1 - 2 * end
     return picked(places, np.flatnonzero(kept))
 
 

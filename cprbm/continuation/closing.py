@@ -33,7 +33,7 @@ from cprbm.equilibrium import (
     State,
     System,
     equilibrium,
-    least_between,
+    points_between,
     with_fixed_places,
 )
 from cprbm_scene.answer import Array, Flags
@@ -178,7 +178,7 @@ def least_gap(geometry: Geometry, state: State, pair: int) -> float:
     if geometry.joints_alone:
         return least
     known = full.places, full.closed, gaps, pair, contacts.counters
-    return min(least, least_between(z, geometry.arrays, geometry.sites, *known))
+    return float(points_between(z, geometry.arrays, geometry.sites, *known)[1].min(initial=least))
 
 
 def pressing(solved: Solved) -> frozenset[int]:

@@ -4,7 +4,7 @@ from cprbm.equilibrium.certificate import certify
 from cprbm.equilibrium.columns import contact_columns, contact_terms, squares_of
 from cprbm.equilibrium.contact_set import NotConvergedError, with_fixed_places
 from cprbm.equilibrium.factors import Springs
-from cprbm.equilibrium.neighbours import least_between
+from cprbm.equilibrium.neighbours import points_between
 from cprbm.equilibrium.solving import Solved, at_state, balanced_forces, equilibrium, repeated_rows, shared_multipliers
 from cprbm.equilibrium.stability import Mode, blocked, softest
 from cprbm.equilibrium.system import State, System, hidden_forces, rest_state, system_of
@@ -24,7 +24,7 @@ __all__ = [
     "contact_terms",
     "equilibrium",
     "hidden_forces",
-    "least_between",
+    "points_between",
     "repeated_rows",
     "rest_state",
     "shared_multipliers",

@@ -26,10 +26,10 @@ from cprbm.contact import (
     copied,
     corner_sides,
     is_left,
+    is_movable,
     joined,
     left_corner,
     matched,
-    movable,
     near_pairs,
     on_edge,
     settle,
@@ -44,7 +44,7 @@ from cprbm.equilibrium.contact_set import (
 )
 from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.iteration import OVERLAP, arcs_of, beside_points
-from cprbm.equilibrium.neighbours import ISOLATED, LIGHT, as_point, given_up, short_runs
+from cprbm.equilibrium.neighbours import ISOLATED, LIGHT, given_up, points_at, short_runs
 from cprbm.equilibrium.system import State, System
 from cprbm_scene.answer import Array, Flags
 
@@ -226,34 +226,33 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
         NotConvergedError: joints stand for a given-up point, and the curves overlap steeply between the joints.
     """
     contacts, places, z = solved.contacts, solved.contacts.places, solved.state.z
-    curves, counters = geometry.arrays, contacts.counters
-    runs = short_runs(z, curves, geometry.sites, places, contacts.closed, solved.gaps, counters)
+    curves, closed = geometry.arrays, contacts.closed
+    runs = short_runs(curves, geometry.sites, places, closed, solved.gaps)
     if not len(runs):
         return None
-    replaced = np.zeros(len(contacts.closed), dtype=bool)
+    forces = places.force[runs]
+    forces[:, 1] *= runs[:, 1] > runs[:, 0]
+    heavier = runs[np.arange(len(runs)), np.argmax(forces, axis=1)]
+    points, gaps, curvatures = points_at(z, curves, places, heavier, forces.sum(axis=1), contacts.counters)
+    arcs, found = arcs_of(curves, places), arcs_of(curves, points)
+    overlap, span = -OVERLAP - beside_points(curves, places, closed)[1], curves.span[places.piece]
+    replaced = np.zeros(len(closed), dtype=bool)
     created = taken(places, replaced)
-    arcs, span = arcs_of(geometry.arrays, places), curves.span[places.piece]
-    depth = beside_points(curves, places, contacts.closed)[1]
-    for first, last in runs.tolist():
+    for i in np.flatnonzero(closed[heavier] | (gaps < overlap[heavier])).tolist():
+        best = heavier[i]
         # the joints of a run are neighbours
-        run = np.array([first, last] if last > first else [first])
-        given_up = any((int(places.pair[k]), int(places.piece[k])) in contacts.given_up for k in run)
-        best = run[int(np.argmax(places.force[run]))]
-        run = np.flatnonzero(np.isin(np.arange(len(arcs)) + places.shares, run))
-        trial, gap, curvature = as_point(z, curves, places, best, places.force[run].sum(), counters)
-        if given_up:
-            if contacts.closed[best] and gap < -OVERLAP and curvature * curves.span[trial.piece[0]] > STEEPEST:
+        if any((int(places.pair[k]), int(places.piece[k])) in contacts.given_up for k in runs[i]):
+            if closed[best] and gaps[i] < -OVERLAP and curvatures[i] * curves.span[points.piece[i]] > STEEPEST:
                 raise NotConvergedError("a contact's curves overlap between two joints")
             continue
-        overlaps = contacts.closed[best] or gap < -OVERLAP - depth[best]
-        if not overlaps or curvature <= 0.0 or not movable(curves, geometry.sites, trial)[0]:
+        if curvatures[i] <= 0.0 or not is_movable(curves, geometry.sites, points, i):
             continue
-        at = arcs_of(geometry.arrays, trial)[0]
-        others = contacts.closed & (places.pair == places.pair[best]) & (places.curve == places.curve[best])
+        run = np.flatnonzero(np.isin(np.arange(len(arcs)) + places.shares, runs[i]))
+        others = closed & (places.pair == places.pair[best]) & (places.curve == places.curve[best])
         others[run] = False
-        around = np.concatenate([arcs[others], arcs_of(geometry.arrays, created)[created.pair == places.pair[best]]])
-        lonely = not np.any(np.abs(around - at) < ISOLATED * span[best])
-        if lonely and np.any(np.abs(arcs[run] - at) < span[best]):
-            replaced[run] = contacts.closed[run]
-            created = joined(created, trial)
+        around = np.concatenate([arcs[others], arcs_of(curves, created)[created.pair == places.pair[best]]])
+        lonely = not np.any(np.abs(around - found[i]) < ISOLATED * span[best])
+        if lonely and np.any(np.abs(arcs[run] - found[i]) < span[best]):
+            replaced[run] = closed[run]
+            created = joined(created, taken(points, np.array([i])))
     return _with_points(contacts, created, replaced) if len(created.pair) else None

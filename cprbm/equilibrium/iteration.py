@@ -37,7 +37,8 @@ def change_set(
     closes = own & allowed & ~closed & (gap < -OVERLAP - depth)
     count = int(np.count_nonzero(opens | closes))
     if count > most == 1:
-        worst = np.argmin(np.where(closes, gap, np.inf) if np.any(closes) else np.where(opens, places.force, np.inf))
+        wrong, size = (closes, gap) if np.any(closes) else (opens, places.force)
+        worst = np.flatnonzero(wrong)[np.argmin(size[wrong])]
         closed[worst] = closes[worst]
     elif count <= most:
         closed[:] = closes | (closed & ~opens)
@@ -50,7 +51,7 @@ def follow_leaders(places: Places, closed: Flags) -> None:  # pragma: no cover
     """Places with a shared force follow the places that have the force; open places have no force."""
     leader = np.arange(closed.size) + places.shares
     closed[:] = closed[leader]
-    places.force[:] = np.where(closed, places.force[leader], 0.0)
+    places.force[:] = closed * places.force[leader]
 
 
 @compiled
@@ -59,19 +60,22 @@ def closable(
 ) -> tuple[Flags, Flags, Array]:  # pragma: no cover
     """Places that may be closed, places beside a point of contact, and allowed overlaps."""
     beside, depth = beside_points(curves, places, closed)
-    piece, foot, rolled = places.piece, places.foot, places.curve == places.other
-    thick = curves.thickness[piece] + curves.thickness[foot] > 0.0
-    # a corner is a place of its own, but a round end of a beam presses on the corner by the end's place
-    last = (places.xi == 1.0) & (piece == curves.last[places.curve])
-    end = last | ((places.xi == 0.0) & (piece == curves.first[places.curve]))
-    at_corner = (curves.corner[foot] == CORNER) & places.at_point
-    beside |= (at_corner | ((curves.corner[foot] == BEND) & ~places.moves)) & ~end
-    # a foot on a beam's end is the foot of that end's own place; of two ends the first curve has the place
-    second = places.curve != pairs[:, 0][places.pair]
-    on_beam = ~rolled & ~end & (curves.angle[foot] >= 0)
-    doubled = places.at_point & (second | on_beam | (rolled & (places.xi == 1.0)))
-    left = end & (curves.angle[piece] < 0) & ~curves.is_point[places.curve]
-    return ~beside & (thick | ~places.at_point) & ~doubled & ~left, beside, depth
+    allowed = np.empty(closed.size, np.bool_)
+    for k in range(closed.size):
+        curve, piece, foot, at_point = places.curve[k], places.piece[k], places.foot[k], places.at_point[k]
+        rolled, last = curve == places.other[k], places.xi[k] == 1.0
+        # a corner is a place of its own, but a round end of a beam presses on the corner by the end's place
+        end = (last and piece == curves.last[curve]) or (places.xi[k] == 0.0 and piece == curves.first[curve])
+        if not end:
+            at_corner = curves.corner[foot] == CORNER and at_point
+            beside[k] |= at_corner or (curves.corner[foot] == BEND and not places.moves[k])
+        # a foot on a beam's end is the foot of that end's own place; of two ends the first curve has the place
+        on_beam = not rolled and not end and curves.angle[foot] >= 0
+        doubled = curve != pairs[places.pair[k], 0] or on_beam or (rolled and last)
+        left = end and curves.angle[piece] < 0 and not curves.is_point[curve]
+        thick = curves.thickness[piece] + curves.thickness[foot] > 0.0
+        allowed[k] = not (beside[k] or left or (at_point and (doubled or not thick)))
+    return allowed, beside, depth
 
 
 @compiled
@@ -81,26 +85,37 @@ def beside_points(curves: CurveArrays, places: Places, closed: Flags) -> tuple[F
     Outside of the point the other places of the pair may overlap by as much without contact, corners only nearby.
     Closed point contacts stay closed beside each other, and two corners are two contacts.
     """
-    beside, depth, points = np.zeros(closed.size, np.bool_), np.zeros(closed.size), closed & places.moves
-    corner, arcs = curves.angle[places.piece] < 0, arcs_of(curves, places)
-    curve, piece = np.where(corner, places.other, places.curve), np.where(corner, places.foot, places.piece)
-    for k in range(closed.size):
-        if points[k]:
-            lost = lost_at(curves, places.piece[k], 0.5, 0) + lost_at(curves, places.foot[k], 0.5, 0)
-            others = (places.pair == places.pair[k]) & ~points
-            pieces = np.where(curve == curve[k], np.abs(arcs - arcs[k]) / curves.span[piece[k]], np.inf)
-            near = others & (~corner | (pieces < NEARBY))
-            depth = np.maximum(depth, np.where(near, lost * places.force[k], 0.0))
-            beside |= others & (pieces < 1.0) & ~(corner & corner[k])
+    beside, depth, arcs = np.zeros(closed.size, np.bool_), np.zeros(closed.size), arcs_of(curves, places)
+    for k in np.flatnonzero(closed & places.moves):
+        beam, piece, _ = beam_place(curves, places, int(k))
+        lost = lost_at(curves, places.piece[k], 0.5, 0) + lost_at(curves, places.foot[k], 0.5, 0)
+        for j in range(closed.size):
+            if places.pair[j] != places.pair[k] or (closed[j] and places.moves[j]):
+                continue
+            corner, same = curves.angle[places.piece[j]] < 0, beam_place(curves, places, j)[0] == beam
+            pieces = abs(arcs[j] - arcs[k]) / curves.span[piece]
+            if not corner or (same and pieces < NEARBY):
+                depth[j] = max(depth[j], lost * places.force[k])
+            beside[j] |= same and pieces < 1.0 and not (corner and curves.angle[places.piece[k]] < 0)
     return beside, depth
 
 
 @compiled
 def arcs_of(curves: CurveArrays, places: Places) -> Array:  # pragma: no cover
     """Arc lengths of places on their beams: of the feet of corners."""
-    corner = curves.angle[places.piece] < 0
-    piece, at = np.where(corner, places.foot, places.piece), np.where(corner, places.eta, places.xi)
-    return curves.arc[piece] + at * curves.span[piece]
+    arcs = np.empty(places.piece.size)
+    for k in range(arcs.size):
+        _, piece, at = beam_place(curves, places, k)
+        arcs[k] = curves.arc[piece] + at * curves.span[piece]
+    return arcs
+
+
+@compiled
+def beam_place(curves: CurveArrays, places: Places, k: int) -> tuple[int, int, float]:  # pragma: no cover
+    """Curve, piece and parameter of a place on the beam: of the foot of a corner."""
+    if curves.angle[places.piece[k]] < 0:
+        return places.other[k], places.foot[k], places.eta[k]
+    return places.curve[k], places.piece[k], places.xi[k]
 
 
 @compiled
@@ -175,15 +190,16 @@ def step_with_columns(
         LinAlgError: the border is singular.
     """
     bordered, change, reduced = reduced_system(z, m, driven, target, stiffness, anchor, columns, gradient)
-    border = np.tril(bordered.border) + np.tril(bordered.border, -1).T
-    solution = np.linalg.solve(border, reduced)
+    for i in range(reduced.size):
+        bordered.border[:i, i] = bordered.border[i, :i]
+    solution = np.linalg.solve(bordered.border, reduced)
     restored(m.beams, m.border, bordered.coupling, solution, change)  # type: ignore[arg-type]
     size, share = correction(change, m.motions, m.turns)
     if not isfinite(size):
         return np.inf, 0.0
     by_force, leader = np.zeros(closed.size), np.arange(closed.size) + places.shares
     by_force[np.flatnonzero(closed & (places.shares == 0))] = solution[m.border.size :][: columns.values.size]
-    by_force = np.where(closed, by_force[leader], 0.0)
+    by_force = closed * by_force[leader]
     moved = move_places(z, curves, places, change, by_force, share, LONGEST_MOVE)
     z += share * change
     places.force[:] += share * by_force

@@ -134,7 +134,7 @@ def linearise(
     """Border at a state with the columns of closed places; adds the gradient without contacts to ``gradient``."""
     blocks = add_gradient(z, m, driven, target, stiffness, anchor, gradient)
     border, springs = m.border, np.ones(m.beams.springs.size)
-    G = np.diag(np.concatenate((np.zeros(border.rows), np.where(driven, 0.0, 1.0), springs, columns.diagonal)))
+    G = np.diag(np.concatenate((np.zeros(border.rows), 1.0 - driven, springs, columns.diagonal)))
     for t in range(m.rows.turning_row.size):
         angle, mu = m.rows.turning_index[t], z[m.rows.first + m.rows.turning_row[t]]
         bent = m.rows.turning_cos[t] * cos(z[angle]) + m.rows.turning_sin[t] * sin(z[angle])

@@ -6,8 +6,8 @@ The joints of a pair's first curve are in the order of the curve; places of a sh
 import numpy as np
 
 from cprbm.chain import compiled
-from cprbm.contact import CORNER, FINDING, CurveArrays, Places, Sites, movable, picked, settle
-from cprbm.equilibrium.iteration import OVERLAP, arcs_of, beside_points
+from cprbm.contact import CORNER, FINDING, CurveArrays, Places, Sites, is_movable, settle, taken
+from cprbm.equilibrium.iteration import arcs_of
 from cprbm_scene.answer import Array, Flags, Ints
 
 NEIGHBOURS = 1.6
@@ -55,44 +55,40 @@ def minima_of(
     return joints[least]
 
 
-@compiled
-def as_point(
-    z: Array, curves: CurveArrays, places: Places, k: int, force: float, counters: Ints
-) -> tuple[Places, float, float]:  # pragma: no cover
-    """A joint as a moving place at the minimum of the gap; gap and curvature there.
+def points_at(
+    z: Array, curves: CurveArrays, places: Places, joints: Ints, forces: Array, counters: Ints
+) -> tuple[Places, Array, Array]:
+    """Joints (k,) as moving places with ``forces`` (k,) at the minima of the gap; gaps and curvatures there.
 
     Inf and 0 without a minimum between the neighbouring joints, and at a corner: the corner is a place.  At a corner of
     the thickness the slope changes its sign, and the place does not come to rest.
     """
-    trial, gap, curvature = picked(places, np.array([k])), np.empty(1), np.empty(1)
-    trial.moves[0], trial.force[0] = True, force
-    settle(z, curves, trial, gap, curvature, counters, FINDING)
-    curve, piece, found = trial.curve[0], trial.piece[0], arcs_of(curves, trial)[0]
-    apart = abs(found - arcs_of(curves, places)[k])
-    at_corner = trial.at_point[0] and curves.corner[trial.foot[0]] == CORNER
-    settle(z, curves, trial, gap, curvature, counters, 1)
-    low, high = np.inf, -np.inf
-    for near in range(max(piece - 1, curves.first[curve]), min(piece + 1, curves.last[curve]) + 1):
-        lean = curves.thickening[near] / curves.span[near]
-        low, high = min(low, lean), max(high, lean)
-    moved = abs(arcs_of(curves, trial)[0] - found)
-    restless = high - low > LEANING and moved > RESTING * curves.span[piece]
-    if at_corner or restless or apart > NEIGHBOURS * curves.span[piece]:
-        return trial, np.inf, 0.0
-    return trial, gap[0], curvature[0]
+    points, gaps, curvatures = taken(places, joints), np.empty(joints.size), np.empty(joints.size)
+    points.moves[:], points.force[:] = True, forces
+    settle(z, curves, points, gaps, curvatures, counters, FINDING)
+    found, pieces = arcs_of(curves, points), points.piece.copy()
+    far = np.abs(found - arcs_of(curves, places)[joints]) > NEIGHBOURS * curves.span[pieces]
+    missing = far | (points.at_point & (curves.corner[points.foot] == CORNER))
+    settle(z, curves, points, gaps, curvatures, counters, 1)
+    moved = np.abs(arcs_of(curves, points) - found) > RESTING * curves.span[pieces]
+    for i in range(joints.size):
+        curve, low, high = points.curve[i], np.inf, -np.inf
+        for near in range(max(pieces[i] - 1, curves.first[curve]), min(pieces[i] + 1, curves.last[curve]) + 1):
+            lean = curves.thickening[near] / curves.span[near]
+            low, high = min(low, lean), max(high, lean)
+        if missing[i] or (moved[i] and high - low > LEANING):
+            gaps[i], curvatures[i] = np.inf, 0.0
+    return points, gaps, curvatures
 
 
-@compiled
-def least_between(
+def points_between(
     z: Array, curves: CurveArrays, sites: Sites, places: Places, closed: Flags, gaps: Array, pair: int, counters: Ints
-) -> float:  # pragma: no cover
-    """Least gap of a pair at minima between joints, where a point of contact may be; inf without any."""
-    least = np.inf
-    for k in minima_of(curves, places, closed, gaps, sites.columns, pair):
-        trial, gap, curvature = as_point(z, curves, places, k, 0.0, counters)
-        if curvature > 0.0 and movable(curves, sites, trial)[0]:
-            least = min(least, gap)
-    return least
+) -> tuple[Places, Array]:
+    """Moving places at the minima of a pair's gap between open joints, where a point of contact may be; gaps there."""
+    joints = minima_of(curves, places, closed, gaps, sites.columns, pair)
+    points, least, curvatures = points_at(z, curves, places, joints, np.zeros(joints.size), counters)
+    possible = [k for k in np.flatnonzero(curvatures > 0.0).tolist() if is_movable(curves, sites, points, k)]
+    return taken(points, np.array(possible, dtype=np.int64)), least[possible]
 
 
 @compiled
@@ -106,11 +102,10 @@ def _is_crowded(curves: CurveArrays, places: Places, closed: Flags, k: int) -> b
 
 @compiled
 def short_runs(
-    z: Array, curves: CurveArrays, sites: Sites, places: Places, closed: Flags, gaps: Array, counters: Ints
+    curves: CurveArrays, sites: Sites, places: Places, closed: Flags, gaps: Array
 ) -> Ints:  # pragma: no cover
-    """First and last (runs, 2) of short runs of closed joints, and of open joints with an overlap beside the joint."""
+    """First and last (runs, 2) of short runs of closed joints, and of open joints with a minimum of the gap beside."""
     runs, count = np.empty((places.pair.size, 2), np.int64), 0
-    depth = beside_points(curves, places, closed)[1]
     for pair in range(len(sites.columns)):
         joints, beside = joints_of(curves, places, sites.columns, pair)
         begin = 0
@@ -126,33 +121,26 @@ def short_runs(
             begin = i + 1
         for k in minima_of(curves, places, closed, gaps, sites.columns, pair):
             if not _is_crowded(curves, places, closed, k):
-                _, gap, curvature = as_point(z, curves, places, k, 0.0, counters)
-                if gap < -OVERLAP - depth[k] and curvature > 0.0:
-                    runs[count, 0], runs[count, 1] = k, k
-                    count += 1
+                runs[count, 0], runs[count, 1] = k, k
+                count += 1
     return runs[:count]
 
 
-@compiled
 def given_up(
     curves: CurveArrays, sites: Sites, places: Places, closed: Flags, curvatures: Array, least: float
-) -> tuple[Flags, Flags]:  # pragma: no cover
+) -> tuple[Flags, Flags]:
     """Whether moving places become joints again, and whether joints beside moving places open.
 
     Joints open with at most the ``least`` part of the moving place's force.
     """
-    count = closed.size
-    gone, light = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
-    if not np.any(places.moves):
-        return gone, light
-    allowed, arcs = movable(curves, sites, places), arcs_of(curves, places)
-    for k in range(count):
-        if places.moves[k] and curves.angle[places.piece[k]] >= 0:
-            apart, span = np.abs(arcs - arcs[k]), curves.span[places.piece[k]]
-            near = closed & ~places.moves & (places.pair == places.pair[k]) & (places.curve == places.curve[k])
-            near &= (span <= apart) & (apart < ISOLATED * span)
-            heavy = places.force[near].sum() > least * places.force[k]
-            gone[k] = heavy or not (closed[k] and curvatures[k] > 0.0 and allowed[k])
-            if not gone[k]:
-                light |= near
+    gone, light = np.zeros((2, len(closed)), dtype=bool)
+    moving, arcs = places.moves & (curves.angle[places.piece] >= 0), arcs_of(curves, places)
+    for k in np.flatnonzero(moving).tolist():
+        apart, span = np.abs(arcs - arcs[k]), curves.span[places.piece[k]]
+        near = closed & ~places.moves & (places.pair == places.pair[k]) & (places.curve == places.curve[k])
+        near &= (span <= apart) & (apart < ISOLATED * span)
+        heavy = places.force[near].sum() > least * places.force[k]
+        gone[k] = heavy or not (closed[k] and curvatures[k] > 0.0 and is_movable(curves, sites, places, k))
+        if not gone[k]:
+            light |= near
     return gone, light

@@ -19,10 +19,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm.contact import TOUCHING, Contacts, joined, movable
+from cprbm.contact import TOUCHING, Contacts, joined
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.iteration import closable
-from cprbm.equilibrium.neighbours import as_point, minima_of
+from cprbm.equilibrium.neighbours import points_between
 from cprbm.equilibrium.solving import Solved, at_state
 from cprbm_scene.answer import Array, Flags
 
@@ -79,10 +79,9 @@ def _touching(solved: Solved) -> tuple[Contacts, Flags]:
     geometry, z, contacts = solved.system.geometry, solved.state.z, solved.state.contacts
     curves, places = geometry.arrays, contacts.places
     for pair in range(0 if geometry.joints_alone else len(geometry.pairs)):
-        for k in minima_of(curves, contacts.places, contacts.closed, solved.gaps, geometry.sites.columns, pair):
-            trial, gap, curvature = as_point(z, curves, contacts.places, k, 0.0, contacts.counters)
-            if abs(gap) < TOUCHING and curvature > 0.0 and movable(curves, geometry.sites, trial)[0]:
-                places = joined(places, trial)
+        known = contacts.places, contacts.closed, solved.gaps, pair, contacts.counters
+        points, _ = points_between(z, curves, geometry.sites, *known)
+        places = joined(places, points)
     closed = np.concatenate([contacts.closed, np.zeros(len(places.pair) - len(contacts.closed), dtype=bool)])
     every = replace(contacts, places=places, closed=closed)
     allowed = closable(curves, places, closed, geometry.sites.columns)[0]

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cprbm.contact import STENCIL, gap_frame, movable, new_counters, on_edge, settle, settle_near, taken
+from cprbm.contact import STENCIL, gap_frame, is_movable, new_counters, on_edge, settle, settle_near, taken
 from cprbm.equilibrium.factors import factorise
 from cprbm.equilibrium.system import system_of
 from tests.cprbm.contact.workshop import FINDING, all_places, mechanism, settled
@@ -31,13 +31,13 @@ def random_contact(seed):
     gaps, curvatures = settled(geometry, state.z, places)
     bend = on_edge(geometry.arrays, places)
     corner = bend & geometry.arrays.is_point[places.curve]
-    free = movable(geometry.arrays, geometry.sites, places)
+    free = [is_movable(geometry.arrays, geometry.sites, places, k) for k in range(len(gaps))]
     places.moves[:] = corner | ((curvatures > 0.5) & free & (random.random(len(gaps)) < 0.3))
     # a place with the force of its neighbour does not move
     places.moves[places.shares != 0] = False
     _, curvatures = settled(geometry, state.z, places, FINDING)
     inside = (places.xi > 0.05) & (places.xi < 0.95)
-    inside &= (curvatures > 0.5) & movable(geometry.arrays, geometry.sites, places)
+    inside &= (curvatures > 0.5) & [is_movable(geometry.arrays, geometry.sites, places, k) for k in range(len(gaps))]
     possible = np.isfinite(gaps) & (~places.moves | corner | inside) & (corner | ~bend)
     # a foot near the centre of its curve's curvature magnifies the round-off of the differences
     weights = np.empty((4, 2, STENCIL))
