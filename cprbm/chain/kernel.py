@@ -257,8 +257,7 @@ def strain_energy(z: Array, links: Links, joints: Joints) -> float:
     N, Q = force[:, 5], force[:, 6]
     stored = -force[:, 2] * N * N - force[:, 4] * Q * Q
     # the links' own forces at rest would cover the small parts of the joints by round-off
-    force[:, :2] = 0.0
-    free[:, :2] = 0.0
+    force[:, :2] = free[:, :2] = 0.0
     _partials_of_joints(z, links, joints, force)
     _partials_of_joints(unloaded, links, joints, free)
     turn = angle[joints.before + 1] - angle[joints.before] - joints.rest

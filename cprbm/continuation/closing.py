@@ -44,6 +44,9 @@ HAPPENED = 1e-10
 ACCURACY = 1e-12
 """Accuracy of the fraction of a step."""
 
+TOGETHER = 1e-6
+"""Part of a step in which two changes are a single change, as in a symmetric mechanism."""
+
 STEPS = 60
 """Most states on which an event is located by slopes."""
 
@@ -67,11 +70,19 @@ LET_GO = 0.1
 """Force of an opening contact, over the force at the begin of the step: a larger force jumps to zero."""
 
 
-class StopChange(NamedTuple):
-    """A stop's ``row`` closes or opens at a fraction ``share`` of a step."""
+class Change(NamedTuple):
+    """A stop's ``row``, or the ``pairs`` of a contact, close or open at a fraction ``share`` of a step.
+
+    The pair ``first`` closes exactly there.  A closing pair overlaps at the ``share`` of the state, and touches earlier
+    by the part ``early`` of the step.
+    """
 
     share: float
-    row: int
+    row: int = -1
+    pairs: frozenset[int] = frozenset()
+    closes: bool = False
+    first: int = -1
+    early: float = 0.0
 
 
 def event_values(solved: Solved, acting: Flags) -> Array:
@@ -82,7 +93,7 @@ def event_values(solved: Solved, acting: Flags) -> Array:
 
 def stop_changes(
     before: Solved, after: Solved, acting: Flags, solve: Callable[[float, frozenset[int]], Solved]
-) -> list[StopChange]:
+) -> list[Change]:
     """Stops that close or open in a step.
 
     Args:
@@ -97,7 +108,7 @@ def stop_changes(
 
     happened = np.flatnonzero(end < -HAPPENED).tolist()
     shares = [0.0 if begin[row] <= HAPPENED else located(partial(value, row)) for row in happened]
-    return [StopChange(*change) for change in zip(shares, happened, strict=True)]
+    return [Change(*change) for change in zip(shares, happened, strict=True)]
 
 
 def located(event: Callable[[float], float]) -> float:
@@ -155,19 +166,6 @@ def with_stops(system: System, state: State, acting: Flags, iterations: int, spr
     raise NotConvergedError("the stops do not settle")
 
 
-class ContactChange(NamedTuple):
-    """Pairs that close or open at a fraction ``share`` of a step, the pair ``first`` exactly there.
-
-    A closing pair overlaps at the ``share`` of the state, and touches earlier by the part ``early`` of the step.
-    """
-
-    share: float
-    pairs: frozenset[int]
-    closes: bool
-    first: int
-    early: float = 0.0
-
-
 def least_gap(geometry: Geometry, state: State, pair: int) -> float:
     """Least gap of an open pair, between joints too; inf if the curves are far apart."""
     z, contacts = state.z, replace(state.contacts, kept_open=frozenset())
@@ -179,6 +177,11 @@ def least_gap(geometry: Geometry, state: State, pair: int) -> float:
         return least
     known = full.places, full.closed, gaps, pair, contacts.counters
     return float(points_between(z, geometry.arrays, geometry.sites, *known)[1].min(initial=least))
+
+
+def apart_pairs(solved: Solved, pairs: frozenset[int]) -> frozenset[int]:
+    """The pairs whose curves do not touch."""
+    return frozenset(pair for pair in pairs if least_gap(solved.system.geometry, solved.state, pair) > TOUCHING)
 
 
 def pressing(solved: Solved) -> frozenset[int]:
@@ -233,9 +236,7 @@ class Pressed(NamedTuple):
         return float(solved.state.contacts.places.force[self.places(solved)].sum())
 
 
-def contact_changes(
-    before: Solved, after: Solved, solve: Callable[[float, frozenset[int]], Solved]
-) -> list[ContactChange]:
+def contact_changes(before: Solved, after: Solved, solve: Callable[[float, frozenset[int]], Solved]) -> list[Change]:
     """The first closing of pairs, and the openings of pairs, in a step.
 
     Args:
@@ -250,12 +251,22 @@ def contact_changes(
     return _closing(before, after, new - old, solve) + opening
 
 
+def changes_unseen(before: Solved, after: Solved, change: Change) -> bool:
+    """True if other pairs close or open before a change, and are back at the end of the step."""
+    old, new = pressing(before), pressing(after)
+    return bool(apart_pairs(before, new - old - change.pairs) or old - new - change.pairs)
+
+
 def _closing(
     before: Solved, after: Solved, pairs: frozenset[int], solve: Callable[[float, frozenset[int]], Solved]
-) -> list[ContactChange]:
-    """The first closing of some pairs; empty for pairs that touch already, or stay apart when kept open."""
+) -> list[Change]:
+    """The first closing of some pairs; empty for pairs that touch already.
+
+    Raises:
+        NotConvergedError: a pair that closes stays apart when kept open.
+    """
     geometry = before.system.geometry
-    apart = frozenset(pair for pair in pairs if least_gap(geometry, before.state, pair) > TOUCHING)
+    apart = apart_pairs(before, pairs)
     if not apart:
         return []
 
@@ -264,21 +275,19 @@ def _closing(
     def gap(share: float) -> tuple[float, float]:
         solved = solve(share, apart) if share else before
         moved = replace(solved.state, z=solved.state.z + ALONG * tangent(solved, change))
-        gaps = {pair: least_gap(geometry, solved.state, pair) for pair in apart}
-        first[share] = min(gaps, key=lambda pair: gaps[pair])
-        found = gaps[first[share]]
+        found, first[share] = min((least_gap(geometry, solved.state, pair), pair) for pair in apart)
         overlap, slopes[share] = found + CLOSED, (least_gap(geometry, moved, first[share]) - found) / ALONG
         return overlap if abs(overlap) > LOCATED * CLOSED else 0.0, slopes[share]
 
     end = gap(1.0)
-    if end[0] >= 0.0:
-        return []
+    if end[0] > 0.0:
+        raise NotConvergedError("a contact closes on the way to a state that the contact alone leads to")
     share = located_by_slopes(gap, end)
     early = min(share, CLOSED / max(-slopes[share], CLOSED))
-    return [ContactChange(share, apart, closes=True, first=first[share], early=early)]
+    return [Change(share, pairs=apart, closes=True, first=first[share], early=early)]
 
 
-def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[ContactChange]:
+def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[Change]:
     """The opening of a pair; empty if the force does not change its sign.
 
     Raises:
@@ -302,4 +311,4 @@ def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> lis
     share = located(event)
     if force(share) > LET_GO * begin:
         raise NotConvergedError("a contact lets go under force")
-    return [ContactChange(share, frozenset([pair]), closes=False, first=pair)]
+    return [Change(share, pairs=frozenset([pair]), first=pair)]

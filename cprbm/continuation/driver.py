@@ -25,9 +25,10 @@ from typing import Literal
 import numpy as np
 
 from cprbm.continuation.closing import (
-    ContactChange,
-    StopChange,
+    TOGETHER,
+    Change,
     changed,
+    changes_unseen,
     contact_changes,
     kept_open,
     may_close,
@@ -69,7 +70,6 @@ TRAIL = 30
 """Minima that are kept."""
 
 Beyond = Literal["stop", "jump"] | None
-Change = StopChange | ContactChange
 
 
 class StepError(Exception):
@@ -170,10 +170,11 @@ class Driver:
             changes += contact_changes(self.solved, solved, solve)
             at, change = t, min(changes, key=lambda change: change.share, default=None)
             if change is not None:
-                at, opened = begin + change.share * (t - begin), frozenset[int]()
-                if isinstance(change, ContactChange) and change.closes:
-                    change, opened = change._replace(early=change.early * (t - begin)), change.pairs
+                at, change = begin + change.share * (t - begin), change._replace(early=change.early * (t - begin))
+                opened = change.pairs if change.closes else frozenset()
                 solved = solve(change.share, opened) if change.share else self.solved
+                if change.share < 1.0 - TOGETHER and changes_unseen(self.solved, solved, change):
+                    return self._trial(way, at, largest)
             self._check_turn(solved, largest)
         except StepError as refused:
             return refused
@@ -224,7 +225,7 @@ class Driver:
             StepError: the branch ends there.
         """
         before, rows, geometry = self.solved, self.system.mechanism.rows, self.system.geometry
-        if isinstance(change, StopChange):
+        if not change.pairs:
             state = changed(before.state, change.row, self.system)
             name = rows[change.row].name.rpartition(".")[0]
         else:
@@ -239,7 +240,7 @@ class Driver:
             loss = Loss.CONTACT if name in self.system.mechanism.scene.contacts else Loss.STOP
             return self._leave(way, opened(before, after, t, loss, name), beyond)
         names = pressing_names(after)
-        if isinstance(change, ContactChange) and change.closes:
+        if change.closes:
             self._note(way, names | {name}, t - change.early, t)
         else:
             self._note(way, names, t, t)
@@ -299,7 +300,8 @@ class Driver:
             landed = self._landed(descent, point, beside=beyond is None)
             if landed is not None:
                 self.passed.append(passed(landed, energy_before(landed, way.change, t - point.t)))
-                self._note(way, pressing_names(landed), t)
+                # a contact that closes in the descent closes at the critical load
+                self._note(way, pressing_names(landed), point.t)
                 self.solved, self.reached = landed, t
                 return [Reached(t, landed)]
         self.passed.append(passed())

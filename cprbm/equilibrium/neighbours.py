@@ -67,8 +67,8 @@ def points_at(
     points.moves[:], points.force[:] = True, forces
     settle(z, curves, points, gaps, curvatures, counters, FINDING)
     found, pieces = arcs_of(curves, points), points.piece.copy()
-    far = np.abs(found - arcs_of(curves, places)[joints]) > NEIGHBOURS * curves.span[pieces]
-    missing = far | (points.at_point & (curves.corner[points.foot] == CORNER))
+    missing = np.abs(found - arcs_of(curves, places)[joints]) > NEIGHBOURS * curves.span[pieces]
+    missing |= points.at_point & (curves.corner[points.foot] == CORNER)
     settle(z, curves, points, gaps, curvatures, counters, 1)
     moved = np.abs(arcs_of(curves, points) - found) > RESTING * curves.span[pieces]
     for i in range(joints.size):
@@ -141,6 +141,5 @@ def given_up(
         near &= (span <= apart) & (apart < ISOLATED * span)
         heavy = places.force[near].sum() > least * places.force[k]
         gone[k] = heavy or not (closed[k] and curvatures[k] > 0.0 and is_movable(curves, sites, places, k))
-        if not gone[k]:
-            light |= near
+        light |= near & ~gone[k]
     return gone, light

@@ -8,7 +8,7 @@ import pytest
 from numba.core.event import install_listener
 
 from cprbm.chain.compiled import COMPILATION, STAMP, Compilation, compiled
-from cprbm.chain.kernel import strain_energy
+from cprbm.chain.kernel import evaluate_chains
 
 pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
 
@@ -50,11 +50,11 @@ def test_the_compilation_of_another_program_is_not_mentioned(caplog):
 
 def test_stored_machine_code_is_out_of_date_once_any_module_with_kernels_changes():
     """Numba's index of a kernel holds the stamp of all modules, not of the kernel's module alone."""
-    assert strain_energy._cache._cache_file._version == f"{numba.__version__} {STAMP}"
+    assert evaluate_chains._cache._cache_file._version == f"{numba.__version__} {STAMP}"
 
 
 def test_an_older_index_that_names_a_class_which_is_gone_is_not_read(tmp_path, monkeypatch):
-    stored = strain_energy._cache._cache_file
+    stored = evaluate_chains._cache._cache_file
     monkeypatch.setattr(stored, "_index_path", str(tmp_path / "index"))
     gone = b"ccprbm.chain.kernel\nNoClassOfThisName\n."
     (tmp_path / "index").write_bytes(pickle.dumps(numba.__version__) + gone)
