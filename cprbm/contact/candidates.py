@@ -22,7 +22,7 @@ import numpy as np
 
 from cprbm.chain import Direction, Mechanism, unit_direction
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
-from cprbm.contact.fixed import FREE, Sites, is_on_end_body, is_straight, places_at_feet
+from cprbm.contact.fixed import FREE, Sites, is_on_end_body, is_straight, matched, places_at_feet
 from cprbm.contact.gap import Law, Places, gap_frame
 from cprbm.contact.pairs import Pair, contact_pairs
 from cprbm.contact.settling import new_counters, settle
@@ -33,6 +33,9 @@ from cprbm_scene.statement import Body, SlidingBody
 
 LEANING = 0.1
 """Gap beside a weld, over the layers of the sections there, that a lean could close: no material bears such a shear."""
+
+OVERLAPPING = 2e-3
+"""Overlap as drawn, over the mean thickness, beyond the rounded coordinates that a scene may have (1e-3)."""
 
 TOUCHING = 1e-9
 """Gap, over the longest beam, below which curves touch: round-off of a scene's coordinates."""
@@ -89,8 +92,17 @@ def contact_geometry(m: Mechanism) -> Geometry:
     Adds the nodes of rigid curves and the rows of beams pinned on their edge to the mechanism.
     """
     curves, pairs = contact_pairs(m)
-    arrays = curve_arrays(curves)
-    return Geometry(curves, pairs, arrays, _sites(m, curves, pairs, arrays))
+    arrays, z = curve_arrays(curves), np.array(m.rest)
+    geometry = Geometry(curves, pairs, arrays, _sites(m, curves, pairs, arrays))
+    # a scene has overlaps of two beams beside a shared end alone: the ends are one body there, without a contact
+    sites, contacts = geometry.sites, open_contacts(geometry, z)
+    of_beams = np.array([not (pair.itself or sites.rigid[pair.second]) for pair in pairs], dtype=bool)
+    places = fixed_places(geometry, z, contacts.sides, of_beams, contacts.counters)
+    gaps = _gaps_at(geometry, z, contacts, places)
+    deep = places.pair[gaps < -OVERLAPPING * half_thicknesses(arrays, places)]
+    inside = taken(places, (gaps < -TOUCHING) & np.isin(places.pair, deep))
+    outside = taken(sites.possible, matched(arrays, sites.possible, inside) < 0)
+    return replace(geometry, sites=sites._replace(possible=outside))
 
 
 def hold_sections_upright(m: Mechanism, geometry: Geometry) -> None:

@@ -207,7 +207,8 @@ def locked_beam(solved: Solved, change: Array) -> tuple[str, float]:
     if not len(repeated):
         return "", 0.0
     forces = balanced_forces(solved, int(repeated[0]))
-    pull = _pulls(solved, forces)
+    angles = solved.state.z[system.angles]
+    pull = (_forces(solved, forces) * np.column_stack([np.cos(angles), np.sin(angles)])).sum(axis=1)
     largest = np.maximum.reduceat(np.abs(pull), system.beams.first_link)
     longer = float(-(forces[system.rows.first :] @ change) / (system.metric @ pull) * len(pull))
     return list(system.mechanism.chains)[int(np.argmax(largest))], longer
@@ -231,9 +232,3 @@ def taut_value(trail: list[Reached], way: Way, refused: float) -> float | None:
 def _forces(solved: Solved, vector: Array) -> Array:
     """Forces (links, 2) in a vector of unknowns."""
     return np.asarray(vector[solved.system.links.first[:, None] + [2, 3]])
-
-
-def _pulls(solved: Solved, vector: Array) -> Array:
-    """N of all links in a vector of unknowns."""
-    angles = solved.state.z[solved.system.angles]
-    return np.asarray((_forces(solved, vector) * np.column_stack([np.cos(angles), np.sin(angles)])).sum(axis=1))

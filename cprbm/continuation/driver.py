@@ -274,11 +274,9 @@ class Driver:
             raise StepError(Ending.STEP_TOO_SMALL, f"{where}, where beams would have to become longer")
         if not beam:
             raise refused
-        if abs(longer) < ASKED:
-            held = f"beam '{beam}' is straight between ends that are held"
-            raise StepError(Ending.STEP_TOO_SMALL, f"{held}, and cannot give way from there by bending")
-        if longer > 0.0:
-            straight = f"beam '{beam}' is straight between its ends, and cannot become longer by bending"
+        if longer > -ASKED:
+            change = "longer" if longer >= ASKED else "longer or shorter"
+            straight = f"beam '{beam}' is straight between its ends, and cannot become {change} by bending"
             raise StepError(Ending.STEP_TOO_SMALL, straight)
         kept = softest(solved).curvature
         return CriticalPoint(self.reached, 0.0, Loss.BIFURCATION, "", solved, solved, kept, kept)

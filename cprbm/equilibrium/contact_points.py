@@ -74,8 +74,7 @@ def touched_equilibrium(system: System, start: State, iterations: int, springs: 
     kept = contacts.closed | contacts.places.moves
     places, closed = taken(contacts.places, kept), contacts.closed[kept]
     contacts = replace(contacts, places=places, closed=closed, given_up=frozenset(), corner_sides=corners)
-    contacts = with_fixed_places(geometry, start.z, contacts)
-    joints_tried, before = False, start.z
+    contacts, joints_tried, before = with_fixed_places(geometry, start.z, contacts), False, start.z
     old = contacts.places if not contacts.kept_open else _of_all_pairs(geometry, before, contacts)
     for number in range(ROUNDS):
         try:
@@ -94,7 +93,7 @@ def touched_equilibrium(system: System, start: State, iterations: int, springs: 
         revised = _revised(geometry, solved, LIGHT if number < RETRIES else 0.0)
         if revised is None:
             new = _come_near(geometry, solved)
-            every = partial(_of_all_pairs, geometry, solved.state.z, solved.contacts)
+            every = partial(_of_all_pairs, geometry, solved.state.z, solved.state.contacts)
             if passed_through(geometry, before, old, solved.state.z, every, contacts):
                 raise NotConvergedError("a beam passed through itself or over a point")
             if new is None:
@@ -119,7 +118,7 @@ def _revised(geometry: Geometry, solved: Touched, least: float) -> Contacts | No
     """
     if geometry.joints_alone:
         return None
-    contacts, places = solved.contacts, solved.contacts.places
+    contacts, places = solved.state.contacts, solved.state.contacts.places
     gone, light = given_up(geometry.arrays, geometry.sites, places, contacts.closed, solved.curvatures, least)
     if gone.any():
         return _without(geometry, contacts, gone)
@@ -145,7 +144,7 @@ def _with_points(contacts: Contacts, created: Places, replaced: Flags) -> Contac
 
 def _at_ends(geometry: Geometry, solved: Touched) -> Contacts | None:
     """Contacts with the ends of beams in the place of corners that have left the round ends; None without any."""
-    contacts, places = solved.contacts, solved.contacts.places
+    contacts, places = solved.state.contacts, solved.state.contacts.places
     kept, closed = copied(places), contacts.closed.copy()
     arcs, moved = arcs_of(geometry.arrays, places), False
     for k in np.flatnonzero(contacts.closed & places.at_point & on_edge(geometry.arrays, places)).tolist():
@@ -161,7 +160,7 @@ def _leaving_corners(geometry: Geometry, solved: Touched) -> tuple[Places, Flags
 
     A corner at the end of a length of contact stays.
     """
-    contacts, places, z = solved.contacts, solved.contacts.places, solved.state.z
+    contacts, places, z = solved.state.contacts, solved.state.contacts.places, solved.state.z
     replaced = np.zeros(len(contacts.closed), dtype=bool)
     created = taken(places, replaced)
     arcs = arcs_of(geometry.arrays, places)
@@ -183,7 +182,7 @@ def _come_near(geometry: Geometry, solved: Touched) -> Contacts | None:
     New are the feet of pairs without places at the start, and on a rigid curve of several pieces: a foot that moves
     along one face does not see another face come near.
     """
-    z, contacts = solved.state.z, solved.contacts
+    z, contacts = solved.state.z, solved.state.contacts
     late = near_pairs(z, geometry.arrays, geometry.sites.columns, REACH, contacts.counters)
     late[list(contacts.kept_open)] = False
     late[contacts.places.pair] &= geometry.has_faces[contacts.places.pair]
@@ -225,7 +224,7 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
     Raises:
         NotConvergedError: joints stand for a given-up point, and the curves overlap steeply between the joints.
     """
-    contacts, places, z = solved.contacts, solved.contacts.places, solved.state.z
+    contacts, places, z = solved.state.contacts, solved.state.contacts.places, solved.state.z
     curves, closed = geometry.arrays, contacts.closed
     runs = short_runs(curves, geometry.sites, places, closed, solved.gaps)
     if not len(runs):

@@ -110,11 +110,6 @@ class Touched:
     curvatures: Array
     iterations: int
 
-    @property
-    def contacts(self) -> Contacts:
-        """Places and closed set of the state."""
-        return self.state.contacts
-
 
 def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Contacts:
     """Contacts with fixed places at the nearest feet; known places keep force and state, moving places stay."""

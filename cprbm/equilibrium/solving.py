@@ -85,27 +85,18 @@ def equilibrium(system: System, start: State, iterations: int, springs: Springs 
     Raises:
         NotConvergedError: no equilibrium was found.
     """
-    solved = _near(system, start, iterations, springs)
-    while (missed := _contradicted(solved)) is not None:
+    while True:
+        touched = touched_equilibrium(system, start, iterations, springs)
+        solved = at_state(system, touched.state, springs, touched.iterations)
+        missed, state = _contradicted(solved), solved.state
+        if missed is None:
+            return solved
         # a repeated row of a straight beam may be independent once the beam is bent
-        state = solved.state
         repeated = repeated_rows(system, state)
         if repeated.sum() >= state.repeated.sum():
             name = system.mechanism.rows[missed].name
             raise NotConvergedError(f"row {name} contradicts the others", locked=name)
-        counting = replace(state, driven=(state.driven | state.repeated) & ~repeated, repeated=repeated)
-        solved = _near(system, counting, iterations, springs)
-    return solved
-
-
-def _near(system: System, start: State, iterations: int, springs: Springs | None) -> Solved:
-    """Equilibrium with the prescribed rows of a state.
-
-    Raises:
-        NotConvergedError: no equilibrium was found.
-    """
-    touched = touched_equilibrium(system, start, iterations, springs)
-    return at_state(system, touched.state, springs, touched.iterations)
+        start = replace(state, driven=(state.driven | state.repeated) & ~repeated, repeated=repeated)
 
 
 def at_state(system: System, state: State, springs: Springs | None = None, iterations: int = 0) -> Solved:
