@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cprbm.contact import TOUCHING, Geometry, taken, touching_as_drawn
-from cprbm.continuation.path import tangent
+from cprbm.continuation.path import SMALLEST_TURN, tangent, turned
 from cprbm.equilibrium import (
     NotConvergedError,
     Solved,
@@ -247,8 +247,7 @@ def contact_changes(before: Solved, after: Solved, solve: Callable[[float, froze
         NotConvergedError: a state on the way was not found.
     """
     old, new = pressing(before), pressing(after)
-    opening = [change for pair in sorted(old - new) for change in _opening(pair, solve)]
-    return _closing(before, after, new - old, solve) + opening
+    return sum((_opening(pair, solve) for pair in sorted(old - new)), _closing(before, after, new - old, solve))
 
 
 def changes_unseen(before: Solved, after: Solved, change: Change) -> bool:
@@ -262,10 +261,11 @@ def _closing(
 ) -> list[Change]:
     """The first closing of some pairs; empty for pairs that touch already.
 
+    A pair that stays apart when kept open closes in a step that is too long, or at the begin of a short step.
+
     Raises:
-        NotConvergedError: a pair that closes stays apart when kept open.
+        NotConvergedError: the step is too long.
     """
-    geometry = before.system.geometry
     apart = apart_pairs(before, pairs)
     if not apart:
         return []
@@ -275,13 +275,15 @@ def _closing(
     def gap(share: float) -> tuple[float, float]:
         solved = solve(share, apart) if share else before
         moved = replace(solved.state, z=solved.state.z + ALONG * tangent(solved, change))
-        found, first[share] = min((least_gap(geometry, solved.state, pair), pair) for pair in apart)
-        overlap, slopes[share] = found + CLOSED, (least_gap(geometry, moved, first[share]) - found) / ALONG
-        return overlap if abs(overlap) > LOCATED * CLOSED else 0.0, slopes[share]
+        found, first[share] = min((least_gap(solved.system.geometry, solved.state, pair), pair) for pair in apart)
+        slopes[share] = (least_gap(solved.system.geometry, moved, first[share]) - found) / ALONG
+        return found + CLOSED if abs(found + CLOSED) > LOCATED * CLOSED else 0.0, slopes[share]
 
     end = gap(1.0)
-    if end[0] > 0.0:
+    if end[0] > 0.0 and turned(before, after) > SMALLEST_TURN:
         raise NotConvergedError("a contact closes on the way to a state that the contact alone leads to")
+    if end[0] > 0.0:
+        return []
     share = located_by_slopes(gap, end)
     early = min(share, CLOSED / max(-slopes[share], CLOSED))
     return [Change(share, pairs=apart, closes=True, first=first[share], early=early)]

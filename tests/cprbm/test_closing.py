@@ -150,3 +150,66 @@ def test_a_contact_leaves_the_tip_of_a_leaf_drawn_either_way(links):
         assert answer.completed, answer.sentence
         reactions.append([station.values["Q.reaction"] for station in answer.stations])
     assert np.array(reactions[0]) == pytest.approx(np.array(reactions[1]), rel=1e-9, abs=1e-9)
+
+
+def three_noses(stations, thickness=0.5):
+    """A leaf of 100 mm under three noses of a slider, at 80, 60 and 40 mm, with gaps of 1, 2 and 3 mm."""
+    radius = 5.0
+    noses = {
+        name: {
+            "kind": "beam-circle",
+            "beam": "leaf",
+            "body": "slider",
+            "center": [place, gap + radius + 0.5 * thickness],
+            "radius": radius,
+        }
+        for name, place, gap in (("outer", 80.0, 1.0), ("middle", 60.0, 2.0), ("inner", 40.0, 3.0))
+    }
+    return scene_from(
+        {
+            "name": "three noses",
+            "units": {"length": "mm"},
+            "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
+            "bodies": {
+                "wall": {"motion": "fixed", "points": {"A": [0.0, 0.0]}},
+                "slider": {"motion": "slides", "points": {"J": [60.0, 30.0]}, "along": [0.0, 1.0]},
+            },
+            "beams": {
+                "leaf": {
+                    "curve": {"kind": "line", "start": [0.0, 0.0], "end": [100.0, 0.0]},
+                    "thickness": thickness,
+                    "width": 8.0,
+                    "material": "steel",
+                    "start": {"joint": "weld", "point": "A"},
+                    "end": {"joint": "free"},
+                }
+            },
+            "contacts": noses,
+            "drives": {"d": {"kind": "displacement", "point": "J", "direction": [0.0, -1.0]}},
+            "stages": [{"name": "on", "steps": "d", "stations": stations}],
+            "probes": [{"of": "J", "quantity": "reaction"}],
+        }
+    )
+
+
+@pytest.mark.parametrize("links", [20, 40])
+@pytest.mark.parametrize("stations", [[6.0], [1.0, 2.0, 3.0, 6.0], [2.5, 5.0, 6.0]])
+def test_no_contact_closes_or_opens_unseen_in_a_step(stations, links):
+    """Reference: a cantilever under a force at a: w(s)/w(a) = s² (3a − s)/2a³ before a, a straight line behind.
+
+    The force goes from nose to nose: the inner noses close where w is the way of the slider less the gap, and then
+    lift the leaf from the outer noses.  At d = 6 mm the slopes are 0.06, so that the theory is right to 0.3 %.
+    """
+    before_outer, before_middle = 0.6**2 * 1.8 / (2.0 * 0.8**3), 0.4**2 * 1.4 / (2.0 * 0.6**3)
+    expected = [
+        ("outer", "closes", 1.0),
+        ("middle", "closes", (2.0 - before_outer) / (1.0 - before_outer)),
+        ("outer", "opens", (2.0 * 1.5 - 1.0) / (1.5 - 1.0)),
+        ("inner", "closes", (3.0 - 2.0 * before_middle) / (1.0 - before_middle)),
+        ("middle", "opens", (3.0 * 1.75 - 2.0) / (1.75 - 1.0)),
+    ]
+    answer = cprbm.answer(three_noses(stations), cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    assert [(event.contact, event.kind) for event in answer.events] == [(name, kind) for name, kind, _ in expected]
+    values = [1e3 * event.value for event in answer.events]
+    assert values == pytest.approx([value for *_, value in expected], rel=3e-3)

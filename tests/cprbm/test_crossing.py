@@ -84,3 +84,47 @@ def test_a_beam_is_drawn_over_the_root_of_another_that_stands_between_its_arms(e
     found = check(scene, links)
     assert found[-1]["contact.force"][0] > 14.0 * UNIT
     assert found[-1]["tip.rotation"][0] < -1.4
+
+
+def fork(half_angle, *, contact):
+    """Two leaves of 80 mm welded at a single point, with a force on a tip."""
+    tips = {
+        name: [80.0 * np.cos(half_angle), sense * 80.0 * np.sin(half_angle)] for name, sense in (("u", 1), ("d", -1))
+    }
+    return scene_from(
+        {
+            "name": "fork",
+            "units": {"length": "mm"},
+            "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
+            "bodies": {"root": {"motion": "fixed", "points": {"A": [0.0, 0.0]}}},
+            "beams": {
+                name: {
+                    "curve": {"kind": "line", "start": [0.0, 0.0], "end": tip},
+                    "thickness": 1.0,
+                    "width": 8.0,
+                    "material": "steel",
+                    "start": {"joint": "weld", "point": "A"},
+                    "end": {"joint": "free", "point": f"tip{name}"},
+                }
+                for name, tip in tips.items()
+            },
+            "contacts": {"k": {"kind": "beam-beam", "between": ["u", "d"]}} if contact else {},
+            "loads": {"F": {"kind": "force", "point": "tipu", "direction": [0.0, -1.0]}},
+            "stages": [{"name": "on", "steps": "F", "stations": [1.0, 5.0]}],
+            "probes": [{"of": "tipu", "quantity": "displacement"}],
+        }
+    )
+
+
+@pytest.mark.parametrize("links", [20, 40, 80])
+@pytest.mark.parametrize("degrees", [8.0, 14.0, 30.0])
+def test_beams_that_overlap_as_drawn_beside_a_shared_end_do_not_press_there(degrees, links):
+    # reference: the leaves do not meet under these forces, so that the contact changes nothing
+    with_contact, without = (
+        cprbm.answer(fork(np.radians(degrees), contact=contact), cprbm.Settings(links=links))
+        for contact in (True, False)
+    )
+    assert with_contact.completed, with_contact.sentence
+    for station, free in zip(with_contact.stations, without.stations, strict=True):
+        assert not station.touching
+        assert station.values["tipu.displacement"] == pytest.approx(free.values["tipu.displacement"], rel=1e-9)

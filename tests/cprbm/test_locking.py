@@ -63,7 +63,7 @@ def test_what_presses_on_it_ends_with_the_beam_that_is_in_the_way():
     moment = 0.73 * STIFFNESS / LENGTH
     answer = cprbm.answer(beside_a_held_one(moment, 0.0213), cprbm.Settings(links=17))
     assert answer.ending is Ending.STEP_TOO_SMALL
-    assert "beam 'held' is straight between ends that are held" in answer.sentence
+    assert "beam 'held' is straight between its ends, and cannot become longer or shorter" in answer.sentence
     assert len(answer.stations) == 1
 
 

@@ -36,7 +36,7 @@ def stepped(name: str, links: int, stations=None):
         target = state.target.copy()
         target[row] = m.rows[row].unit * station
         solved = touched_equilibrium(system, replace(state, target=target, contacts=contacts), ITERATIONS)
-        state, contacts = solved.state, solved.contacts
+        state, contacts = solved.state, solved.state.contacts
         solutions.append(solved)
     return m, geometry, system, solutions
 
@@ -50,9 +50,9 @@ def row_force(m, system, solved, name: str) -> float:
 def test_the_hinges_contact_force_meets_the_exact_reference(links, error):
     m, _, system, solutions = stepped("hinge", links)
     last = solutions[-1]
-    assert last.contacts.closed.sum() == last.contacts.places.moves.sum() == 1
+    assert last.state.contacts.closed.sum() == last.state.contacts.places.moves.sum() == 1
     assert at_state(system, last.state).lost == 0
-    force = float(last.contacts.places.force[last.contacts.closed][0]) * m.units.force
+    force = float(last.state.contacts.places.force[last.state.contacts.closed][0]) * m.units.force
     assert force == pytest.approx(HINGE_FORCE, rel=error)
 
 
@@ -102,8 +102,8 @@ def residual(system, geometry, state, places, closed):
 def test_solutions_and_lost_directions_are_those_of_the_dense_matrix(name, station, strength):
     """The matrix by central differences of the gradient, with ``strength`` times the equilibrium's contact forces."""
     m, geometry, system, solutions = stepped(name, 9, np.linspace(0.0, station, 6)[1:])
-    state, closed = solutions[-1].state, solutions[-1].contacts.closed
-    places = taken(solutions[-1].contacts.places, np.arange(len(closed)))
+    state, closed = solutions[-1].state, solutions[-1].state.contacts.closed
+    places = taken(solutions[-1].state.contacts.places, np.arange(len(closed)))
     places.force[:] *= strength
     own, size = np.flatnonzero(closed & (places.shares == 0)), len(state.z)
     unknowns = np.concatenate([np.arange(system.rows.first), system.rows.first + np.flatnonzero(state.driven)])
@@ -135,7 +135,7 @@ def test_a_strip_does_not_pass_through_itself():
     """Rolled: small steps meet the contact of the strip's layers; a step past the contact is refused."""
     begin = [2.0, 4.0, 6.0]
     _, _, _, small = stepped("rolled", 20, [*begin, *np.linspace(6.1, 6.8, 8)])
-    assert small[-1].contacts.closed.sum() == 1
-    assert small[-1].contacts.places.force[small[-1].contacts.closed] > 0.0
+    assert small[-1].state.contacts.closed.sum() == 1
+    assert small[-1].state.contacts.places.force[small[-1].state.contacts.closed] > 0.0
     with pytest.raises(NotConvergedError, match="passed through itself"):
         stepped("rolled", 20, [*begin, 6.8])
