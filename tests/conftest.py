@@ -9,6 +9,7 @@ import pytest
 from hypothesis import settings
 
 from tests.house.internals import ROOT, Internals, product_names
+from tests.house.unprinted import without_printing
 
 # the time for an example depends on the load of the machine
 settings.register_profile("no clock", deadline=None)
@@ -26,14 +27,34 @@ def _one_core():
         yield
 
 
+@pytest.fixture
+def printed():
+    """Nothing: a test that reads the bytes of figures requests this name, and ``unprinted`` does nothing."""
+
+
+@pytest.fixture
+def unprinted(request):
+    """White figures: layout and printing take most of the time of a report; see :mod:`tests.house.unprinted`."""
+    if "printed" in request.fixturenames:
+        yield
+        return
+    with without_printing():
+        yield
+
+
 def pytest_collection_finish():
     """Modules and collected tests live to the end, so the garbage collector skips them: 8 % of the processor."""
     gc.collect()
     gc.freeze()
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the marker ``internals`` on the tests of internals of the product packages."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Put the marker ``internals`` on the tests of internals of the product packages.
+
+    Without a request for markers (``-m``) nobody reads the marker, and the search takes a third of the collection.
+    """
+    if not config.option.markexpr:
+        return
     internals = Internals(ROOT, product_names())
     for item in items:
         if internals.names_for(item.path, getattr(item, "fixturenames", ())):

@@ -37,7 +37,7 @@ def asked(case):
     stages = []
     for stage in scene.stages:
         stations = stage.stations if stage.beyond is None else stage.stations[::20]
-        update = {"stations": stations[-3:] if stage.beyond is None else stations, "shown": ()}
+        update = {"stations": stations[-2:] if stage.beyond is None else stations, "shown": ()}
         stages.append(stage.model_copy(update=update))
     return scene.model_copy(update={"stages": tuple(stages), "claims": ()})
 

@@ -5,7 +5,7 @@ import pytest
 from comparisons import cases
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def hinge():
     return cases.opened("hinge")
 
@@ -18,3 +18,8 @@ def right():
     from tests.verdict.made_up import MadeUp
 
     return Solvers(cprbm=MadeUp("cprbm", 2e-3), fea=MadeUp("fea", -5e-4))
+
+
+@pytest.fixture(autouse=True)
+def _quick_figures(unprinted):
+    """Tests that read the bytes of figures request ``printed``."""

@@ -336,6 +336,7 @@ def test_the_machine_is_described():
     assert all(found.values())
 
 
+@pytest.mark.usefixtures("printed")
 def test_bench_prints_writes_and_ends_with_0(right, capsys, tmp_path):
     arguments = ["bench", "hinge", "--sizes", "40,80", "--repeat", "1", "--out", str(tmp_path / "out")]
     arguments += ["--method", "auto", "--method", "fea", "--json", str(tmp_path / "bench.json")]

@@ -211,6 +211,7 @@ def test_json_has_every_station_and_sums(hinge, right):
     assert 0.0 < stress["curved_beam"] <= 0.0274
 
 
+@pytest.mark.usefixtures("printed")
 def test_the_picture_shows_every_part_that_there_is(hinge, right):
     account = account_of(hinge, Choices(), AnswerMemory(solvers=right))
     (picture,) = budget_figures(account)
@@ -247,6 +248,7 @@ def test_converge_tells_the_budget_and_spares_its_own_runs(hinge, right, capsys)
     assert len(calls) == 4 * 2 + 2 + 1
 
 
+@pytest.mark.usefixtures("printed")
 def test_converge_shows_the_budget_and_writes_its_figure(right, tmp_path, capsys):
     assert run(["converge", "hinge", "--sizes", "40,80", "--out", str(tmp_path)], right) == 0
     assert "Error budget at load 0.67 N·m with 40 links and 80 elements per beam" in capsys.readouterr().out

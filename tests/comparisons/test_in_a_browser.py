@@ -9,6 +9,8 @@ from comparisons.pairing import Solvers
 from tests.comparisons.browser import WANTED, browser, found
 from tests.verdict.made_up import MadeUp
 
+pytestmark = pytest.mark.usefixtures("printed")
+
 WIDTHS = (1280, 1024, 900, 768, 390)
 
 

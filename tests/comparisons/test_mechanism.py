@@ -10,6 +10,8 @@ import comparisons
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 
+pytestmark = pytest.mark.usefixtures("printed")
+
 FEW = Choices(links=10, elements=10)
 
 

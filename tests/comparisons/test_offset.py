@@ -124,6 +124,7 @@ def test_the_json_says_what_is_documented(compared):
     assert 0.0 < row["difference"] <= row["uncertainty"]["cprbm"] + row["uncertainty"]["round_off"]
 
 
+@pytest.mark.usefixtures("printed")
 def test_compare_shows_tables_and_writes_a_report(small, tmp_path, capsys):
     assert run(["compare", small, "-v", "--out", str(tmp_path / "report")]) == 0
     printed = capsys.readouterr().out

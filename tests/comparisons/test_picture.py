@@ -31,6 +31,8 @@ from cprbm_scene.frozendict import frozendict
 from tests.cprbm_scene.editing import LINKAGE, edited
 from tests.verdict.jumping import Jumping
 
+pytestmark = pytest.mark.usefixtures("printed")
+
 RIGID = {"beam": "spring", "thick": False}
 EDGE = {**RIGID, "kind": "beam-line", "body": "rocker", "points": [[0.15, 0.0], [0.15, 0.1]], "side": "right"}
 PLANE = {"kind": "beam-half-plane", "beam": "spring", "body": "ground", "point": [0.3, 0.0], "normal": [-2.0, 0.0]}

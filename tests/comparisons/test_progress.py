@@ -27,6 +27,7 @@ def _on_a_terminal(*arguments):
     except OSError as error:
         pytest.skip(f"no pseudo-terminal can be opened ({error}): mount devpts on /dev/pts")
     environment = os.environ | {"PYTHONPATH": str(ROOT), "TERM": "xterm", "COLUMNS": "100", "OMP_NUM_THREADS": "1"}
+    environment["NUMBA_DISABLE_JIT"] = "1"  # with few links, machine code takes longer to load
     process = subprocess.Popen(
         [sys.executable, "-c", program, *arguments], stdout=subprocess.PIPE, stderr=its, env=environment, cwd=ROOT
     )

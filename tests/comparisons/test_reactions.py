@@ -357,6 +357,7 @@ def test_an_energy_that_is_no_number_leaves_no_value():
 # JSON, table, figure, verdict
 
 
+@pytest.mark.usefixtures("printed")
 def test_json_table_and_figure_show_it():
     comparison = comparison_of(driven(("push", (0.002, STOP_AT)), ("turn", (0.003,))))
     known, without, moment = json.loads(text_of(json_document.comparison(comparison)))["work_energy"]

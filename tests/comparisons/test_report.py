@@ -154,12 +154,14 @@ def test_the_page_asks_nothing_of_a_network(written):
     assert not re.search(r"@import|url\((?!#|%23)|https?://(?!www\.w3\.org)", page)
 
 
+@pytest.mark.usefixtures("printed")
 def test_other_runs_write_the_same_bytes(tmp_path, files):
     pages = [reported(tmp_path / name, counting()[0], "--without", "times", asked=files[:1])[1] for name in "ab"]
     assert pages[0].count(b"<figure") > 3
     assert pages[0] == pages[1]
 
 
+@pytest.mark.usefixtures("printed")
 def test_what_is_there_is_not_solved_again_and_keeps_its_run_times(written):
     out, page, data = written
     solvers, asked = counting()
@@ -344,6 +346,7 @@ def put(comparison, tmp_path_factory):
     return folder
 
 
+@pytest.mark.usefixtures("printed")
 def test_the_folder_of_compare_holds_everything_and_figures_carry_no_date(put, comparison):
     found = {str(path.relative_to(put)) for path in put.rglob("*") if path.is_file()}
     names = ("shapes", "stress", "path-M", "contact-forces")
@@ -376,6 +379,7 @@ def test_the_page_of_compare_shows_verdict_claims_and_certificates(put):
         assert part in text.replace(" %", "\u00a0%"), part
 
 
+@pytest.mark.usefixtures("printed")
 def test_a_case_that_did_not_complete_has_a_chapter_too(right):
     early = Solvers(MadeUp("cprbm", 0.0, until=2), right.fea)
     found = compare(paired(cases.opened("hinge"), Choices(), early))

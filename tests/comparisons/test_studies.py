@@ -129,6 +129,7 @@ def test_an_unknown_study_is_refused_with_those_that_there_are(capsys):
     assert "calibration, relations, table1" in said
 
 
+@pytest.mark.usefixtures("printed")
 def test_table1_writes_a_page_numbers_and_a_figure(capsys, tmp_path, three_cells):
     out = tmp_path / "new" / "out"
     arguments = ["study", "table1", "--repeat", "1", "--out", str(out), "--json", str(tmp_path / "t.json")]

@@ -20,6 +20,8 @@ from comparisons.present.picture import view_of
 from comparisons.present.strips import SECTIONS, with_stresses
 from comparisons.present.view import ACROSS, beam_block, force_block, obstacle_block
 
+pytestmark = pytest.mark.usefixtures("printed")
+
 needs_meshio = pytest.mark.skipif(bool(trouble_with("meshio")), reason="meshio, of the extra 'view', is not there")
 needs_pyvista = pytest.mark.skipif(bool(trouble_with("pyvista")), reason="pyvista, of the extra 'view', is not there")
 

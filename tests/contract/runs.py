@@ -115,7 +115,8 @@ def _run(words: list[str], situation: Situation, out: Path, packages: Packages) 
     """Exit code and standard output of the program."""
     with contextlib.chdir(out):
         if situation.fresh:
-            environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+            path = os.pathsep.join(filter(None, sys.path))
+            environment = {**os.environ, "PYTHONPATH": path, "NUMBA_DISABLE_JIT": "1"}
             command = [sys.executable, "-m", "comparisons", *words]
             done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
             return done.returncode, done.stdout

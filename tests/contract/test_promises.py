@@ -15,6 +15,7 @@ from .today import today
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_every_promise_holds_or_its_change_is_declared(promised, changes):
     assert broken(promised, today(promised, changes), changes) == []
 

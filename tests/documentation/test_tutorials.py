@@ -9,6 +9,8 @@ import pytest
 from comparisons.cli.main import run
 from tests.documentation.pages import DOCS, blocks
 
+pytestmark = pytest.mark.usefixtures("unprinted")
+
 FOLDER = DOCS / "tutorials"
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 COMMANDS = [

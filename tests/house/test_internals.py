@@ -3,12 +3,16 @@
 import importlib
 import inspect
 import re
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from tests import conftest
 from tests.house.internals import ROOT, Internals, product_names
 from tests.house.public_names import DOCUMENTED, EXPORTING
 
+HERE = Path(__file__).parent
 PUBLIC = {"solver": frozenset({"answer"}), "harness.verdict": frozenset({"Verdict"})}
 PRODUCT = {
     "solver/__init__.py": "from solver.march import step as answer\n__all__ = ['answer']\n",
@@ -92,11 +96,15 @@ def test_an_import_at_the_head_of_a_conftest_counts_for_its_folder(names_for):
     assert names_for("def test(): ...", folder="tests/inside") == ["solver.march"]
 
 
-def test_the_marker_is_set_on_collected_tests(request):
+def test_the_marker_is_set_on_collected_tests_where_markers_are_requested(request):
     """This folder holds both kinds: test_threads imports solver modules, this module imports none."""
-    marked = {item.path.name: bool(item.get_closest_marker("internals")) for item in request.session.items}
-    assert marked["test_internals.py"] is False
-    assert marked.get("test_threads.py", True) is True
+    modules = {path.name: pytest.Module.from_parent(request.session, path=path) for path in HERE.glob("test_*.py")}
+    for requested in ("", "not internals"):
+        config = SimpleNamespace(option=SimpleNamespace(markexpr=requested))
+        conftest.pytest_collection_modifyitems(config, list(modules.values()))
+        marked = {name for name, module in modules.items() if module.get_closest_marker("internals")}
+        assert "test_internals.py" not in marked
+        assert ("test_threads.py" in marked) is bool(requested)
 
 
 def documented(module):

@@ -182,13 +182,13 @@ ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
 def test_poisoned_points_are_rows_and_are_tried_twice(scene, tmp_path):
     marks = tmp_path / "marks"
     command = [*program(tmp_path, POISONED.format(marks=str(marks))), str(scene), "-n", "6", "--quiet", "--out"]
-    options = [str(tmp_path / "s"), "--vary", "t=1.6mm..2.4mm:5", "--at-most", "20"]
+    options = [str(tmp_path / "s"), "--vary", "t=1.6mm..2.4mm:5", "--at-most", "10"]
     done = subprocess.run([*command, *options], env=ENVIRONMENT, capture_output=True, text=True, check=False)
     assert done.returncode == 1, done.stderr
     rows = table(tmp_path / "s", "last.csv")
     assert [row["ending"] for row in rows] == ["COMPLETED", "CRASHED", "TIME_LIMIT", "FAULT", "COMPLETED"]
     assert "7" in rows[1]["sentence"]
-    assert "20 s" in rows[2]["sentence"]
+    assert "10 s" in rows[2]["sentence"]
     assert "a beam of no length" in rows[3]["sentence"]
     assert len(marks.read_text()) == 5 + 2
     assert "3 of 5 points failed (1 CRASHED, 1 FAULT, 1 TIME_LIMIT)" in done.stdout

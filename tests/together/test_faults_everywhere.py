@@ -163,12 +163,17 @@ def test_a_contact_ignored(case, contact, solver):
     assert word(case, solver, without_contact(REAL[solver], contact)(thinned(case), CHOICES)) is not Word.AGREE
 
 
-# the contact of a beam with itself has no signed side
-SIDED = [
-    name
-    for name, scene in SCENES.items()
-    if any(isinstance(contact, BeamContact | CircleContact) for contact in scene.contacts.values())
-]
+def sided(scene: Scene) -> frozenset[type]:
+    """The kinds of contacts with a signed side; the contact of a beam with itself has none."""
+    return frozenset(type(each) for each in scene.contacts.values() if isinstance(each, BeamContact | CircleContact))
+
+
+# a case for every set of kinds, since the fault is in a function for each kind: the first with the fewest contacts
+SIDED = {
+    sided(SCENES[name]): name
+    for name in sorted(SCENES, key=lambda name: len(SCENES[name].contacts))[::-1]
+    if sided(SCENES[name])
+}.values()
 
 
 @pytest.mark.parametrize("case", SIDED)

@@ -75,6 +75,7 @@ def files(tmp_path_factory):
 SIZES = ["-n", "8", "--elements", "8"]
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_a_report_has_the_numbers_of_the_scene_without_spaces(files, tmp_path, capsys):
     rows = []
     for number, path in enumerate(files):
