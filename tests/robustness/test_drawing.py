@@ -104,9 +104,9 @@ def test_the_text_is_a_file_of_the_scene(tmp_path):
 
 def test_every_kind_stands_in_some_scenes():
     counted = Counter()
-    scenes = 60
+    scenes = 120
     for index in range(scenes):
-        counted.update(strata.stated(scene_from(drawn(15, index).data)))
+        counted.update(strata.stated(scene_from(drawn(11, index).data)))
     rare = {kind: counted[kind] for kind in strata.KINDS if counted[kind] < 0.03 * scenes}
     assert rare == {}
     assert all(counted[f"beams: {n}"] for n in (1, 2, 3, 4))
