@@ -75,8 +75,8 @@ Rows = dict[Contender, Sequence[Timing]]
 
 
 def bench_section(measured: Session) -> Section:
-    """Times, errors and ratios of a benchmark, with figures and documented JSON."""
-    return Section("Run time against error", (), pictures(measured), tables_of(measured), "bench", document(measured))
+    """Times, errors and ratios of a benchmark, with documented JSON and without :func:`pictures`."""
+    return Section("Run time against error", (), (), tables_of(measured), "bench", document(measured))
 
 
 def pictures(measured: Session) -> tuple[Figure, ...]:

@@ -15,7 +15,7 @@ import click
 
 from comparisons import case, cases, logs, pairing, provenance
 from comparisons.bench import measures, running
-from comparisons.bench.section import bench_section, size_text
+from comparisons.bench.section import bench_section, pictures, size_text
 from comparisons.case import Comparison
 from comparisons.choices import Count, check_counts
 from comparisons.cli import output
@@ -24,9 +24,10 @@ from comparisons.cli.errors import code_of
 from comparisons.cli.main import OPTIMISERS
 from comparisons.offset_verdict import Compared, compared_offset
 from comparisons.present import brief, csv_table, figures, page
-from comparisons.present.columns import Plain, Section
+from comparisons.present.columns import Figure, Plain, Section
 from comparisons.store import Run, run_into
 from comparisons.studies import calibration, convergence, table1
+from comparisons.studies.calibration import Calibration, with_case
 from comparisons.studies.report import Report
 from comparisons.tolerances import runs_within
 from comparisons.verdict import Runs, Word
@@ -234,7 +235,7 @@ def bench(
         say("reference of the errors")
         known = measures.reference(question, request.solvers)
     session = running.Session(opened if whole else question, plan, taking, provenance.machine(), known, absent)
-    take_steps(request, session, session.jobs(), running.Session.do, bench_section)
+    take_steps(request, session, session.jobs(), running.Session.do, bench_section, pictures)
     failed = [row for row in session.rows() if row.contender.name in running.OURS and not row.outcome.completed]
     for row in failed:
         who = f"{row.contender.label} at N = {size_text(row.count)}"
@@ -252,9 +253,8 @@ def study_calibration(request: output.Request) -> int:
     """Compare stated with true errors; exit code 1 for a case that differs or did not complete."""
     request = request.with_room()
     with run_into(request.out, request.solvers, processes=request.processes) as run:
-        take = partial(calibration.with_case, solvers=run.solvers, crew=run.crew)
-        scenes = [*map(cases.opened, cases.scenes())]
-        found = take_steps(request, calibration.Calibration(), scenes, take, calibration.result_of)
+        take, scenes = partial(with_case, solvers=run.solvers, crew=run.crew), [*map(cases.opened, cases.scenes())]
+        found = take_steps(request, Calibration(), scenes, take, calibration.result_of, calibration.pictures)
     verdicts = [trial.verdict for trial in found.trials]
     return code_of(incomplete=any(each.word is Word.DIFFER or not each.completed for each in verdicts))
 
@@ -263,7 +263,7 @@ def study_table1(request: output.Request, repeat: int) -> int:
     """Time both solvers on the cells of the paper's Table 1; exit code 1 for an incomplete solve."""
     request = request.with_room()
     session = table1.session(request.solvers, provenance.machine(), repeat, request.at_most)
-    take_steps(request, session, session.jobs(), running.Session.do, table1.result_of)
+    take_steps(request, session, session.jobs(), running.Session.do, table1.result_of, table1.pictures)
     return code_of(incomplete=not table1.result_of(session).complete)
 
 
@@ -273,17 +273,17 @@ def take_steps(
     steps: Sequence[Step],
     take: Callable[[Study, Step], Study],
     section_of: Callable[[Study], Section],
+    figures_of: Callable[[Study], tuple[Figure, ...]] = lambda study: (),
 ) -> Study:
-    """The finished study; every step writes the partial section, and an interrupted study shows its section."""
-    written: Section | None = None
+    """The finished study: every step writes numbers and tables, and the end or an interruption also the figures."""
     with output.bar(len(steps), shown=not request.quiet) as progress:
         try:
             for step in progress.through(steps):
-                study, written = take(study, step), None
-                if request.out is not None or (request.json_file is not None and request.prints):
-                    written = _write_files(request, section_of(study))
+                study = take(study, step)
+                _write_files(request, section_of(study))
         finally:
-            section = written or _write_files(request, section_of(study))
+            section = replace(section_of(study), figures=figures_of(study))
+            _write_files(request, section)
             progress.clear()
             if not request.prints:
                 output.write_json(request.json_file, dict(section.data))
@@ -293,11 +293,10 @@ def take_steps(
     return study
 
 
-def _write_files(request: output.Request, section: Section) -> Section:
-    """The section, whose files are written now."""
+def _write_files(request: output.Request, section: Section) -> None:
+    """Write the page, the figures and the JSON of a section."""
     if request.prints:
         output.write_json(request.json_file, dict(section.data))
     if request.out is not None:
         page.put_section(request.out, section)
         page.put_page(request.out, page.Page(section.heading, "", further=(section,)), section.name)
-    return section

@@ -90,8 +90,8 @@ def tallies(trials: Iterable[Trial]) -> tuple[Tally, ...]:
 
 
 def result_of(found: Calibration) -> Section:
-    """Result of the measurements so far."""
-    measured, by_case = any(trial.ratios for trial in found.trials), found.by_case()
+    """Result of the measurements so far, without :func:`pictures`."""
+    by_case = found.by_case()
     cases_of_json = [
         {
             "case": case,
@@ -105,7 +105,7 @@ def result_of(found: Calibration) -> Section:
     return Section(
         "Stated uncertainties beside true errors",
         tuple(_sentences(found)),
-        (_stated_against_true(found),) if measured else (),
+        (),
         tuple(table for table in (_tallies(found), _worst(found)) if table.rows),
         "calibration",
         {"study": "calibration", "cases": cases_of_json},
@@ -194,8 +194,10 @@ def _worst(found: Calibration) -> Table:
     )
 
 
-def _stated_against_true(found: Calibration) -> Figure:
-    """Stated against true errors of every row, a panel for each solver and a colour for each case."""
+def pictures(found: Calibration) -> tuple[Figure, ...]:
+    """Stated against true errors of every row, a panel for each solver and a colour for each case; if there are any."""
+    if not any(trial.ratios for trial in found.trials):
+        return ()
     with canvas(9.6, 5.2, 2, 2, "xy") as (drawing, panels):
         every = [size for trial in found.trials for each in trial.ratios for size in _shares(each)]
         low, high = 0.5 * min(every), 2.0 * max(every)
@@ -221,7 +223,7 @@ def _stated_against_true(found: Calibration) -> Figure:
             "Each row's stated error against its true one. On the line they are equal; below it the statement is not "
             "true. Dashed: stated ten times the true one, which the median is not to exceed."
         )
-        return finished(drawing, "calibration", caption)
+        return (finished(drawing, "calibration", caption),)
 
 
 def _shares(ratio: ErrorRatio) -> tuple[float, float]:

@@ -18,7 +18,7 @@ from pydantic_core import to_json
 from comparisons import cases, provenance
 from comparisons.bench.measures import benchmark_scene, reference
 from comparisons.bench.running import OURS, Plan, Session, contenders, refusal_text
-from comparisons.bench.section import bench_section
+from comparisons.bench.section import bench_section, pictures
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.offset_verdict import Compared, compared_offset
@@ -154,7 +154,8 @@ class Report:
             OSError: the folder cannot be written to.
         """
         if self._has_table and self.table is None:
-            section = table1.result_of(table1.session(self.timed, self.origin, REPEAT, AT_MOST).after_all())
+            measured = table1.session(self.timed, self.origin, REPEAT, AT_MOST).after_all()
+            section = replace(table1.result_of(measured), figures=table1.pictures(measured))
             put_section(self.folder, section)
             self.table = light(section)
             write(self.folder / _TABLE, to_json((self._table_key, self.table)))
@@ -209,7 +210,8 @@ def _run_times(scene: Scene, timed: Solvers, knowing: Solvers) -> Section:
     scene = benchmark_scene(scene)
     plan = Plan(dict.fromkeys(OURS, SIZES), repeat=REPEAT, at_most=AT_MOST, clock="cpu")
     methods, known = contenders(timed, Choices(kinematics=plan.kinematics)), reference(scene, knowing)
-    return bench_section(Session(scene, plan, methods, provenance.machine(), known).after_all())
+    measured = Session(scene, plan, methods, provenance.machine(), known).after_all()
+    return replace(bench_section(measured), figures=pictures(measured))
 
 
 def _record_of(file: Path, kind: type[T], key: str) -> T | None:
