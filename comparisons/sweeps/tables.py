@@ -9,14 +9,12 @@ The page has values over one or two parameters, curves of all points with a slid
 different branches are never joined: a curve is cut, and a contour map leaves the cell out.
 """
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
@@ -29,12 +27,10 @@ from comparisons.quantities import stage_of
 from comparisons.sweeps.demands import Measure, measures
 from comparisons.sweeps.outcome import NumberRecord, Outcome
 from comparisons.sweeps.points import Axis, place_text
+from comparisons.sweeps.running import Sweep, Task
 from comparisons.verdict import ROUND_OFF
 from comparisons.writing import write
 from cprbm_scene import Array, Scene, Stage
-
-if TYPE_CHECKING:
-    from comparisons.sweeps.running import Sweep, Task
 
 _VALUES = ("value", "fea", "difference", "stated")
 _PLACES = ("stage", "station", "station_unit", "branch", "probe", "component", "arc_length", "arc_length_unit")
@@ -143,7 +139,7 @@ _PANELS = 12
 
 _RATIO = "difference over stated uncertainty"
 
-Solved: TypeAlias = "Sequence[tuple[Task, Outcome]]"
+Solved = Sequence[tuple[Task, Outcome]]
 """Points with numbers."""
 
 
