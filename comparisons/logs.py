@@ -13,7 +13,7 @@ RUNS = "comparisons.executor"
 
 
 def level() -> int:
-    """The level from which on records are printed; NOTSET if no record is printed."""
+    """The level from which on records are printed; 0 (NOTSET) if no record is printed."""
     return logging.getLogger(PACKAGES[0]).level
 
 

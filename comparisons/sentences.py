@@ -3,7 +3,6 @@
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import partial
 
 from comparisons.formats import at_station, distance_text, number, percent, with_unit
 from comparisons.quantities import load_unit
@@ -114,7 +113,7 @@ def theory_sentence(runs: Runs, rows: Sequence[Row]) -> str:
 
 def problem_sentences(scene: Scene, answer: Answer) -> tuple[str, ...]:
     """Problems of an answer in sentences, with stations in the units of the scene's file; empty if complete."""
-    return problems(scene, answer, partial(at_station, scene))
+    return problems(scene, answer, lambda stage, value: at_station(scene, stage, value))
 
 
 def ended_sentence(runs: Runs, names: Iterable[str]) -> str:

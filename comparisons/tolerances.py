@@ -249,20 +249,19 @@ class _Search:
         ordered = sorted(sizes | ({n // 2 + max(1, round(n / 14))} if self.solver == "cprbm" else set()))
         even = [(own, self.scene, replace(self.choices_at(size), formulation="auto")) for size in ordered]
         paper = [(own, self.scene, self.choices_at(n))] if self.in_paper else []
-        found = self.memory.answers([*even, *paper])
-        value = found.pop() if paper else None
-        answers = dict(zip(ordered, found, strict=True))
+        solved = self.memory.answers([*even, *paper])
+        value = solved.pop() if paper else None
+        answers = dict(zip(ordered, solved, strict=True))
         problems = {size: next(iter(problem_sentences(self.scene, each)), "") for size, each in answers.items()}
         trouble = problems[n // 2] or problems[n]
-        result = Tolerance(self.tolerance, self.solver, n, None, math.inf if trouble else 0.0, trouble, ())
         if trouble:
-            return _Level(answers, value or answers[n], result)
-        answers = {size: answer for size, answer in answers.items() if not problems[size]}
-        limits = limits_of(self.scene, answers)
-        worst, fraction = self._worst(limits, value)
+            found = Tolerance(self.tolerance, self.solver, n, None, math.inf, trouble, ())
+            return _Level(answers, value or answers[n], found)
+        whole = {size: answer for size, answer in answers.items() if not problems[size]}
+        limits = limits_of(self.scene, whole)
         probes = () if self.in_paper else limits.probes
-        result = replace(result, worst=worst, fraction=fraction, probes=probes)
-        return _Level(answers, value or limits.answer, result, limits)
+        found = Tolerance(self.tolerance, self.solver, n, *self._worst(limits, value), "", probes)
+        return _Level(whole, value or limits.answer, found, limits)
 
     def choices_at(self, n: int) -> Choices:
         """The choices at N."""

@@ -14,8 +14,6 @@ h, κ    largest distance of stated places; change of curvature M/(E·I)
 Between two stated places u is the cubic through the stated displacements with the slopes e^{iψ} - X'.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -172,7 +170,7 @@ class StationState:
         return force, float(max(*moments, 1e-3 * force * self.longest, BESIDE * self.natural))
 
     @cached_property
-    def at_rest(self) -> StationState:
+    def at_rest(self) -> "StationState":
         """All lines and bodies at rest."""
         beams = {name: replace(beam, moves=False) for name, beam in self.beams.items()}
         return replace(self, beams=beams, station=replace(self.station, bodies={}))

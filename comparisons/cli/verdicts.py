@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import partial
-from logging import NOTSET
 from typing import Literal, TypeVar
 
 import click
@@ -112,7 +111,7 @@ def _keep(request: output.Request, run: Run, shown: Sequence[Question], whole: p
 
 def _show(request: output.Request, compared: Compared) -> None:
     """Print a case: in brief, with ``-v`` with all tables, or quietly with the verdict alone."""
-    if not request.quiet and logs.level() == NOTSET:
+    if not request.quiet and not logs.level():
         values = [text for name, value in request.values.items() for text in ("--set", f"{name}={value}")]
         argument = shlex.join([cases.argument(compared.question), *values])
         click.echo(brief.brief(compared, argument, request.out, output.screen_width()) + "\n")
@@ -220,7 +219,8 @@ def bench(
     wanted = methods or (*running.OURS, *OPTIMISERS)
     asked = [each for each in running.contenders(request.solvers, request.choices) if each.name in wanted]
     asked += [load_tool(f"bench --method {name}").contender() for name in OPTIMISERS if name in wanted]
-    absent = {each.name: reason for each in asked if (reason := _absence(each, whole=whole))}
+    last_only = {each.name: "an optimiser solves the last station only" for each in asked if whole and each.is_peer}
+    absent = {each.name: each.absence for each in asked if each.absence} | last_only
     taking = tuple(each for each in asked if each.name not in absent)
     if not taking:
         reasons = "; ".join(f"{name}: {reason}" for name, reason in absent.items())
@@ -241,12 +241,6 @@ def bench(
         who = f"{row.contender.label} at N = {size_text(row.count)}"
         click.echo(f"cprbm: {opened.name}: {who}: {row.outcome.why}", err=True)
     return code_of(incomplete=bool(failed))
-
-
-def _absence(contender: running.Contender, *, whole: bool) -> str:
-    """Reason against a method; empty for a possible method."""
-    alone = whole and contender.is_peer
-    return "an optimiser solves the last station only" if alone else contender.absence
 
 
 def study_calibration(request: output.Request) -> int:

@@ -20,10 +20,7 @@ from comparisons.present.picture import Kind, Part, names_by_place
 from cprbm_scene import Scene
 
 if TYPE_CHECKING:
-    import matplotlib.axes
-    import matplotlib.axis
-    import matplotlib.figure
-    import matplotlib.transforms
+    import matplotlib.figure  # and with it the axes and the transforms
 
 Axes: TypeAlias = "matplotlib.axes.Axes"
 Drawing: TypeAlias = "matplotlib.figure.Figure"

@@ -10,11 +10,10 @@ from comparisons.case import Comparison
 from comparisons.formats import at_station, axis_unit, display_unit, number
 from comparisons.geometry import longest
 from comparisons.present.canvas import BLUE, GREY, LINES, RED, canvas, finished
-from comparisons.present.case_tables import by_drive
 from comparisons.present.columns import Figure
 from comparisons.present.csv_table import pressing
 from comparisons.quantities import UNITS, arc_lengths, load_unit
-from comparisons.reactions import ENERGY, MESH_ALLOWANCE, WorkEnergyReaction, multiplier, reaction_probe
+from comparisons.reactions import ENERGY, MESH_ALLOWANCE, WorkEnergyReaction, by_drive, multiplier, reaction_probe
 from comparisons.stations import begins_at, station_of
 from cprbm_scene import (
     Answer,

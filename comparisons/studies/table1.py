@@ -7,9 +7,8 @@ work on the machine falls on all cells alike.  Only the first cell of a method i
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from comparisons import cases
 from comparisons.bench.measures import at_last_loads
@@ -24,8 +23,7 @@ from cprbm_scene import Scene, frozendict
 THEIR_MACHINE = "Intel Core i5-8500, MATLAB R2018b for the CPRBM, ANSYS 19.1 for the finite elements"
 
 
-@dataclass(frozen=True, slots=True)
-class Cell:
+class Cell(NamedTuple):
     """A number of the table: case, method, discretisation, and the paper's seconds; None without a number."""
 
     case: str

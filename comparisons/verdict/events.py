@@ -41,7 +41,6 @@ import numpy as np
 
 from comparisons.quantities import deflection, load_unit
 from comparisons.stations import Where, begins_at, ends_at_critical, event_tolerance, span_of
-from comparisons.verdict.point_forces import active_contacts
 from comparisons.verdict.runs import SOLVERS, Bounds, Runs, solver_of
 from comparisons.verdict.words import Reason, Word, first_met
 from cprbm_scene import Answer, Critical, Loss, Scene, Shape, Stage, StationAnswer, frozendict
@@ -304,7 +303,8 @@ def passed_by(scene: Scene, stage: Stage, answer: Answer, station: int) -> int:
 
 def _state(scene: Scene, stage: Stage, answer: Answer, index: int, station: StationAnswer) -> State:
     """State of a run at the station with the number ``index``."""
-    active, passed = active_contacts(station), passed_by(scene, stage, answer, index)
+    active = {name for name, contact in station.contacts.items() if contact.active}
+    passed = passed_by(scene, stage, answer, index)
     return {BRANCH: station.branch, PASSED: passed, **{name: int(name in active) for name in scene.contacts}}
 
 

@@ -37,17 +37,15 @@ e ≤ q tells nothing about u.
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from statistics import median
 
 import numpy as np
 
 from comparisons.stations import ABSENT_WHILE_OPEN
 from comparisons.verdict.events import MIRRORED, PASSED, Place
-from comparisons.verdict.point_forces import resultant
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs import SOLVERS, Runs, Solver
 from comparisons.verdict.words import Reason, Word, first_met
-from cprbm_scene import Scene
+from cprbm_scene import Array, PointForces, Scene
 
 Judged = tuple[Word | None, Reason | None]
 """Word and reason; no word where a row takes no part."""
@@ -126,10 +124,18 @@ def _same_resultant(runs: Runs, row: Row) -> bool:
     if row.shared is None:
         return False
     beam, others = row.shared
-    sums = {name: resultant(station, {row.probe.of, *others}, beam) for name, station in runs.at(row.where).items()}
+    sums = {
+        name: _resultant(station.forces, {row.probe.of, *others}, beam) for name, station in runs.at(row.where).items()
+    }
     bounds = runs.bounds(sums, lambda difference: float(np.linalg.norm(difference)))
     v_c, v_f = (sums[name] for name in SOLVERS)
     return bounds is not None and float(np.linalg.norm(v_c - v_f)) <= bounds.total
+
+
+def _resultant(forces: PointForces, sources: Iterable[str], beam: str) -> Array:
+    """Sum of the forces of some ``sources`` on a beam, (2,), N."""
+    mine = np.any([forces.chosen(source, beam) for source in sources], axis=0)
+    return np.asarray(forces.force[mine].sum(axis=0))
 
 
 def _decides(scene: Scene, rows: Sequence[Row], reason: Reason) -> bool:
@@ -240,6 +246,6 @@ def tally(ratios: Sequence[ErrorRatio], solver: Solver, *, worst: int = 3) -> Ta
         solver=solver,
         rows=len(mine),
         within=sum(each.ratio <= 1.0 for each in mine),
-        over=median(statements.values()) if statements else None,
+        over=float(np.median(list(statements.values()))) if statements else None,
         worst=tuple(mine[:worst]),
     )

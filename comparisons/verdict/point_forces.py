@@ -1,4 +1,4 @@
-"""Point forces along a beam: active contacts, places away from point forces, and shared forces.
+"""Point forces along a beam: places away from point forces, and shared forces.
 
 Beside a held end, a moment, and the ends of a contact zone, a discretisation spreads a point force over a link or an
 element.  By Saint-Venant's principle a point force disturbs the real stress over about a thickness.  The comparison
@@ -20,11 +20,6 @@ SIGNIFICANT = 1e-3
 
 ZONE_GAP = 3.0
 """Largest distance of neighbouring forces in a zone of contact, in elements of the coarsest mesh."""
-
-
-def active_contacts(station: StationAnswer) -> frozenset[str]:
-    """Names of the contacts that press."""
-    return frozenset(name for name, state in station.contacts.items() if state.active)
 
 
 def away_from_point_forces(scene: Scene, beam: str, places: Array, stations: Sequence[StationAnswer]) -> Flags:
@@ -85,13 +80,6 @@ def sharing_sources(scene: Scene, stations: Iterable[StationAnswer], source: str
         if others:
             return beam, frozenset(others)
     return None
-
-
-def resultant(station: StationAnswer, sources: Iterable[str], beam: str) -> Array:
-    """Sum of the forces of some ``sources`` on a beam, (2,), N."""
-    forces = station.forces
-    mine = np.any([forces.chosen(source, beam) for source in sources], axis=0)
-    return np.asarray(forces.force[mine].sum(axis=0))
 
 
 def _neighbours(scene: Scene, station: StationAnswer, source: str, beam: str) -> Iterable[str]:
