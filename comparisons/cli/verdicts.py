@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import partial
+from itertools import islice
 from typing import Literal, TypeVar
 
 import click
@@ -26,12 +27,11 @@ from comparisons.present import brief, csv_table, figures, page
 from comparisons.present.columns import Figure, Plain, Section
 from comparisons.store import Run, run_into
 from comparisons.studies import calibration, convergence, table1
-from comparisons.studies.calibration import Calibration, with_case
 from comparisons.studies.report import Report
 from comparisons.tolerances import runs_within
-from comparisons.verdict import Runs, Word
+from comparisons.verdict import Word
 from comparisons.writing import write
-from cprbm_scene import OffsetQuestion, Question, frozendict
+from cprbm_scene import OffsetQuestion, Question, Scene, frozendict
 
 
 def compare_all(request: output.Request) -> int:
@@ -71,27 +71,32 @@ def _comparisons(
     request: output.Request, questions: Sequence[Question], run: Run, progress: output.Bar
 ) -> Iterator[Compared]:
     """Comparisons of all questions; the next question is solved while the caller draws and prints the last."""
-    begun = partial(_begin, request, [] if request.tol else questions, run)
-    following = begun(0)
-    for place, question in enumerate(progress.through(questions)):
-        pending, following = following, begun(place + 1)
-        if isinstance(question, OffsetQuestion):
-            yield compared_offset(question, run.solvers.offset)
-        elif pending is not None:
-            yield case.compare(pending())
-        else:
-            assert request.tol is not None
-            with output.status(shown=not request.quiet) as say:
-                runs, searches = runs_within(question, request.choices, request.tol, run.solvers, run.crew, say)
-            yield replace(case.compare(runs), tolerances=searches)
+    begun = map(partial(_begin, request, run), questions)
+    ahead = [*islice(begun, 1)]
+    for _ in progress.through(questions):
+        finish = ahead.pop()
+        ahead += islice(begun, 1)
+        yield finish()
 
 
-def _begin(request: output.Request, questions: Sequence[Question], run: Run, place: int) -> Callable[[], Runs] | None:
-    """The runs of a question, begun now; None beyond the last question, and for an offset question."""
-    question = questions[place] if place < len(questions) else None
-    if question is None or isinstance(question, OffsetQuestion):
-        return None
-    return pairing.begin(question, request.choices, run.solvers, run.crew)
+def _begin(request: output.Request, run: Run, question: Question) -> Callable[[], Compared]:
+    """A function for the comparison of a question, whose runs begin now.
+
+    With a tolerance, and of an offset question, all work begins with the call.
+    """
+    if isinstance(question, OffsetQuestion):
+        return partial(compared_offset, question, run.solvers.offset)
+    if request.tol is not None:
+        return partial(_compared_within, request, run, question, request.tol)
+    pending = pairing.begin(question, request.choices, run.solvers, run.crew)
+    return lambda: case.compare(pending())
+
+
+def _compared_within(request: output.Request, run: Run, scene: Scene, tolerance: float) -> Comparison:
+    """The comparison of a scene with all solvers within a tolerance."""
+    with output.status(shown=not request.quiet) as say:
+        runs, searches = runs_within(scene, request.choices, tolerance, run.solvers, run.crew, say)
+    return replace(case.compare(runs), tolerances=searches)
 
 
 def _run(request: output.Request, questions: Sequence[Question]) -> AbstractContextManager[Run]:
@@ -179,11 +184,11 @@ def report(request: output.Request, sizes: tuple[int, ...], without: tuple[str, 
     found = Report(request.out, questions, *parts, request.solvers, provenance.page_origin())
     missing = found.missing()
     with _run(request, questions) as run, output.bar(len(missing), shown=not request.quiet) as progress:
-        pending = _begin(request, missing, run, 0)
-        for place, question in enumerate(progress.through(missing)):
-            content = found.content_of(question, pending, run)
-            # solve the next case during the drawings, but not during the measurement of run times
-            pending = _begin(request, missing, run, place + 1)
+        begun = map(partial(_begin, request, run), missing)
+        ahead = [*islice(begun, 1)]
+        for question in progress.through(missing):
+            content = found.content_of(question, ahead.pop(), run)
+            ahead += islice(begun, 1)  # solved during the drawings, but not during the measurement of run times
             found.add(question, *content)
         found.add_table()
     output.write_json(request.json_file, found.document() if request.json_file else {})
@@ -247,8 +252,9 @@ def study_calibration(request: output.Request) -> int:
     """Compare stated with true errors; exit code 1 for a case that differs or did not complete."""
     request = request.with_room()
     with run_into(request.out, request.solvers, processes=request.processes) as run:
-        take, scenes = partial(with_case, solvers=run.solvers, crew=run.crew), [*map(cases.opened, cases.scenes())]
-        found = take_steps(request, Calibration(), scenes, take, calibration.result_of, calibration.pictures)
+        take = partial(calibration.with_case, solvers=run.solvers, crew=run.crew)
+        scenes, ends = [*map(cases.opened, cases.scenes())], (calibration.result_of, calibration.pictures)
+        found = take_steps(request, calibration.Calibration(), scenes, take, *ends)
     verdicts = [trial.verdict for trial in found.trials]
     return code_of(incomplete=any(each.word is Word.DIFFER or not each.completed for each in verdicts))
 
@@ -274,7 +280,8 @@ def take_steps(
         try:
             for step in progress.through(steps):
                 study = take(study, step)
-                _write_files(request, section_of(study))
+                if request.out is not None or request.json_file is not None:
+                    _write_files(request, section_of(study))
         finally:
             section = replace(section_of(study), figures=figures_of(study))
             _write_files(request, section)

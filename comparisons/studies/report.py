@@ -19,10 +19,9 @@ from comparisons import cases, provenance
 from comparisons.bench.measures import benchmark_scene, reference
 from comparisons.bench.running import OURS, Plan, Session, contenders, refusal_text
 from comparisons.bench.section import bench_section, pictures
-from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.offset_verdict import Compared, compared_offset
-from comparisons.pairing import Solvers, paired
+from comparisons.offset_verdict import Compared
+from comparisons.pairing import Solvers
 from comparisons.present.columns import Plain, Section
 from comparisons.present.page import (
     Chapter,
@@ -36,9 +35,8 @@ from comparisons.present.page import (
 from comparisons.store import Run, digest
 from comparisons.studies import table1
 from comparisons.studies.convergence import convergence_section
-from comparisons.verdict import Runs
 from comparisons.writing import write
-from cprbm_scene import OffsetQuestion, Question, Scene, SceneError
+from cprbm_scene import Question, Scene, SceneError
 
 T = TypeVar("T")
 
@@ -108,12 +106,12 @@ class Report:
         names = {cell.case for cell in table1.CELLS}
         return self.times and all(cases.asked(name) in self.questions for name in names)
 
-    def content_of(self, question: Question, pending: Callable[[], Runs] | None, run: Run) -> Content:
+    def content_of(self, question: Question, pending: Callable[[], Compared], run: Run) -> Content:
         """All numbers of a question; run times come last, when no other solve runs.
 
         Args:
             question: a scene or an offset question.
-            pending: the runs of the comparison, if the runs began before.
+            pending: the comparison, whose runs may have begun.
             run: solvers with kept answers, and processes to share the runs.
 
         Raises:
@@ -124,14 +122,9 @@ class Report:
             further["Error against N"] = lambda: convergence_section(
                 question, self.sizes, self.choices, run.solvers, run.crew
             )
-        if isinstance(question, OffsetQuestion):
-            found: Compared = compared_offset(question, run.solvers.offset)
-        else:
-            runs = paired(question, self.choices, run.solvers, run.crew) if pending is None else pending()
-            found = compare(runs)
-            if self.times:
-                further["Run times"] = lambda: _run_times(question, self.timed, run.solvers)
-        return found, tuple(_or_refusal(heading, section) for heading, section in further.items())
+        if self.times and isinstance(question, Scene):
+            further["Run times"] = lambda: _run_times(question, self.timed, run.solvers)
+        return pending(), tuple(_or_refusal(heading, section) for heading, section in further.items())
 
     def add(self, question: Question, compared: Compared, further: tuple[Section, ...]) -> None:
         """Write the chapter of a question, and the page with the chapter.
