@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.geometry import length
+from comparisons.quantities import stage_of
 from cprbm_scene import (
     Answer,
     Array,
@@ -277,7 +278,6 @@ def unit(direction: tuple[float, float]) -> complex:
 
 def states_of(scene: Scene, answer: Answer) -> Iterator[StationState]:
     """Every station that states internal forces of all beams; loads and drives keep their last value."""
-    stages = {stage.name: stage for stage in scene.stages}
     for station in answer.stations:
         if station.beams.keys() >= scene.beams.keys():
             beams = {
@@ -288,4 +288,4 @@ def states_of(scene: Scene, answer: Answer) -> Iterator[StationState]:
                 answer.settings.get("kinematics", scene.theory),
                 scene.values_at(station.stage, station.value),
             )
-            yield StationState(scene, station, beams, values, stages[station.stage], str(theory))
+            yield StationState(scene, station, beams, values, stage_of(scene, station.stage), str(theory))
