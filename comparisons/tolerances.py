@@ -135,19 +135,30 @@ class Limits:
 
 def limits_of(scene: Scene, answers: Mapping[int, Answer]) -> Limits:
     """Limits of answers by N: complete answers at the finest N, at half of it, and at any further N."""
-    n = max(answers)
-    fine, stations, uncertainties, names = answers[n], list[StationAnswer](), {}, set[str]()
-    for station in fine.stations:
-        by_size = {size: station_of(answers[size], station.stage, station.value) for size in sorted(answers)}
-        values = {}
-        for probe in scene.probes_in(station.stage):
-            values[probe.name], stated, extrapolated = _value(probe, by_size)
-            names |= {probe.name} if extrapolated else set()
-            if stated is not None:
-                uncertainties[station.stage, station.value, probe.name] = stated
-        # limits belong to no state: no forces are in balance with them
-        stations.append(replace(station, values=frozendict(values), beams={}, forces=PointForces()))
-    answer = replace(fine, stations=tuple(stations), seconds=sum(each.seconds for each in answers.values()))
+    fine = answers[n := max(answers)]
+    series = [{size: station_of(answers[size], at.stage, at.value) for size in sorted(answers)} for at in fine.stations]
+    found = [
+        (at, {probe.name: _value(probe, by_size) for probe in scene.probes_in(at.stage)})
+        for at, by_size in zip(fine.stations, series, strict=True)
+    ]
+    names = {name for _, values in found for name, (*_, extrapolated) in values.items() if extrapolated}
+    uncertainties = {
+        (at.stage, at.value, name): stated
+        for at, values in found
+        for name, (_, stated, _) in values.items()
+        if stated is not None
+    }
+    # limits belong to no state: no forces are in balance with them
+    stations = tuple(
+        replace(
+            at,
+            values=frozendict({name: value for name, (value, *_) in values.items()}),
+            beams={},
+            forces=PointForces(),
+        )
+        for at, values in found
+    )
+    answer = replace(fine, stations=stations, seconds=sum(each.seconds for each in answers.values()))
     if names:
         answer = replace(
             answer,

@@ -278,12 +278,13 @@ def standings(measured: Session) -> list[Plain]:
 
 def _standing(measured: Session, measure: Measure, clocked: Clocked, target: float) -> Plain:
     """Seconds by method that reaches the error, the fastest, and the quotient of the second and the first time."""
-    seconds = dict[str, float]()
-    for contender in measured.methods():
-        counted = [row for row in measured.rows(contender.name) if row.counts and measure in row.errors]
-        found = seconds_at([(row.errors[measure], row.median(clocked)) for row in counted], target)
-        if found is not None:
-            seconds[contender.name] = found
+    counted = [row for row in measured.rows() if row.counts and measure in row.errors]
+    points = {
+        each.name: [(row.errors[measure], row.median(clocked)) for row in counted if row.contender is each]
+        for each in measured.methods()
+    }
+    found = {name: seconds_at(mine, target) for name, mine in points.items()}
+    seconds = {name: each for name, each in found.items() if each is not None}
     first, second, *_ = (*sorted(seconds.values()), 0.0, 0.0)
     return {
         "measure": measure,

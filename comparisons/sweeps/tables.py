@@ -10,7 +10,6 @@ different branches are never joined: a curve is cut, and a contour map leaves th
 """
 
 import json
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -120,17 +119,16 @@ def _table(
     rows: Sequence[Sequence[NumberRecord]], key: str, whole: Sequence[Sequence[NumberRecord]] | None = None
 ) -> Array:
     """Values (points, stations, places) of a ``key`` of ``rows``; ``whole`` rows state all stations by point."""
-    cells = {}
     orders = [list(dict.fromkeys(each["station"] for each in row)) for row in whole or rows]
-    for place, (row, order) in enumerate(zip(rows, orders, strict=True)):
-        counts = Counter[float]()
-        for each in row:
-            cells[place, order.index(each["station"]), counts[each["station"]]] = each[key]
-            counts[each["station"]] += 1
-    sizes = len(rows), max(map(len, orders)), 1 + max((places for _, _, places in cells), default=0)
-    table = np.full(sizes, np.nan)
-    for cell, value in cells.items():
-        table[cell] = value
+    values = [
+        [[each[key] for each in row if each["station"] == station] for station in order]
+        for row, order in zip(rows, orders, strict=True)
+    ]
+    most = max([1, *(len(places) for row in values for places in row)])
+    table = np.full((len(rows), max(map(len, orders)), most), np.nan)
+    for point, row in enumerate(values):
+        for station, places in enumerate(row):
+            table[point, station, : len(places)] = places
     return table
 
 

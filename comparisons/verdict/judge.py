@@ -239,9 +239,8 @@ def error_ratios(rows: Iterable[Row]) -> tuple[ErrorRatio, ...]:
 def tally(ratios: Sequence[ErrorRatio], solver: Solver, *, worst: int = 3) -> Tally:
     """The error ratios of one solver together."""
     mine = sorted((each for each in ratios if each.solver == solver), key=lambda each: -each.ratio)
-    statements: dict[tuple[str, str, int | None], float] = {}
-    for each in mine:  # the largest e/u of a statement comes first
-        statements.setdefault((each.row.probe.name, each.row.stage, each.row.branch), 1.0 / each.ratio)
+    # the largest e/u of a statement stays
+    statements = {(each.row.probe.name, each.row.stage, each.row.branch): 1.0 / each.ratio for each in mine[::-1]}
     return Tally(
         solver=solver,
         rows=len(mine),
