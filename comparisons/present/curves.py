@@ -206,9 +206,9 @@ def _points(stations: Sequence[StationAnswer], of: Values, scales: tuple[float, 
 def reaction_figures(compared: Comparison) -> Iterator[Figure]:
     """A figure for every drive with two stations or more, in the manner of the paper's Fig. 15."""
     scene = compared.scene
-    for drive, found in by_drive(compared.reactions).items():
-        if len({each.station for each in found}) < 2:
-            continue
+    every = by_drive(compared.reactions)
+    several = {drive: found for drive, found in every.items() if len({each.station for each in found}) > 1}
+    for drive, found in several.items():
         factor, unit_name = display_unit(scene, found[0].unit, max(abs(each.multiplier) for each in found))
         si = load_unit(scene, found[0].stage)
         step, step_unit = axis_unit(scene, si, max(abs(each.station) for each in found))

@@ -224,16 +224,15 @@ def true_errors(row: Row) -> Iterator[ErrorRatio]:
 
 def error_ratios(rows: Iterable[Row]) -> tuple[ErrorRatio, ...]:
     """Error ratios with a true error above q; of a closing load, repeated at later stations, one ratio per stage."""
-    found: list[ErrorRatio] = []
-    closings: set[tuple[str, str]] = set()
-    for row in rows:
-        key = row.probe.name, row.stage
-        if row.true_errors is None or key in closings:
-            continue
-        if row.probe.quantity == "closing_load":
-            closings.add(key)
-        found.extend(each for each in true_errors(row) if each.true > row.true_errors.allowance)
-    return tuple(found)
+    known = [(row, row.true_errors.allowance) for row in rows if row.true_errors is not None]
+    firsts = {(row.probe.name, row.stage): row for row, _ in reversed(known)}
+    return tuple(
+        each
+        for row, allowance in known
+        if row.probe.quantity != "closing_load" or firsts[row.probe.name, row.stage] is row
+        for each in true_errors(row)
+        if each.true > allowance
+    )
 
 
 def tally(ratios: Sequence[ErrorRatio], solver: Solver, *, worst: int = 3) -> Tally:

@@ -35,8 +35,8 @@ def away_from_point_forces(scene: Scene, beam: str, places: Array, stations: Seq
     whole = length(record.curve)
     thickness = record.thickness_at(places / whole)
     sharp = [s for s, end in ((0.0, record.start), (whole, record.end)) if not isinstance(end, FreeEnd)]
-    loads = scene.loads.values()
-    sharp += [load.at * whole for load in loads if isinstance(load, BeamMoment) and load.beam == beam]
+    moments = (load for load in scene.loads.values() if isinstance(load, BeamMoment) and load.beam == beam)
+    sharp += [load.at * whole for load in moments]
     clear = _farther(places, sharp, thickness)
     coarsest = max((_element(station, beam) for station in stations), default=0.0)
     for contact in (name for name, record in scene.contacts.items() if beam in record.beams):
@@ -55,12 +55,8 @@ def zone_ends(places: Sequence[Array], gap: float) -> list[float]:
     """
     together = np.sort(np.concatenate(places))
     borders = 0.5 * (together[:-1] + together[1:])[np.diff(together) > gap]
-    found: list[float] = []
-    for own in places:
-        zones = np.searchsorted(borders, own)
-        for zone in np.unique(zones):
-            found += [float(own[zones == zone].min()), float(own[zones == zone].max())]
-    return found
+    zones = (zone for own in map(np.sort, places) for zone in np.split(own, np.searchsorted(own, borders)) if zone.size)
+    return [float(end) for zone in zones for end in (zone[0], zone[-1])]
 
 
 def sharing_sources(scene: Scene, stations: Iterable[StationAnswer], source: str) -> tuple[str, frozenset[str]] | None:
@@ -85,9 +81,7 @@ def sharing_sources(scene: Scene, stations: Iterable[StationAnswer], source: str
 def _neighbours(scene: Scene, station: StationAnswer, source: str, beam: str) -> Iterable[str]:
     own = _significant(station, source, beam)
     joints = _joints(scene.beams[beam])
-    for other in {*scene.contacts, *joints} - {source}:
-        if source in joints and other in joints:
-            continue
+    for other in {*scene.contacts, *(() if source in joints else joints)} - {source}:
         theirs = _significant(station, other, beam)
         if own.size and theirs.size and np.abs(own[:, None] - theirs).min() <= _element(station, beam):
             yield other
