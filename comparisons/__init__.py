@@ -26,20 +26,17 @@ A function loads its module with the first use: the command line imports this pa
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from comparisons.mechanism import compare, open  # noqa: A004 - as in gzip.open or Image.open
+    from comparisons.mechanism import compare, open, sweep  # noqa: A004 - as in gzip.open or Image.open
     from comparisons.present.csv_table import records, write_csv
-    from comparisons.sweeps.running import sweep
 else:
 
     def __getattr__(name: str) -> object:
         """A function of this package by name."""
         match name:
-            case "open" | "compare":
+            case "open" | "compare" | "sweep":
                 from comparisons import mechanism as module
             case "records" | "write_csv":
                 from comparisons.present import csv_table as module
-            case "sweep":
-                from comparisons.sweeps import running as module
             case _:
                 raise AttributeError(f"module 'comparisons' has no attribute {name!r}")
         return getattr(module, name)

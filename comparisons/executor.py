@@ -1,6 +1,6 @@
 """Processes beside this process: children that answer call by call, and threads that wait for the values.
 
-A child of :func:`workers` is forked from this process on Linux, and takes over all loaded modules: several children pay
+A child of :func:`crew_of` is forked from this process on Linux, and takes over all loaded modules: several children pay
 for the imports once.  Elsewhere a fork may break libraries of the system, and a fork of a process with threads may copy
 a locked lock; there, and for all other calls, a child is a fresh Python.
 
@@ -17,7 +17,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor, as_completed
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
-from itertools import starmap
 from multiprocessing import current_process, get_context, parent_process
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -168,14 +167,6 @@ def _take_child(children: list[Child]) -> None:
         _local.child = children.pop()
 
 
-@contextmanager
-def workers(count: int) -> Iterator[ThreadPoolExecutor]:
-    """Pool of ``count`` threads with children that have the modules of this process, where the system permits forks."""
-    method: Literal["fork", "spawn"] = "fork" if len(list(_THREADS.glob("*"))) == 1 else "spawn"
-    with threads(count, [Child(method) for _ in range(count)]) as pool:
-        yield pool
-
-
 def call_fresh(call: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
     """Value of a call in a fresh Python, as :meth:`Child.call` without a time limit.
 
@@ -256,7 +247,7 @@ class Crew:
         returns these two alone, and cancels the other jobs.  Without a pool the work begins with the call.
         """
         if self.pool is None:
-            return lambda: _collected(enumerate(starmap(_solve, jobs)), len(jobs), decided)
+            return lambda: _collected(enumerate(_solve(*job) for job in jobs), len(jobs), decided)
         # The finest runs take longest and stand last: begun right behind the first two jobs, they leave no worker idle.
         places = [*range(len(jobs))[:2], *reversed(range(len(jobs))[2:])]
         futures = {self.pool.submit(call_limited, None, _solve, *jobs[place]): place for place in places}
@@ -268,11 +259,15 @@ ALONE = Crew()
 
 @contextmanager
 def crew_of(count: int) -> Iterator[Crew]:
-    """A crew of ``count`` processes, which end with the context; with a ``count`` of 1 this process works alone."""
+    """A crew of ``count`` processes, which end with the context; with a ``count`` of 1 this process works alone.
+
+    The processes have the modules of this process, where the system permits forks.
+    """
     if count == 1:
         yield ALONE
         return
-    with workers(count) as pool:
+    method: Literal["fork", "spawn"] = "fork" if len(list(_THREADS.glob("*"))) == 1 else "spawn"
+    with threads(count, [Child(method) for _ in range(count)]) as pool:
         yield Crew(pool)
 
 

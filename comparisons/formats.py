@@ -98,9 +98,7 @@ def display_units(scene: Scene, sizes: Iterable[tuple[str, float]]) -> Mapping[s
         scene: the question.
         sizes: SI unit and magnitude of every value.
     """
-    largest: dict[str, float] = {}
-    for unit, size in sizes:
-        largest[unit] = max(largest.get(unit, 0.0), size)
+    largest = dict(sorted(sizes))  # the last of a unit stays
     return {unit: display_unit(scene, unit, size) for unit, size in largest.items()}
 
 

@@ -13,7 +13,7 @@ RUNS = "comparisons.executor"
 
 
 def level() -> int:
-    """The level from which on records are printed; NOTSET if no record is printed."""
+    """The level from which on records are printed; 0 (NOTSET) if no record is printed."""
     return logging.getLogger(PACKAGES[0]).level
 
 
@@ -40,13 +40,12 @@ def steps_from(names: tuple[str, ...], call: Callable[[int, int], None]) -> Iter
     handler = logging.Handler()
     handler.addFilter(count)
     loggers = [logging.getLogger(name) for name in names]
-    before = [logger.level for logger in loggers]
     for logger in loggers:
         logger.addHandler(handler)
         logger.setLevel(logging.INFO)
     try:
         yield
     finally:
-        for logger, old in zip(loggers, before, strict=True):
+        for logger in loggers:
             logger.removeHandler(handler)
-            logger.setLevel(old)
+            logger.setLevel(logging.NOTSET)

@@ -1,13 +1,17 @@
-"""Mechanisms and comparisons from Python: tables, files and drawings in one call."""
+"""Mechanisms, comparisons and sweeps from Python: tables, files and drawings in one call."""
 
-from collections.abc import Iterable, Mapping
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import nullcontext
 from dataclasses import dataclass, fields, replace
+from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from comparisons import case, cases
 from comparisons.choices import Choices
-from comparisons.pairing import ANSWERS, SolverName, paired, solvers_of
+from comparisons.pairing import ANSWERS, SolverName, Solvers, paired, solvers_of
 from comparisons.present import figures
 from comparisons.present.brief import headline, last_rows_of_stages, nearest_rows
 from comparisons.present.case_tables import answer_tables
@@ -16,6 +20,9 @@ from comparisons.present.csv_table import comparison_records, csv_of, csv_of_com
 from comparisons.present.page import rendered
 from comparisons.writing import write
 from cprbm_scene import Answer, Scene, frozendict
+
+if TYPE_CHECKING:
+    from comparisons.sweeps.running import Sweep
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -175,6 +182,55 @@ def compare(scene: Scene, choices: Choices | None = None) -> MechanismComparison
         SceneError: a solver refuses the question.
     """
     return Mechanism(scene).compare(choices)
+
+
+def sweep(
+    scene: Scene,
+    vary: Mapping[str, Sequence[float]],
+    solver: Literal["cprbm", "fea", "compare"] = "cprbm",
+    check: int = 0,
+    choices: Choices | None = None,
+    executor: Executor | str | None = None,
+    at_most: float = 600.0,
+    out: str | Path | None = None,
+) -> "Sweep":
+    """A scene at all combinations of values of its parameters.
+
+    Points are solved in processes: a script calls this function below ``if __name__ == "__main__":``.
+
+    Args:
+        scene: the question, read from a file with parameters.
+        vary: two values or more by the name of a parameter, SI.
+        solver: solver of every point, or ``compare`` for both with a verdict.
+        check: number of points at which both solvers are compared.
+        choices: how finely, and by which variants; the standard choices if None.
+        executor: executor of the solves, as of :mod:`concurrent.futures`, or ``dask://HOST:PORT`` with the address of
+            a scheduler; None for this machine.
+        at_most: time limit of a solve, s.
+        out: folder of the tables, where a stopped sweep goes on; None for no folder.
+
+    Returns:
+        The points with their outcomes.
+
+    Raises:
+        SceneError: the scene refuses a name or a value.
+        OSError: the folder cannot be written to.
+    """
+    from comparisons.sweeps import points, running, tables, workers  # load the statistics of SciPy
+
+    rows = tuple(dict(zip(vary, map(float, values), strict=True)) for values in product(*vary.values()))
+    axes = [points.Axis(name, min(each), max(each), len(each)) for name, each in vary.items()]
+    chosen, place = choices or Choices(), executor or f"local:{os.cpu_count() or 1}"
+    tasks = running.tasks_of(scene, rows, solver, points.chosen_for_check(rows, axes, check), chosen)
+    folder = None if out is None else Path(out)
+    if folder is not None:
+        folder.mkdir(parents=True, exist_ok=True)
+    with workers.workers_on(place) if isinstance(place, str) else nullcontext(workers.Workers(place)) as pool:
+        runner = running.Runner(pool, chosen, Solvers(), at_most, folder)
+        found = runner.run(running.Sweep(scene, points.in_file_units(scene, axes), tasks))
+    if folder is not None:
+        tables.write_tables(folder, found)
+    return found
 
 
 def _saved(drawing: Figure, path: str | Path | None) -> Figure:

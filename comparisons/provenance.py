@@ -19,13 +19,10 @@ _PROCESSORS = Path("/proc/cpuinfo")
 @cache
 def program(*further: str) -> str:
     """Digest of Python, of the libraries that compute and of all sources, with the sources of ``further`` packages."""
-    digest = sha256(sys.version.encode())
-    for library in _LIBRARIES:
-        digest.update(f"{library} {version(library)}\n".encode())
+    libraries = [f"{library} {version(library)}\n".encode() for library in _LIBRARIES]
     sources = [file for package in (*_PACKAGES, *further) for file in Path(str(files(package))).rglob("*.py")]
-    for source in sorted(file.name.encode() + b"\0" + file.read_bytes() for file in sources):
-        digest.update(source)
-    return digest.hexdigest()
+    contents = sorted(file.name.encode() + b"\0" + file.read_bytes() for file in sources)
+    return sha256(b"".join([sys.version.encode(), *libraries, *contents])).hexdigest()
 
 
 def machine() -> dict[str, str | int]:

@@ -169,17 +169,12 @@ def probe_scales(scene: Scene, answers: Sequence[Answer]) -> dict[tuple[str, str
     for stage in scene.stages:
         families = family_values(scene, stage, answers, largest[stage.name])
         for probe in scene.probes:
-            own = max(largest[stage.name][probe.name], STAGE_SHARE * max(each[probe.name] for each in largest.values()))
-            if probe.quantity == "reaction_moment":
-                own = max(own, families["balance"])
             natural = natural_value(scene, probe.quantity, stage, contact=probe.of)
-            if probe.quantity in _PLACES_OF_CONTACT:
-                scale = natural
-            else:
-                scale = max(
-                    own, FAMILY_SHARE * families[_FAMILIES.get(probe.quantity, probe.quantity)], NATURAL_SHARE * natural
-                )
-            found[stage.name, probe.name] = scale
+            own = max(largest[stage.name][probe.name], STAGE_SHARE * max(each[probe.name] for each in largest.values()))
+            family = families.get(_FAMILIES.get(probe.quantity, probe.quantity), 0.0)
+            balance = families["balance"] if probe.quantity == "reaction_moment" else 0.0
+            scale = max(own, balance, FAMILY_SHARE * family, NATURAL_SHARE * natural)
+            found[stage.name, probe.name] = natural if probe.quantity in _PLACES_OF_CONTACT else scale
     return found
 
 
@@ -256,13 +251,12 @@ def denominator(probe: Probe, reference: float, scale: float) -> float:
 
 def _largest(scene: Scene, stage: Stage, answers: Sequence[Answer]) -> dict[str, float]:
     """Largest norm of every probe at the stage's stations; values that are not finite do not count."""
-    found = {probe.name: 0.0 for probe in scene.probes}
-    for station in _stations(stage, answers):
-        for probe in scene.probes:
-            values = station.values.get(probe.name)
-            if values is not None and np.isfinite(values).all():
-                found[probe.name] = max(found[probe.name], norm(probe.quantity, values))
-    return found
+    stations = _stations(stage, answers)
+    values = {probe: [at.values[probe.name] for at in stations if probe.name in at.values] for probe in scene.probes}
+    return {
+        probe.name: max((norm(probe.quantity, value) for value in found if np.isfinite(value).all()), default=0.0)
+        for probe, found in values.items()
+    }
 
 
 def _stations(stage: Stage, answers: Sequence[Answer]) -> list[StationAnswer]:

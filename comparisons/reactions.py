@@ -40,7 +40,6 @@ F₁ − 2F + F₂ = Jh(1 − ξ). A quarter of |F₁ − 2F + F₂| bounds both
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
-from itertools import chain
 
 import numpy as np
 
@@ -170,8 +169,8 @@ def perturbed_scene(scene: Scene) -> Scene | None:
         return None
     stations = {stage.name: kept(stage) if is_long(stage) else stage.stations for stage in scene.stages}
     for stage in perturbed:
-        ends = ((d - h, d + h) for d, h in _steps(stage).items())
-        stations[stage.name] = (*chain.from_iterable(ends), stage.stations[-1])
+        ends = (end for d, h in _steps(stage).items() for end in (d - h, d + h))
+        stations[stage.name] = (*ends, stage.stations[-1])
     stages = tuple(stage.model_copy(update={"stations": stations[stage.name]}) for stage in scene.stages)
     probes = (ENERGY, *(probe for probe in scene.probes if probe.quantity in _STATE))
     return scene.model_copy(update={"stages": stages, "probes": probes, "claims": ()})
@@ -271,6 +270,12 @@ def multiplier(scene: Scene, stage: Stage, station: StationAnswer) -> float:
     }
     F = np.linalg.lstsq(np.stack(list(directions.values()), axis=1), values)[0]
     return float(F[list(directions).index(stage.steps)])
+
+
+def by_drive(found: Sequence[WorkEnergyReaction]) -> dict[str, tuple[WorkEnergyReaction, ...]]:
+    """The reactions of every drive, in the order of stages and stations."""
+    drives = dict.fromkeys(reaction.drive for reaction in found)
+    return {drive: tuple(reaction for reaction in found if reaction.drive == drive) for drive in drives}
 
 
 def _has_reaction(scene: Scene, stage: Stage) -> bool:

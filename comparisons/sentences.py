@@ -3,7 +3,6 @@
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import partial
 
 from comparisons.formats import at_station, distance_text, number, percent, with_unit
 from comparisons.quantities import load_unit
@@ -114,15 +113,13 @@ def theory_sentence(runs: Runs, rows: Sequence[Row]) -> str:
 
 def problem_sentences(scene: Scene, answer: Answer) -> tuple[str, ...]:
     """Problems of an answer in sentences, with stations in the units of the scene's file; empty if complete."""
-    return problems(scene, answer, partial(at_station, scene))
+    return problems(scene, answer, lambda stage, value: at_station(scene, stage, value))
 
 
 def ended_sentence(runs: Runs, names: Iterable[str]) -> str:
     """The incomplete runs of some ``names``, and their problems; each problem once."""
-    by_problem: dict[str, list[str]] = {}
-    for name in names:
-        by_problem.setdefault(_first(problem_sentences(runs.scene, runs.same_theory[name])), []).append(name)
-    parts = "; ".join(f"{', '.join(runs)}: {problem}" for problem, runs in by_problem.items())
+    first = {name: _first(problem_sentences(runs.scene, runs.same_theory[name])) for name in names}
+    parts = "; ".join(f"{', '.join(mine)}: {problem}" for problem, mine in _names_by_text(first).items())
     return f"Runs without a complete answer: {parts}."
 
 
@@ -156,10 +153,8 @@ def critical_sentence(runs: Runs, row: CriticalRow) -> str:
         texts = " and ".join(f"{with_unit(scene, each.value, row.unit, 5)} ({mechanism(each)})" for each in points)
         beside = f", which passed {texts} and went on," if texts else ""
         places.append(f"nowhere in {name}{beside}" if one is None else f"{texts} in {name}")
-    runs_by_mechanism: dict[str, list[str]] = {}
-    for run, found in row.mechanisms.items():
-        runs_by_mechanism.setdefault(found or "no such point", []).append(run)
-    listed = "; ".join(f"{found} in {', '.join(names)}" for found, names in runs_by_mechanism.items())
+    found = _names_by_text({run: found or "no such point" for run, found in row.mechanisms.items()})
+    listed = "; ".join(f"{text} in {', '.join(names)}" for text, names in found.items())
     known, total = row.bounds is not None, math.nan if row.bounds is None else row.bounds.total
     sizes = (row.difference, total, row.allowed, row.theory)
     apart, stated, allowed, theories = (distance_text(scene, size, row.unit) for size in sizes)
@@ -247,6 +242,11 @@ def _explained(runs: Runs, row: Row, reason: Reason | None) -> str:
             return f"{row.probe.of} shares its force with a joint or contact beside it, and the sums agree."
         case _:
             return _coarse(runs, row)
+
+
+def _names_by_text(texts: Mapping[str, str]) -> dict[str, list[str]]:
+    """Names with the same text, by the text; ``texts`` by name."""
+    return {text: [name for name, own in texts.items() if own == text] for text in texts.values()}
 
 
 def _first(sentences: Sequence[str]) -> str:

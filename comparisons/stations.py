@@ -187,9 +187,7 @@ def _branch_problems(scene: Scene, answer: Answer, name: Callable[[str, float], 
     values = {stage.name: begins_at(scene, stage) for stage in scene.stages}
     slack = {stage.name: _ROUND_OFF * span_of(scene, stage) for stage in scene.stages}
     branch = 0
-    for station in answer.stations:
-        if station.stage not in values:
-            continue
+    for station in (each for each in answer.stations if each.stage in values):
         least, most = sorted((values[station.stage], station.value))
         least, most = least - slack[station.stage], most + slack[station.stage]
         ends = answer.critical[branch : station.branch]

@@ -135,19 +135,30 @@ class Limits:
 
 def limits_of(scene: Scene, answers: Mapping[int, Answer]) -> Limits:
     """Limits of answers by N: complete answers at the finest N, at half of it, and at any further N."""
-    n = max(answers)
-    fine, stations, uncertainties, names = answers[n], list[StationAnswer](), {}, set[str]()
-    for station in fine.stations:
-        by_size = {size: station_of(answers[size], station.stage, station.value) for size in sorted(answers)}
-        values = {}
-        for probe in scene.probes_in(station.stage):
-            values[probe.name], stated, extrapolated = _value(probe, by_size)
-            names |= {probe.name} if extrapolated else set()
-            if stated is not None:
-                uncertainties[station.stage, station.value, probe.name] = stated
-        # limits belong to no state: no forces are in balance with them
-        stations.append(replace(station, values=frozendict(values), beams={}, forces=PointForces()))
-    answer = replace(fine, stations=tuple(stations), seconds=sum(each.seconds for each in answers.values()))
+    fine = answers[n := max(answers)]
+    series = [{size: station_of(answers[size], at.stage, at.value) for size in sorted(answers)} for at in fine.stations]
+    found = [
+        (at, {probe.name: _value(probe, by_size) for probe in scene.probes_in(at.stage)})
+        for at, by_size in zip(fine.stations, series, strict=True)
+    ]
+    names = {name for _, values in found for name, (*_, extrapolated) in values.items() if extrapolated}
+    uncertainties = {
+        (at.stage, at.value, name): stated
+        for at, values in found
+        for name, (_, stated, _) in values.items()
+        if stated is not None
+    }
+    # limits belong to no state: no forces are in balance with them
+    stations = tuple(
+        replace(
+            at,
+            values=frozendict({name: value for name, (value, *_) in values.items()}),
+            beams={},
+            forces=PointForces(),
+        )
+        for at, values in found
+    )
+    answer = replace(fine, stations=stations, seconds=sum(each.seconds for each in answers.values()))
     if names:
         answer = replace(
             answer,
@@ -249,20 +260,19 @@ class _Search:
         ordered = sorted(sizes | ({n // 2 + max(1, round(n / 14))} if self.solver == "cprbm" else set()))
         even = [(own, self.scene, replace(self.choices_at(size), formulation="auto")) for size in ordered]
         paper = [(own, self.scene, self.choices_at(n))] if self.in_paper else []
-        found = self.memory.answers([*even, *paper])
-        value = found.pop() if paper else None
-        answers = dict(zip(ordered, found, strict=True))
+        solved = self.memory.answers([*even, *paper])
+        value = solved.pop() if paper else None
+        answers = dict(zip(ordered, solved, strict=True))
         problems = {size: next(iter(problem_sentences(self.scene, each)), "") for size, each in answers.items()}
         trouble = problems[n // 2] or problems[n]
-        result = Tolerance(self.tolerance, self.solver, n, None, math.inf if trouble else 0.0, trouble, ())
         if trouble:
-            return _Level(answers, value or answers[n], result)
-        answers = {size: answer for size, answer in answers.items() if not problems[size]}
-        limits = limits_of(self.scene, answers)
-        worst, fraction = self._worst(limits, value)
+            found = Tolerance(self.tolerance, self.solver, n, None, math.inf, trouble, ())
+            return _Level(answers, value or answers[n], found)
+        whole = {size: answer for size, answer in answers.items() if not problems[size]}
+        limits = limits_of(self.scene, whole)
         probes = () if self.in_paper else limits.probes
-        result = replace(result, worst=worst, fraction=fraction, probes=probes)
-        return _Level(answers, value or limits.answer, result, limits)
+        found = Tolerance(self.tolerance, self.solver, n, *self._worst(limits, value), "", probes)
+        return _Level(whole, value or limits.answer, found, limits)
 
     def choices_at(self, n: int) -> Choices:
         """The choices at N."""

@@ -14,8 +14,6 @@ h, κ    largest distance of stated places; change of curvature M/(E·I)
 Between two stated places u is the cubic through the stated displacements with the slopes e^{iψ} - X'.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -24,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.geometry import length
+from comparisons.quantities import stage_of
 from cprbm_scene import (
     Answer,
     Array,
@@ -172,7 +171,7 @@ class StationState:
         return force, float(max(*moments, 1e-3 * force * self.longest, BESIDE * self.natural))
 
     @cached_property
-    def at_rest(self) -> StationState:
+    def at_rest(self) -> "StationState":
         """All lines and bodies at rest."""
         beams = {name: replace(beam, moves=False) for name, beam in self.beams.items()}
         return replace(self, beams=beams, station=replace(self.station, bodies={}))
@@ -279,7 +278,6 @@ def unit(direction: tuple[float, float]) -> complex:
 
 def states_of(scene: Scene, answer: Answer) -> Iterator[StationState]:
     """Every station that states internal forces of all beams; loads and drives keep their last value."""
-    stages = {stage.name: stage for stage in scene.stages}
     for station in answer.stations:
         if station.beams.keys() >= scene.beams.keys():
             beams = {
@@ -290,4 +288,4 @@ def states_of(scene: Scene, answer: Answer) -> Iterator[StationState]:
                 answer.settings.get("kinematics", scene.theory),
                 scene.values_at(station.stage, station.value),
             )
-            yield StationState(scene, station, beams, values, stages[station.stage], str(theory))
+            yield StationState(scene, station, beams, values, stage_of(scene, station.stage), str(theory))

@@ -37,7 +37,7 @@ import numpy as np
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers
 from comparisons.quantities import NATURAL_SHARE, natural_value
-from comparisons.verdict import limit
+from comparisons.verdict import largest, limit
 from cprbm_scene import Answer, Array, DisplacementDrive, Probe, Scene, SceneError, frozendict
 
 Measure = Literal["places", "forces"]
@@ -114,11 +114,13 @@ def uncertainties(scene: Scene, known: Reference) -> Mapping[Measure, float]:
 
 def _worst(scene: Scene, known: Reference, apart: Mapping[str, Array]) -> Mapping[Measure, float]:
     sizes = {name: float(np.linalg.norm(true)) for name, true in known.values.items()}
-    found: dict[Measure | None, float] = {}
-    for probe in (each for each in scene.probes if each.name in apart):
+
+    def share(probe: Probe) -> float:
+        """The distance over the scale of a probe."""
         alike = max(sizes.get(each.name, 0.0) for each in scene.probes if each.quantity == probe.quantity)
         natural = natural_value(scene, probe.quantity, scene.stages[-1], contact=probe.of)
         scale = max(sizes[probe.name], SMALL * alike, NATURAL_SHARE * natural)
-        measure = measure_of(scene, probe)
-        found[measure] = max(float(np.linalg.norm(apart[probe.name])) / scale, found.get(measure, 0.0))
+        return float(np.linalg.norm(apart[probe.name])) / scale
+
+    found = largest((measure_of(scene, probe), share(probe)) for probe in scene.probes if probe.name in apart)
     return frozendict({measure: found[measure] for measure in MEASURES if measure in found})

@@ -240,13 +240,8 @@ class Timing:
         return self.outcome.why if self.refusal is None else refusal_text(self.refusal)
 
 
-@dataclass(frozen=True, slots=True)
-class Omission:
-    """A method or a single size without a run, and the reason."""
-
-    name: str
-    count: Count | None
-    why: str
+Omission = tuple[str, Count | None, str]
+"""Name of a method, a single size or None for all, and the reason for which there is no run."""
 
 
 @dataclass
@@ -331,9 +326,9 @@ class Session:
             SceneError: every method has refused the question.
         """
         found = [timing for timing in self.timings if timing.seconds]
-        refusal = next((timing.refusal for timing in self.timings if timing.refusal), None)
-        if refusal and not found:
-            raise refusal
+        refusals = [timing.refusal for timing in self.timings if timing.refusal]
+        if refusals and len(refusals) == len(self.timings):
+            raise refusals[0]
         ours = {row.count: row.errors for row in found if row.contender.name == "paper" and row.counts}
         for row in (row for row in found if row.contender.is_peer):
             limits = ours.get(row.count, {})
@@ -344,9 +339,9 @@ class Session:
         """Methods and sizes without a run."""
         late = f"more than {self.plan.at_most:g} s"
         return (
-            *(Omission(name, None, why) for name, why in self.absent.items()),
+            *((name, None, why) for name, why in self.absent.items()),
             *(
-                Omission(each.contender.name, each.count, each.why or (late if self._is_late(each) else "interrupted"))
+                (each.contender.name, each.count, each.why or (late if self._is_late(each) else "interrupted"))
                 for each in self.timings
                 if not each.seconds
             ),

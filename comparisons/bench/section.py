@@ -75,8 +75,8 @@ Rows = dict[Contender, Sequence[Timing]]
 
 
 def bench_section(measured: Session) -> Section:
-    """Times, errors and ratios of a benchmark, with figures and documented JSON."""
-    return Section("Run time against error", (), pictures(measured), tables_of(measured), "bench", document(measured))
+    """Times, errors and ratios of a benchmark, with documented JSON and without :func:`pictures`."""
+    return Section("Run time against error", (), (), tables_of(measured), "bench", document(measured))
 
 
 def pictures(measured: Session) -> tuple[Figure, ...]:
@@ -241,8 +241,8 @@ def _trends(measured: Session) -> Table:
 
 def _omissions(measured: Session) -> Table:
     sizes = dict[tuple[str, str], list[str]]()
-    for one in measured.omissions():
-        sizes.setdefault((one.name, one.why), []).append("all" if one.count is None else size_text(one.count))
+    for name, count, why in measured.omissions():
+        sizes.setdefault((name, why), []).append("all" if count is None else size_text(count))
     rows = tuple((name, ", ".join(mine), why) for (name, why), mine in sizes.items())
     return Table("Left out", ("method", "N", "why"), rows)
 
@@ -251,7 +251,7 @@ def document(measured: Session) -> Plain:
     """``bench``: rows, fastest methods, ratios, trends; times in seconds, errors as fractions."""
     plan, reference = measured.plan, measured.reference
     # the project's own methods first, then peers by their names
-    left_out = sorted(measured.omissions(), key=lambda one: (OURS.index(one.name) if one.name in OURS else 9, one.name))
+    left_out = sorted(measured.omissions(), key=lambda one: (OURS.index(one[0]) if one[0] in OURS else 9, one[0]))
     return {
         "case": measured.scene.name,
         "machine": plain(measured.machine),
@@ -265,7 +265,7 @@ def document(measured: Session) -> Plain:
         "fastest": standings(measured),
         "ratios": ratios(measured),
         "trends": trends(measured),
-        "left_out": [{"method": one.name, "n": plain(one.count), "why": one.why} for one in left_out],
+        "left_out": [{"method": name, "n": plain(count), "why": why} for name, count, why in left_out],
     }
 
 
@@ -278,12 +278,13 @@ def standings(measured: Session) -> list[Plain]:
 
 def _standing(measured: Session, measure: Measure, clocked: Clocked, target: float) -> Plain:
     """Seconds by method that reaches the error, the fastest, and the quotient of the second and the first time."""
-    seconds = dict[str, float]()
-    for contender in measured.methods():
-        counted = [row for row in measured.rows(contender.name) if row.counts and measure in row.errors]
-        found = seconds_at([(row.errors[measure], row.median(clocked)) for row in counted], target)
-        if found is not None:
-            seconds[contender.name] = found
+    counted = [row for row in measured.rows() if row.counts and measure in row.errors]
+    points = {
+        each.name: [(row.errors[measure], row.median(clocked)) for row in counted if row.contender is each]
+        for each in measured.methods()
+    }
+    found = {name: seconds_at(mine, target) for name, mine in points.items()}
+    seconds = {name: each for name, each in found.items() if each is not None}
     first, second, *_ = (*sorted(seconds.values()), 0.0, 0.0)
     return {
         "measure": measure,
@@ -332,7 +333,7 @@ def _ratio_key(name: str, clocked: Clocked) -> str:
 
 def trends(measured: Session) -> list[Plain]:
     """``trends``: growth of time and iterations of every method."""
-    omitted = [(one.name, plain(one.count)) for one in measured.omissions()]
+    omitted = [(name, plain(count)) for name, count, _ in measured.omissions()]
     found = {contender: trend(measured.rows(contender.name)) for contender in measured.methods()}
     return [
         {

@@ -17,7 +17,7 @@ from comparisons.pairing import ANSWERS, SolverName, solvers_of
 from comparisons.present.strips import Coloured, with_stresses
 from comparisons.quantities import load_unit
 from comparisons.sentences import remedy_sentence
-from comparisons.tolerances import Tolerance
+from comparisons.tolerances import Tolerance, solve_within
 from comparisons.writing import write
 from cprbm_scene import Answer, Scene
 
@@ -62,8 +62,6 @@ def _answer_of(request: output.Request, scene: Scene, solver: SolverName) -> Fou
         SceneError: the solver does not support the scene.
     """
     if request.tol is not None and solver != "exact":
-        from comparisons.tolerances import solve_within
-
         with output.status(shown=not request.quiet) as say:
             answer, search = solve_within(scene, solver, request.choices, request.tol, solvers_of(request.planted), say)
         return answer, audit(scene, answer), (search,)

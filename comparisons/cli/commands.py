@@ -95,8 +95,12 @@ class Commands(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all commands; the developers' tools belong to a checkout."""
-        shown = {name: each for name, each in self.commands.items() if not each.hidden}
-        return [name for name, each in shown.items() if is_checkout() or not isinstance(each, ToolCommand)]
+        hides_tools = not is_checkout()
+        return [
+            name
+            for name, each in self.commands.items()
+            if not each.hidden and not (hides_tools and isinstance(each, ToolCommand))
+        ]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands of every group under its heading."""

@@ -7,8 +7,6 @@ import platform
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
@@ -48,32 +46,19 @@ class Library:
         """Command that installs the library for the running Python."""
         return f'{shlex.quote(sys.executable)} -m pip install "{self.name}{self.least}"'
 
-
-@dataclass(frozen=True, slots=True)
-class State:
-    """A library with the installed ``version`` and the ``trouble`` of the import; both empty without a value."""
-
-    library: Library
-    version: str
-    trouble: str
-
-    @property
-    def there(self) -> bool:
-        """Whether the library can be used."""
-        return bool(self.version) and not self.trouble
-
-    @property
-    def text(self) -> str:
-        """Version and purpose of the library, and the command that installs the library if needed."""
-        library = self.library
-        if not self.trouble:
-            install = "" if self.version else f"; install: {library.line}"
-            return f"{self.version or 'missing':<12} for {library.needed_for}{install}"
-        system = line_for(library.name, self.trouble)
-        remedy = f"install the library again: {library.line} --force-reinstall"
-        if system:
+    def state(self) -> tuple[bool, str]:
+        """Whether the library can be used; and version, purpose, and the command that installs it if needed."""
+        try:
+            found = version(self.name)
+        except PackageNotFoundError:
+            return False, f"{'missing':<12} for {self.needed_for}; install: {self.line}"
+        trouble = trouble_with(self.module)
+        if not trouble:
+            return True, f"{found:<12} for {self.needed_for}"
+        remedy = f"install the library again: {self.line} --force-reinstall"
+        if system := line_for(self.name, trouble):
             remedy = f"on Debian and Ubuntu install its system libraries, as root: {system}"
-        return f"{self.version:<12} cannot be imported ({self.trouble}); for {library.needed_for}; {remedy}"
+        return False, f"{found:<12} cannot be imported ({trouble}); for {self.needed_for}; {remedy}"
 
 
 LIBRARIES = (
@@ -111,16 +96,6 @@ LIBRARIES = (
 )
 
 
-def states() -> Iterator[State]:
-    """State of every library."""
-    for library in LIBRARIES:
-        found = trouble = ""
-        with suppress(PackageNotFoundError):
-            found = version(library.name)
-            trouble = trouble_with(library.module)
-        yield State(library, found, trouble)
-
-
 def trouble_with(module: str) -> str:
     """Trouble of an import: the last line of Python's message; empty after a successful import."""
     try:
@@ -149,12 +124,13 @@ def doctor(quiet: bool) -> int:  # noqa: FBT001 - click passes a keyword
     if not quiet:
         click.echo(f"Python {platform.python_version()}")
     there, missing, required = list[str](), list[str](), False
-    for state in states():
-        lacking = not (state.there or state.library.extra)
+    for library in LIBRARIES:
+        usable, text = library.state()
+        lacking = not (usable or library.extra)
         required |= lacking
-        (there if state.there else missing).append(state.library.name)
+        (there if usable else missing).append(library.name)
         if lacking or not quiet:
-            click.echo(f"{state.library.name:<14} {state.text}")
+            click.echo(f"{library.name:<14} {text}")
     if not quiet:
         if "pyvista" in there:
             click.echo(f"{'drawing':<14} {_drawing_text()}")

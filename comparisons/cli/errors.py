@@ -6,8 +6,6 @@ the output cannot be written; 3 nothing worse than UNDECIDED; 128 plus the numbe
 The module imports the standard library only, since any other library may be missing.
 """
 
-from __future__ import annotations
-
 import os
 import shlex
 import signal
@@ -146,7 +144,7 @@ def _end_of_question(error: Exception) -> End | None:
     return None
 
 
-def _with_next_step(mistake: Mistake) -> str:
+def _with_next_step(mistake: "Mistake") -> str:
     """A mistake, with the next step for a missing file."""
     path = Path(mistake.file)
     if mistake.key or not mistake.file or path.exists():

@@ -1,7 +1,5 @@
 """The group of all commands of ``cprbm`` as data (help texts, options, functions), and a command line as a function."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from functools import partial
@@ -317,7 +315,7 @@ commands = Commands(
 commands.context_settings = {"help_option_names": ["-h", "--help"]}
 
 
-def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
+def run(arguments: Sequence[str], solvers: "Solvers | None" = None) -> int:
     """Run a command line.
 
     Args:

@@ -4,19 +4,15 @@ There is no progress outside a terminal, with ``--verbose``, and with ``--quiet`
 program may still fork processes.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import shutil
 import sys
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from logging import NOTSET
 from pathlib import Path
-from typing import TypeVar
+from typing import Self, TypeVar
 
 import click
 
@@ -111,7 +107,8 @@ class Request:
         """
         names = [name for text in self.arguments for name in (cases.names() if text == "all" else (text,))]
         questions = [cases.asked(name, self.values) for name in dict.fromkeys(names)]
-        twice = sorted(name for name, number in Counter(question.name for question in questions).items() if number > 1)
+        found = [question.name for question in questions]
+        twice = sorted({name for name in found if found.count(name) > 1})
         if twice:
             raise click.UsageError(f"Several scenes have the name {', '.join(twice)}; allowed: a name for each scene.")
         self._check(questions)
@@ -124,7 +121,7 @@ class Request:
                 click.echo(printable(f"Note: {scene.file}: {note}"), err=True)
             check_counts(self.choices, scene)
 
-    def with_room(self, folder: str = "") -> Request:
+    def with_room(self, folder: str = "") -> Self:
         """The request with its folders made; without ``--out`` the report goes to ``folder``, or nowhere if empty.
 
         Raises:
@@ -209,7 +206,7 @@ class Bar:
 
 
 def _visible(*, shown: bool) -> bool:
-    return shown and sys.stderr.isatty() and logs.level() == NOTSET
+    return shown and sys.stderr.isatty() and not logs.level()
 
 
 @contextmanager

@@ -8,14 +8,14 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import partial
-from logging import NOTSET
+from itertools import islice
 from typing import Literal, TypeVar
 
 import click
 
 from comparisons import case, cases, logs, pairing, provenance
 from comparisons.bench import measures, running
-from comparisons.bench.section import bench_section, size_text
+from comparisons.bench.section import bench_section, pictures, size_text
 from comparisons.case import Comparison
 from comparisons.choices import Count, check_counts
 from comparisons.cli import output
@@ -24,14 +24,14 @@ from comparisons.cli.errors import code_of
 from comparisons.cli.main import OPTIMISERS
 from comparisons.offset_verdict import Compared, compared_offset
 from comparisons.present import brief, csv_table, figures, page
-from comparisons.present.columns import Plain, Section
+from comparisons.present.columns import Figure, Plain, Section
 from comparisons.store import Run, run_into
 from comparisons.studies import calibration, convergence, table1
 from comparisons.studies.report import Report
 from comparisons.tolerances import runs_within
-from comparisons.verdict import Runs, Word
+from comparisons.verdict import Word
 from comparisons.writing import write
-from cprbm_scene import OffsetQuestion, Question, frozendict
+from cprbm_scene import OffsetQuestion, Question, Scene, frozendict
 
 
 def compare_all(request: output.Request) -> int:
@@ -71,27 +71,32 @@ def _comparisons(
     request: output.Request, questions: Sequence[Question], run: Run, progress: output.Bar
 ) -> Iterator[Compared]:
     """Comparisons of all questions; the next question is solved while the caller draws and prints the last."""
-    begun = partial(_begin, request, [] if request.tol else questions, run)
-    following = begun(0)
-    for place, question in enumerate(progress.through(questions)):
-        pending, following = following, begun(place + 1)
-        if isinstance(question, OffsetQuestion):
-            yield compared_offset(question, run.solvers.offset)
-        elif pending is not None:
-            yield case.compare(pending())
-        else:
-            assert request.tol is not None
-            with output.status(shown=not request.quiet) as say:
-                runs, searches = runs_within(question, request.choices, request.tol, run.solvers, run.crew, say)
-            yield replace(case.compare(runs), tolerances=searches)
+    begun = map(partial(_begin, request, run), questions)
+    ahead = [*islice(begun, 1)]
+    for _ in progress.through(questions):
+        finish = ahead.pop()
+        ahead += islice(begun, 1)
+        yield finish()
 
 
-def _begin(request: output.Request, questions: Sequence[Question], run: Run, place: int) -> Callable[[], Runs] | None:
-    """The runs of a question, begun now; None beyond the last question, and for an offset question."""
-    question = questions[place] if place < len(questions) else None
-    if question is None or isinstance(question, OffsetQuestion):
-        return None
-    return pairing.begin(question, request.choices, run.solvers, run.crew)
+def _begin(request: output.Request, run: Run, question: Question) -> Callable[[], Compared]:
+    """A function for the comparison of a question, whose runs begin now.
+
+    With a tolerance, and of an offset question, all work begins with the call.
+    """
+    if isinstance(question, OffsetQuestion):
+        return partial(compared_offset, question, run.solvers.offset)
+    if request.tol is not None:
+        return partial(_compared_within, request, run, question, request.tol)
+    pending = pairing.begin(question, request.choices, run.solvers, run.crew)
+    return lambda: case.compare(pending())
+
+
+def _compared_within(request: output.Request, run: Run, scene: Scene, tolerance: float) -> Comparison:
+    """The comparison of a scene with all solvers within a tolerance."""
+    with output.status(shown=not request.quiet) as say:
+        runs, searches = runs_within(scene, request.choices, tolerance, run.solvers, run.crew, say)
+    return replace(case.compare(runs), tolerances=searches)
 
 
 def _run(request: output.Request, questions: Sequence[Question]) -> AbstractContextManager[Run]:
@@ -111,7 +116,7 @@ def _keep(request: output.Request, run: Run, shown: Sequence[Question], whole: p
 
 def _show(request: output.Request, compared: Compared) -> None:
     """Print a case: in brief, with ``-v`` with all tables, or quietly with the verdict alone."""
-    if not request.quiet and logs.level() == NOTSET:
+    if not request.quiet and not logs.level():
         values = [text for name, value in request.values.items() for text in ("--set", f"{name}={value}")]
         argument = shlex.join([cases.argument(compared.question), *values])
         click.echo(brief.brief(compared, argument, request.out, output.screen_width()) + "\n")
@@ -179,11 +184,11 @@ def report(request: output.Request, sizes: tuple[int, ...], without: tuple[str, 
     found = Report(request.out, questions, *parts, request.solvers, provenance.page_origin())
     missing = found.missing()
     with _run(request, questions) as run, output.bar(len(missing), shown=not request.quiet) as progress:
-        pending = _begin(request, missing, run, 0)
-        for place, question in enumerate(progress.through(missing)):
-            content = found.content_of(question, pending, run)
-            # solve the next case during the drawings, but not during the measurement of run times
-            pending = _begin(request, missing, run, place + 1)
+        begun = map(partial(_begin, request, run), missing)
+        ahead = [*islice(begun, 1)]
+        for question in progress.through(missing):
+            content = found.content_of(question, ahead.pop(), run)
+            ahead += islice(begun, 1)  # solved during the drawings, but not during the measurement of run times
             found.add(question, *content)
         found.add_table()
     output.write_json(request.json_file, found.document() if request.json_file else {})
@@ -219,7 +224,8 @@ def bench(
     wanted = methods or (*running.OURS, *OPTIMISERS)
     asked = [each for each in running.contenders(request.solvers, request.choices) if each.name in wanted]
     asked += [load_tool(f"bench --method {name}").contender() for name in OPTIMISERS if name in wanted]
-    absent = {each.name: reason for each in asked if (reason := _absence(each, whole=whole))}
+    last_only = {each.name: "an optimiser solves the last station only" for each in asked if whole and each.is_peer}
+    absent = {each.name: each.absence for each in asked if each.absence} | last_only
     taking = tuple(each for each in asked if each.name not in absent)
     if not taking:
         reasons = "; ".join(f"{name}: {reason}" for name, reason in absent.items())
@@ -234,7 +240,7 @@ def bench(
         say("reference of the errors")
         known = measures.reference(question, request.solvers)
     session = running.Session(opened if whole else question, plan, taking, provenance.machine(), known, absent)
-    take_steps(request, session, session.jobs(), running.Session.do, bench_section)
+    take_steps(request, session, session.jobs(), running.Session.do, bench_section, pictures)
     failed = [row for row in session.rows() if row.contender.name in running.OURS and not row.outcome.completed]
     for row in failed:
         who = f"{row.contender.label} at N = {size_text(row.count)}"
@@ -242,19 +248,13 @@ def bench(
     return code_of(incomplete=bool(failed))
 
 
-def _absence(contender: running.Contender, *, whole: bool) -> str:
-    """Reason against a method; empty for a possible method."""
-    alone = whole and contender.is_peer
-    return "an optimiser solves the last station only" if alone else contender.absence
-
-
 def study_calibration(request: output.Request) -> int:
     """Compare stated with true errors; exit code 1 for a case that differs or did not complete."""
     request = request.with_room()
     with run_into(request.out, request.solvers, processes=request.processes) as run:
         take = partial(calibration.with_case, solvers=run.solvers, crew=run.crew)
-        scenes = [*map(cases.opened, cases.scenes())]
-        found = take_steps(request, calibration.Calibration(), scenes, take, calibration.result_of)
+        scenes, ends = [*map(cases.opened, cases.scenes())], (calibration.result_of, calibration.pictures)
+        found = take_steps(request, calibration.Calibration(), scenes, take, *ends)
     verdicts = [trial.verdict for trial in found.trials]
     return code_of(incomplete=any(each.word is Word.DIFFER or not each.completed for each in verdicts))
 
@@ -263,7 +263,7 @@ def study_table1(request: output.Request, repeat: int) -> int:
     """Time both solvers on the cells of the paper's Table 1; exit code 1 for an incomplete solve."""
     request = request.with_room()
     session = table1.session(request.solvers, provenance.machine(), repeat, request.at_most)
-    take_steps(request, session, session.jobs(), running.Session.do, table1.result_of)
+    take_steps(request, session, session.jobs(), running.Session.do, table1.result_of, table1.pictures)
     return code_of(incomplete=not table1.result_of(session).complete)
 
 
@@ -273,17 +273,18 @@ def take_steps(
     steps: Sequence[Step],
     take: Callable[[Study, Step], Study],
     section_of: Callable[[Study], Section],
+    figures_of: Callable[[Study], tuple[Figure, ...]] = lambda study: (),
 ) -> Study:
-    """The finished study; every step writes the partial section, and an interrupted study shows its section."""
-    written: Section | None = None
+    """The finished study: every step writes numbers and tables, and the end or an interruption also the figures."""
     with output.bar(len(steps), shown=not request.quiet) as progress:
         try:
             for step in progress.through(steps):
-                study, written = take(study, step), None
-                if request.out is not None or (request.json_file is not None and request.prints):
-                    written = _write_files(request, section_of(study))
+                study = take(study, step)
+                if request.out is not None or request.json_file is not None:
+                    _write_files(request, section_of(study))
         finally:
-            section = written or _write_files(request, section_of(study))
+            section = replace(section_of(study), figures=figures_of(study))
+            _write_files(request, section)
             progress.clear()
             if not request.prints:
                 output.write_json(request.json_file, dict(section.data))
@@ -293,11 +294,10 @@ def take_steps(
     return study
 
 
-def _write_files(request: output.Request, section: Section) -> Section:
-    """The section, whose files are written now."""
+def _write_files(request: output.Request, section: Section) -> None:
+    """Write the page, the figures and the JSON of a section."""
     if request.prints:
         output.write_json(request.json_file, dict(section.data))
     if request.out is not None:
         page.put_section(request.out, section)
         page.put_page(request.out, page.Page(section.heading, "", further=(section,)), section.name)
-    return section

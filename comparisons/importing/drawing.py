@@ -115,13 +115,12 @@ def _with_ezdxf(path: Path, unit: str) -> Drawing:
         parts = list(entity.virtual_entities()) if kind in ("LWPOLYLINE", "POLYLINE") else [entity]
         if kind == "POINT":
             points.setdefault(layer, []).append(np.array(entity.dxf.location))
-        elif not {part.dxftype() for part in parts} <= {"LINE", "ARC"}:
+        elif {part.dxftype() for part in parts} <= {"LINE", "ARC"}:
+            for place, part in enumerate(parts, len(curves) + 1):
+                tag = layer if layer != "0" else f"curve{place}"
+                curves.append(DrawnCurve(tag, place, f"{kind} {entity.dxf.handle}", _along(part), None))
+        else:
             refused.append(f"{kind} on the layer {layer!r} (entity {entity.dxf.handle}), no line, arc or polyline")
-            continue
-        for part in parts if kind != "POINT" else ():
-            place = len(curves) + 1
-            tag = layer if layer != "0" else f"curve{place}"
-            curves.append(DrawnCurve(tag, place, f"{kind} {entity.dxf.handle}", _along(part), None))
     tagged = any(curve.tag != f"curve{curve.number}" for curve in curves)
     return Drawing(tuple(curves), {layer: np.array(each) for layer, each in points.items()}, tagged, tuple(refused))
 
@@ -196,10 +195,11 @@ def _curve(model, tag: str, number: int) -> DrawnCurve:  # type: ignore[no-untyp
 def _nodes(model, number: int) -> Array:  # type: ignore[no-untyped-def]  # noqa: ANN001
     """The nodes of a meshed curve in their order, (k, 3)."""
     kinds, _, nodes = model.mesh.getElements(1, number)
-    edges = []
-    for kind, each in zip(kinds, nodes, strict=True):
-        for first, last, *inner in each.reshape(-1, model.mesh.getElementProperties(kind)[3]):
-            edges.append([model.mesh.getNode(node)[0] for node in (first, *inner, last)])
+    edges = [
+        [model.mesh.getNode(node)[0] for node in (first, *inner, last)]
+        for kind, each in zip(kinds, nodes, strict=True)
+        for first, last, *inner in each.reshape(-1, model.mesh.getElementProperties(kind)[3])
+    ]
     line = shapely.line_merge(shapely.multilinestrings([shapely.linestrings(edge) for edge in edges]), directed=True)
     return np.asarray(shapely.get_coordinates(line, include_z=True))
 

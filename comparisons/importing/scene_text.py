@@ -22,7 +22,6 @@ many each time until δ is at most the allowed distance.
 import math
 import re
 import tomllib
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.resources import files
@@ -121,7 +120,7 @@ def _refusal(curve: DrawnCurve, found: str, allowed: str) -> Mistake:
 def _names(curves: Sequence[DrawnCurve]) -> list[str]:
     """Names of the beams, with a number in a group of several curves."""
     tags = [curve.tag for curve in curves]
-    several = {tag for tag, times in Counter(tags).items() if times > 1}
+    several = {tag for tag in tags if tags.count(tag) > 1}
     return [_name(tag) + (f"-{tags[: k + 1].count(tag)}" if tag in several else "") for k, tag in enumerate(tags)]
 
 

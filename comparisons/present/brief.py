@@ -5,7 +5,6 @@ import textwrap
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import partial
-from itertools import chain
 from pathlib import Path
 
 from comparisons.case import Comparison, Verdict
@@ -54,7 +53,7 @@ def brief(compared: Compared, argument: str, page: Path | None = None, width: in
         *dict.fromkeys(map(remedy_sentence, compared.runs.pair)),
     ]
     rest = [*_found_sizes(compared), *(rest if compared.rows else ())]
-    last = [*chain.from_iterable(map(wrapped, rest)), *last]
+    last = [*(line for sentence in rest for line in wrapped(sentence)), *last]
     rows = last_rows_of_stages(compared)
     tables = (nearest_rows(compared, rows, count) for count in range(min(ROWS, len(rows)), 0, -1))
     reports = ([*first, "", *brief_lines(table, width=width), *filter(None, (table.note,)), *last] for table in tables)

@@ -20,10 +20,7 @@ from comparisons.present.picture import Kind, Part, names_by_place
 from cprbm_scene import Scene
 
 if TYPE_CHECKING:
-    import matplotlib.axes
-    import matplotlib.axis
-    import matplotlib.figure
-    import matplotlib.transforms
+    import matplotlib.figure  # and with it the axes and the transforms
 
 Axes: TypeAlias = "matplotlib.axes.Axes"
 Drawing: TypeAlias = "matplotlib.figure.Figure"
@@ -173,7 +170,7 @@ def draw_names(axes: Axes, scene: Scene) -> None:
         axes.annotate(text, (x, y), textcoords="offset points", xytext=(shift, 7), ha=side)
 
 
-def show_lengths(scene: Scene, axis: matplotlib.axis.Axis, name: str = "") -> None:
+def show_lengths(scene: Scene, axis: matplotlib.axis.Axis, name: str) -> None:
     """Give an axis of lengths, m, ticks in the displayed unit, and a label."""
     from matplotlib.ticker import AutoLocator, FuncFormatter
 
@@ -188,8 +185,7 @@ def show_lengths(scene: Scene, axis: matplotlib.axis.Axis, name: str = "") -> No
 
     axis.set_major_locator(Locator())
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / factor:g}".replace("-", "\N{MINUS SIGN}")))
-    if name:
-        axis.set_label_text(f"{name}, {unit}")
+    axis.set_label_text(f"{name}, {unit}")
 
 
 def logarithmic(axes: Axes, x: Sequence[float] = ()) -> None:

@@ -24,7 +24,7 @@ from comparisons.present import row_tables
 from comparisons.present.columns import Column, Figure, Section, Table, columns_of, follow, table_of
 from comparisons.present.json_document import solver
 from comparisons.quantities import load_unit, norm, probe_scales, unit_of
-from comparisons.reactions import MESH_ALLOWANCE, PERTURBATION, WorkEnergyReaction, is_long
+from comparisons.reactions import MESH_ALLOWANCE, PERTURBATION, WorkEnergyReaction, by_drive, is_long
 from comparisons.stations import kept
 from comparisons.tolerances import Tolerance
 from comparisons.verdict import ROUND_OFF, CriticalRow, Place, mechanism, other_theory, released
@@ -277,12 +277,6 @@ def _reaction_table(compared: Comparison, drive: str, found: Sequence[WorkEnergy
     ]  # fmt: skip
     rows = [each for each in found if each.station in stations[each.stage]]
     return table_of(f"Reaction at the drive {drive}, {unit}", columns, rows, summary(scene, found) + ended)
-
-
-def by_drive(found: Sequence[WorkEnergyReaction]) -> dict[str, tuple[WorkEnergyReaction, ...]]:
-    """The reactions of every drive, in the order of stages and stations."""
-    drives = dict.fromkeys(reaction.drive for reaction in found)
-    return {drive: tuple(reaction for reaction in found if reaction.drive == drive) for drive in drives}
 
 
 def summary(scene: Scene, found: Sequence[WorkEnergyReaction]) -> str:

@@ -10,11 +10,10 @@ from comparisons.case import Comparison
 from comparisons.formats import at_station, axis_unit, display_unit, number
 from comparisons.geometry import longest
 from comparisons.present.canvas import BLUE, GREY, LINES, RED, canvas, finished
-from comparisons.present.case_tables import by_drive
 from comparisons.present.columns import Figure
 from comparisons.present.csv_table import pressing
 from comparisons.quantities import UNITS, arc_lengths, load_unit
-from comparisons.reactions import ENERGY, MESH_ALLOWANCE, WorkEnergyReaction, multiplier, reaction_probe
+from comparisons.reactions import ENERGY, MESH_ALLOWANCE, WorkEnergyReaction, by_drive, multiplier, reaction_probe
 from comparisons.stations import begins_at, station_of
 from cprbm_scene import (
     Answer,
@@ -207,9 +206,9 @@ def _points(stations: Sequence[StationAnswer], of: Values, scales: tuple[float, 
 def reaction_figures(compared: Comparison) -> Iterator[Figure]:
     """A figure for every drive with two stations or more, in the manner of the paper's Fig. 15."""
     scene = compared.scene
-    for drive, found in by_drive(compared.reactions).items():
-        if len({each.station for each in found}) < 2:
-            continue
+    every = by_drive(compared.reactions)
+    several = {drive: found for drive, found in every.items() if len({each.station for each in found}) > 1}
+    for drive, found in several.items():
         factor, unit_name = display_unit(scene, found[0].unit, max(abs(each.multiplier) for each in found))
         si = load_unit(scene, found[0].stage)
         step, step_unit = axis_unit(scene, si, max(abs(each.station) for each in found))

@@ -215,20 +215,17 @@ def _draw_colours(drawing: Drawing, axes: Axes, scene: Scene, view: View, bounds
 
 def _draw_pushes(axes: Axes, scene: Scene, view: View, bounds: Bounds) -> None:
     """Arrows of contact forces with their heads where the contacts press, and dots at all places of a zone."""
-    named = set[str]()
     if not view.arrows_of("push"):
         draw_parts(axes, view.of("contact"))
-    for push in view.arrows_of("push"):
-        vector = bounds.arrow(push)
-        if vector is None:
-            continue
+    drawn = [(push, vector) for push in view.arrows_of("push") if (vector := bounds.arrow(push)) is not None]
+    firsts = {push.name: vector for push, vector in reversed(drawn)}
+    for push, vector in drawn:
         if len(push.places) > 1:
             draw_parts(axes, [Part("contact", push.name, push.places)])
         tail, way = tuple(push.middle - vector), push.resultant / push.size
         axes.annotate("", xy=tuple(push.middle), xytext=tail, zorder=5.0, arrowprops={
             "arrowstyle": "-|>", "color": GREEN, "linewidth": 1.5, "shrinkA": 0.0, "shrinkB": 0.0})  # fmt: skip
-        if push.name not in named:
-            named.add(push.name)
+        if firsts[push.name] is vector:
             aside = "center" if abs(way[1]) > abs(way[0]) else "right" if way[0] > 0.0 else "left"
             axes.annotate(with_unit(scene, push.size, "N", 3), tail, textcoords="offset points", ha=aside, va="center",
                           xytext=(-13.0 * way[0], -9.0 * way[1]), fontsize=8.5, color=GREEN, zorder=6.0)  # fmt: skip

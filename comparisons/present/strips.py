@@ -15,8 +15,7 @@ M       bending moment, σ·w·t²/6, N·m
 At a height η the bending stress is −η·σ: a moment that turns the tangent counter-clockwise presses the left edge.
 """
 
-from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -32,8 +31,7 @@ _STEP = 1e-6  # share of a beam's length over which the normal at rest is a cent
 _STRESSES: tuple[Quantity, ...] = ("bending_stress", "combined_stress")
 
 
-@dataclass(frozen=True, slots=True)
-class Strip:
+class Strip(NamedTuple):
     """A beam at a station in n sections.
 
     Attributes:

@@ -12,7 +12,6 @@ its load or drive where a single stage goes up; otherwise the stations count fro
 import io
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Literal, NamedTuple, TypeVar, get_args
@@ -323,7 +322,7 @@ def series(scene: Scene, views: Sequence[View], path: Path) -> Iterator[tuple[Pa
         ImportError: meshio is not installed.
     """
     folder, lines, times = path.parent / path.stem, [], [view.station.value for view in views]
-    if len(scene.stages) > 1 or any(later <= earlier for earlier, later in pairwise(times)):
+    if len(scene.stages) > 1 or (np.diff(times) <= 0.0).any():
         times = [float(number) for number in range(len(views))]
     for number, (time, view) in enumerate(zip(times, views, strict=True)):
         blocks = {"beams": beam_block(view), "obstacles": obstacle_block(view), "contacts": force_block(view)}

@@ -14,7 +14,7 @@ from comparisons.executor import ALONE, Crew
 from comparisons.formats import number, percent
 from comparisons.pairing import Solvers, exact_answer, exact_if_covered, paired
 from comparisons.present.canvas import GREY, canvas, finished
-from comparisons.present.columns import Figure, Plain, Section, Table
+from comparisons.present.columns import Column, Figure, Plain, Section, Table, table_of
 from comparisons.stations import complete_part
 from comparisons.verdict import LARGEST_MEDIAN, SHARE_WITHIN, SOLVERS, ErrorRatio, Tally, Word, error_ratios, tally
 from cprbm_scene import Answer, Scene, frozendict
@@ -90,8 +90,8 @@ def tallies(trials: Iterable[Trial]) -> tuple[Tally, ...]:
 
 
 def result_of(found: Calibration) -> Section:
-    """Result of the measurements so far."""
-    measured, by_case = any(trial.ratios for trial in found.trials), found.by_case()
+    """Result of the measurements so far, without :func:`pictures`."""
+    by_case = found.by_case()
     cases_of_json = [
         {
             "case": case,
@@ -105,7 +105,7 @@ def result_of(found: Calibration) -> Section:
     return Section(
         "Stated uncertainties beside true errors",
         tuple(_sentences(found)),
-        (_stated_against_true(found),) if measured else (),
+        (),
         tuple(table for table in (_tallies(found), _worst(found)) if table.rows),
         "calibration",
         {"study": "calibration", "cases": cases_of_json},
@@ -159,43 +159,64 @@ def _sentences(found: Calibration) -> Iterable[str]:
 
 
 def _tallies(found: Calibration) -> Table:
-    rows = []
-    for case, trials in found.by_case().items():
-        for place, solver in enumerate(SOLVERS):
-            every = {str(trial.sizes[solver]): tallies([trial])[place] for trial in trials}
-            for size, own in {**every, "all": tallies(trials)[place]}.items():
-                worst = number(own.worst[0].ratio) if own.worst else "–"
-                counts = str(own.rows), str(own.within), percent(own.share), number(own.over), worst
-                rows.append((case, _NAMES[solver], size, *counts, "met" if own.holds else "not met"))
-    return Table(
+    """Error ratios by case, solver and size, and of all sizes together."""
+    items = [
+        (case, size, own)
+        for case, trials in found.by_case().items()
+        for place, solver in enumerate(SOLVERS)
+        for size, own in [
+            *((str(trial.sizes[solver]), tallies([trial])[place]) for trial in trials),
+            ("all", tallies(trials)[place]),
+        ]
+    ]
+    columns = [
+        Column[tuple[str, str, Tally]]("case", lambda at: at[0]),
+        Column("solver", lambda at: _NAMES[at[2].solver]),
+        Column("N", lambda at: at[1]),
+        Column("rows", lambda at: at[2].rows),
+        Column("within", lambda at: at[2].within),
+        Column("share", lambda at: at[2].share, percent),
+        Column("stated over true", lambda at: at[2].over, number),
+        Column("largest true over stated", lambda at: at[2].worst[0].ratio if at[2].worst else None, number),
+        Column("rule", lambda at: "met" if at[2].holds else "not met"),
+    ]
+    return table_of(
         "Calibration",
-        ("case", "solver", "N", "rows", "within", "share", "stated over true", "largest true over stated", "rule"),
-        tuple(rows),
+        columns,
+        items,
         "Rows with a true error of more than 1e-9 of the probe's scale, all stations, a closing load once; N is the "
         "number of links or elements per beam. Stated over true: the median.",
     )
 
 
 def _worst(found: Calibration) -> Table:
-    rows = []
-    for case, trials in found.by_case().items():
-        size_of = {id(each): trial.sizes[each.solver] for trial in trials for each in trial.ratios}
-        for each in (each for own in tallies(trials) for each in own.worst):
-            row, shares = each.row, (percent(each.true / each.row.scale), percent(each.stated / each.row.scale))
-            where = row.probe.name, f"{row.stage} {row.station:g}"
-            rows.append(
-                (case, _NAMES[each.solver], str(size_of[id(each)]), *where, *shares, number(each.ratio), each.word)
-            )
-    return Table(
-        "The least well stated",
-        ("case", "solver", "N", "probe", "at", "true", "stated", "true over stated", ""),
-        tuple(rows),
-        "True and stated as fractions of the probe's scale.",
-    )
+    """The largest error ratios by case and solver."""
+    sizes = {id(each): trial.sizes[each.solver] for trial in found.trials for each in trial.ratios}
+    worst = [
+        (case, each)
+        for case, trials in found.by_case().items()
+        for own in tallies(trials)
+        for each in own.worst
+    ]  # fmt: skip
+    columns = [
+        Column[tuple[str, ErrorRatio]]("case", lambda at: at[0]),
+        Column("solver", lambda at: _NAMES[at[1].solver]),
+        Column("N", lambda at: sizes[id(at[1])]),
+        Column("probe", lambda at: at[1].row.probe.name),
+        Column("at", lambda at: f"{at[1].row.stage} {at[1].row.station:g}"),
+        Column("true", lambda at: _shares(at[1])[0], percent),
+        Column("stated", lambda at: _shares(at[1])[1], percent),
+        Column("true over stated", lambda at: at[1].ratio, number),
+        Column("", lambda at: at[1].word),
+    ]
+    note = "True and stated as fractions of the probe's scale."
+    return table_of("The least well stated", columns, worst, note)
 
 
-def _stated_against_true(found: Calibration) -> Figure:
-    """Stated against true errors of every row, a panel for each solver and a colour for each case."""
+def pictures(found: Calibration) -> tuple[Figure, ...]:
+    """Stated against true errors of every row, a panel for each solver and a colour for each case; if there are any."""
+    if not any(trial.ratios for trial in found.trials):
+        return ()
     with canvas(9.6, 5.2, 2, 2, "xy") as (drawing, panels):
         every = [size for trial in found.trials for each in trial.ratios for size in _shares(each)]
         low, high = 0.5 * min(every), 2.0 * max(every)
@@ -221,7 +242,7 @@ def _stated_against_true(found: Calibration) -> Figure:
             "Each row's stated error against its true one. On the line they are equal; below it the statement is not "
             "true. Dashed: stated ten times the true one, which the median is not to exceed."
         )
-        return finished(drawing, "calibration", caption)
+        return (finished(drawing, "calibration", caption),)
 
 
 def _shares(ratio: ErrorRatio) -> tuple[float, float]:

@@ -59,8 +59,8 @@ def convergence_of(scene: Scene, sizes: Sequence[int], choices: Choices, solvers
     exact, series = answers.pop() if known else None, list[Series]()
     for place, (method, variant) in enumerate(runs):
         own = dict(zip(sizes, answers[place * len(sizes) :], strict=False))
-        problems = {n: "; ".join(problem_sentences(scene, answer)) for n, answer in own.items()}
-        series.append(Series(method, variant, theory, own, {n: why for n, why in problems.items() if why}))
+        why = {n: said for n, answer in own.items() if (said := "; ".join(problem_sentences(scene, answer)))}
+        series.append(Series(method, variant, theory, own, why))
     families, criticals = probe_families(scene, series, exact), critical_families(scene, series)
     return Convergence(scene, tuple(sizes), tuple(series), tuple(families), tuple(criticals), exact)
 

@@ -18,11 +18,10 @@ from pydantic_core import to_json
 from comparisons import cases, provenance
 from comparisons.bench.measures import benchmark_scene, reference
 from comparisons.bench.running import OURS, Plan, Session, contenders, refusal_text
-from comparisons.bench.section import bench_section
-from comparisons.case import compare
+from comparisons.bench.section import bench_section, pictures
 from comparisons.choices import Choices
-from comparisons.offset_verdict import Compared, compared_offset
-from comparisons.pairing import Solvers, paired
+from comparisons.offset_verdict import Compared
+from comparisons.pairing import Solvers
 from comparisons.present.columns import Plain, Section
 from comparisons.present.page import (
     Chapter,
@@ -36,9 +35,8 @@ from comparisons.present.page import (
 from comparisons.store import Run, digest
 from comparisons.studies import table1
 from comparisons.studies.convergence import convergence_section
-from comparisons.verdict import Runs
 from comparisons.writing import write
-from cprbm_scene import OffsetQuestion, Question, Scene, SceneError
+from cprbm_scene import Question, Scene, SceneError
 
 T = TypeVar("T")
 
@@ -108,12 +106,12 @@ class Report:
         names = {cell.case for cell in table1.CELLS}
         return self.times and all(cases.asked(name) in self.questions for name in names)
 
-    def content_of(self, question: Question, pending: Callable[[], Runs] | None, run: Run) -> Content:
+    def content_of(self, question: Question, pending: Callable[[], Compared], run: Run) -> Content:
         """All numbers of a question; run times come last, when no other solve runs.
 
         Args:
             question: a scene or an offset question.
-            pending: the runs of the comparison, if the runs began before.
+            pending: the comparison, whose runs may have begun.
             run: solvers with kept answers, and processes to share the runs.
 
         Raises:
@@ -124,14 +122,9 @@ class Report:
             further["Error against N"] = lambda: convergence_section(
                 question, self.sizes, self.choices, run.solvers, run.crew
             )
-        if isinstance(question, OffsetQuestion):
-            found: Compared = compared_offset(question, run.solvers.offset)
-        else:
-            runs = paired(question, self.choices, run.solvers, run.crew) if pending is None else pending()
-            found = compare(runs)
-            if self.times:
-                further["Run times"] = lambda: _run_times(question, self.timed, run.solvers)
-        return found, tuple(_or_refusal(heading, section) for heading, section in further.items())
+        if self.times and isinstance(question, Scene):
+            further["Run times"] = lambda: _run_times(question, self.timed, run.solvers)
+        return pending(), tuple(_or_refusal(heading, section) for heading, section in further.items())
 
     def add(self, question: Question, compared: Compared, further: tuple[Section, ...]) -> None:
         """Write the chapter of a question, and the page with the chapter.
@@ -154,7 +147,8 @@ class Report:
             OSError: the folder cannot be written to.
         """
         if self._has_table and self.table is None:
-            section = table1.result_of(table1.session(self.timed, self.origin, REPEAT, AT_MOST).after_all())
+            measured = table1.session(self.timed, self.origin, REPEAT, AT_MOST).after_all()
+            section = replace(table1.result_of(measured), figures=table1.pictures(measured))
             put_section(self.folder, section)
             self.table = light(section)
             write(self.folder / _TABLE, to_json((self._table_key, self.table)))
@@ -209,7 +203,8 @@ def _run_times(scene: Scene, timed: Solvers, knowing: Solvers) -> Section:
     scene = benchmark_scene(scene)
     plan = Plan(dict.fromkeys(OURS, SIZES), repeat=REPEAT, at_most=AT_MOST, clock="cpu")
     methods, known = contenders(timed, Choices(kinematics=plan.kinematics)), reference(scene, knowing)
-    return bench_section(Session(scene, plan, methods, provenance.machine(), known).after_all())
+    measured = Session(scene, plan, methods, provenance.machine(), known).after_all()
+    return replace(bench_section(measured), figures=pictures(measured))
 
 
 def _record_of(file: Path, kind: type[T], key: str) -> T | None:

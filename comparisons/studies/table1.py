@@ -7,9 +7,8 @@ work on the machine falls on all cells alike.  Only the first cell of a method i
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from comparisons import cases
 from comparisons.bench.measures import at_last_loads
@@ -24,8 +23,7 @@ from cprbm_scene import Scene, frozendict
 THEIR_MACHINE = "Intel Core i5-8500, MATLAB R2018b for the CPRBM, ANSYS 19.1 for the finite elements"
 
 
-@dataclass(frozen=True, slots=True)
-class Cell:
+class Cell(NamedTuple):
     """A number of the table: case, method, discretisation, and the paper's seconds; None without a number."""
 
     case: str
@@ -144,7 +142,7 @@ def _seconds(timing: Timing) -> float | None:
 
 
 def result_of(measured: Session, cells: tuple[Cell, ...] = CELLS) -> Section:
-    """Result of the measurements so far."""
+    """Result of the measurements so far, without :func:`pictures`."""
     times = dict(zip(cells, measured.timings, strict=True))
     taken = {cell: timing for cell, timing in times.items() if timing.seconds}
     machine = measured.machine
@@ -174,17 +172,19 @@ def result_of(measured: Session, cells: tuple[Cell, ...] = CELLS) -> Section:
         "rows": records_of(_KEYS, times.items()),
     }
     complete = all(timing.outcome.completed for timing in taken.values())
-    figures = (_run_times(cells, taken),) if taken else ()
-    return Section("Run times, beside Table 1 of the paper", sentences, figures, (table,), "table1", data, complete)
+    return Section("Run times, beside Table 1 of the paper", sentences, (), (table,), "table1", data, complete)
 
 
-def _run_times(cells: tuple[Cell, ...], taken: Mapping[Cell, Timing]) -> Figure:
-    """Our median times with their quartiles and the paper's, a line for each cell."""
+def pictures(measured: Session, cells: tuple[Cell, ...] = CELLS) -> tuple[Figure, ...]:
+    """Our median times with their quartiles and the paper's, a line for each cell; no figure without a run."""
+    taken = {place: timing for place, timing in enumerate(measured.timings) if timing.seconds}
+    if not taken:
+        return ()
     with canvas(7.2, 1.2 + 0.26 * len(cells)) as (drawing, (axes,)):
-        for cell, timing in taken.items():
+        for place, timing in taken.items():
             low, middle, high = timing.quartiles("both")
             bars = [[middle - low], [high - middle]]
-            axes.errorbar(middle, cells.index(cell), xerr=bars, fmt="o", color=BLUE, markersize=5, capsize=3)
+            axes.errorbar(middle, place, xerr=bars, fmt="o", color=BLUE, markersize=5, capsize=3)
         theirs = {place: cell.theirs for place, cell in enumerate(cells) if cell.theirs is not None}
         axes.plot(list(theirs.values()), list(theirs), "x", color=RED, markersize=6, label="the paper's")
         axes.plot([], [], "o", color=BLUE, label="ours")
@@ -193,4 +193,4 @@ def _run_times(cells: tuple[Cell, ...], taken: Mapping[Cell, Timing]) -> Figure:
         axes.set(xscale="log", xlabel="seconds")
         drawing.legend(loc="outside upper right", ncols=2)
         caption = "Seconds to the last load: ours as medians with the quartiles, and the paper's, on another machine."
-        return finished(drawing, "table1", caption)
+        return (finished(drawing, "table1", caption),)

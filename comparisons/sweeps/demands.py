@@ -102,13 +102,13 @@ class Measure:
 
     def numbers(self, outcome: Outcome) -> list[NumberRecord]:
         """Numbers station by station, SI; of values along a beam the largest magnitude."""
-        found: dict[float, NumberRecord] = {}
-        for each in outcome.numbers:
-            if (each["stage"], each["probe"], each["component"]) == (self.stage, self.probe, self.component):
-                number = each if each["arc_length"] is None else {**each, "value": abs(each["value"])}
-                before = found.get(each["station"], number)
-                found[each["station"]] = number if number["value"] > before["value"] else before
-        return list(found.values())
+        mine = [
+            each if each["arc_length"] is None else {**each, "value": abs(each["value"])}
+            for each in outcome.numbers
+            if (each["stage"], each["probe"], each["component"]) == (self.stage, self.probe, self.component)
+        ]
+        largest = {each["station"]: each for each in sorted(mine, key=lambda each: each["value"])}
+        return [largest[station] for station in dict.fromkeys(each["station"] for each in mine)]
 
     def last(self, outcome: Outcome) -> NumberRecord | None:
         """Number at the last reached station of the stage, SI; None without a number there."""

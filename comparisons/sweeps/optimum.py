@@ -15,11 +15,10 @@ start: the trust region shrinks, and the start goes on elsewhere.
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from functools import partial
 from math import isfinite, nan
 from pathlib import Path
-from threading import Lock
 
 import numpy as np
 from scipy.optimize import Bounds, NonlinearConstraint, minimize
@@ -30,9 +29,8 @@ from comparisons.present.columns import Column, Plain, Section, Table, plain, ta
 from comparisons.sweeps.demands import Bound, Goal, Measure, bounds_of, measure_of, read_demands
 from comparisons.sweeps.outcome import Asked, Outcome
 from comparisons.sweeps.points import SEED, Axis, Point, in_file_units, place_text, ranges_of
-from comparisons.sweeps.running import JOURNAL, Runner, Sweep, known_outcomes, tasks_of
+from comparisons.sweeps.running import Runner, known_outcomes, tasks_of
 from comparisons.verdict import first_met
-from comparisons.writing import append_line
 from cprbm_scene import Array, Mistake, Scene, SceneError
 
 FEASIBLE = 1e-6
@@ -77,6 +75,25 @@ class Problem:
     def point(self, u: Array) -> Point:
         """Values of the parameters, SI, at shares ``u`` (d,) of the ranges."""
         return {axis.name: float(axis.low + x * (axis.high - axis.low)) for axis, x in zip(self.axes, u, strict=True)}
+
+    def outcome(self, runner: Runner, point: Point, asked: Asked = "cprbm", *, finer: bool = False) -> Outcome:
+        """The outcome at a point; an invalid scene is an outcome too.
+
+        Args:
+            runner: solver of the point.
+            point: values of the parameters, SI.
+            asked: solver, or the comparison of both solvers.
+            finer: whether to double the numbers of links and elements.
+
+        Raises:
+            OSError: the journal cannot be written.
+        """
+        choices = runner.choices.finer() if finer else runner.choices
+        try:
+            (task,) = tasks_of(self.scene, [point], asked, frozenset(), choices)
+        except SceneError as error:
+            return Outcome(asked, "REFUSED", "; ".join(map(str, error.mistakes)))
+        return replace(runner, choices=choices).outcomes([task])[task.key]
 
     def starts(self, count: int) -> list[Array]:
         """Shares (d,) of ``count`` starts: the values of the file, and Sobol points."""
@@ -162,50 +179,6 @@ class Optimum:
         return first_met(rules, "")
 
 
-@dataclass(frozen=True, slots=True)
-class _PointSolver:
-    """Solver of single points for several threads, with a journal of outcomes.
-
-    Attributes:
-        problem: scene and ranges.
-        runner: solver of the points.
-        journal: file of the outcomes.
-        known: outcomes by key.
-    """
-
-    problem: Problem
-    runner: Runner
-    journal: Path
-    known: dict[str, Outcome]
-    lock: Lock = field(default_factory=Lock)
-
-    def outcome(self, point: Point, asked: Asked = "cprbm", *, finer: bool = False) -> Outcome:
-        """The outcome at a point; an invalid scene is an outcome too.
-
-        Args:
-            point: values of the parameters, SI.
-            asked: solver, or the comparison of both solvers.
-            finer: whether to double the numbers of links and elements.
-
-        Raises:
-            OSError: the journal cannot be written.
-        """
-        scene, runner = self.problem.scene, self.runner
-        choices = runner.choices.finer() if finer else runner.choices
-        alone = Runner(runner.workers, choices, runner.solvers, runner.limit)
-        try:
-            (task,) = tasks_of(scene, [point], asked, frozenset(), choices)
-        except SceneError as error:
-            return Outcome(asked, "REFUSED", "; ".join(map(str, error.mistakes)))
-        found = alone.run(Sweep(scene, self.problem.axes, (task,), self.known)).outcomes[task.key]
-        with self.lock:
-            if self.known.get(task.key) != found:
-                self.known[task.key] = found
-                append_line(self.journal, found.line(task.key))
-                runner.moved(len(self.known))
-        return found
-
-
 def optimum(problem: Problem, runner: Runner, starts: int, most: int) -> Optimum:
     """Ends of all starts, the best first (feasible before infeasible ends, then by the goal), and its check.
 
@@ -219,24 +192,25 @@ def optimum(problem: Problem, runner: Runner, starts: int, most: int) -> Optimum
         OSError: the journal cannot be written.
     """
     assert runner.out is not None
-    solver = _PointSolver(problem, runner, runner.out / JOURNAL, known_outcomes([runner.out]))
-    first = problem.number(solver.outcome(problem.point(problem.starts(1)[0])))
+    runner.known.update(known_outcomes([runner.out]))
+    first = problem.number(problem.outcome(runner, problem.point(problem.starts(1)[0])))
     scale = (abs(problem.cost(first)) if isfinite(first) else 1.0) or 1.0
     with ThreadPoolExecutor(starts) as pool:
-        found = list(pool.map(partial(_end, problem, solver, scale, most), problem.starts(starts)))
+        found = list(pool.map(partial(_end, problem, runner, scale, most), problem.starts(starts)))
     found.sort(key=lambda each: (not each.feasible, problem.cost(each.number) if each.feasible else 0.0))
     best = found[0].point
-    return Optimum(problem, tuple(found), solver.outcome(best, finer=True), solver.outcome(best, "compare"))
+    checks = problem.outcome(runner, best, finer=True), problem.outcome(runner, best, "compare")
+    return Optimum(problem, tuple(found), *checks)
 
 
-def _end(problem: Problem, solver: _PointSolver, scale: float, most: int, begun: Array) -> End:
+def _end(problem: Problem, runner: Runner, scale: float, most: int, begun: Array) -> End:
     """End of the start at the shares ``begun`` (d,)."""
     seen: dict[bytes, Array] = {}
 
     def values(u: Array) -> Array:
         """f and g at u."""
         if u.tobytes() not in seen:
-            outcome = solver.outcome(problem.point(u))
+            outcome = problem.outcome(runner, problem.point(u))
             cost = problem.cost(problem.number(outcome)) / scale
             own = np.array([cost, *(bound.excess(outcome) for bound in problem.bounds)])
             if not np.isfinite(own).all():
@@ -254,7 +228,7 @@ def _end(problem: Problem, solver: _PointSolver, scale: float, most: int, begun:
         options={"initial_tr_radius": _FIRST, "final_tr_radius": _LAST, "maxfev": most},
     )
     point = problem.point(found.x)
-    outcome = solver.outcome(point)
+    outcome = problem.outcome(runner, point)
     feasible = outcome.completed and all(bound.excess(outcome) <= FEASIBLE for bound in problem.bounds)
     number, settled = problem.number(outcome), bool(found.status == 0)
     return End(problem.point(begun), point, outcome, number, feasible, len(seen), settled)

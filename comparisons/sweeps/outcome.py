@@ -106,30 +106,19 @@ def solve(scene: Scene, choices: Choices, asked: Asked, solvers: Solvers) -> Out
     except Exception as error:
         place = extract_tb(error.__traceback__)[-1]
         return Outcome(asked, "FAULT", f"{type(error).__name__}: {error} (line {place.lineno} of {place.name})")
-    passed = _passed(scene, answer)
-    found = (
-        {**number, "branch": number["branch"] + passed[number["stage"], number["station"]]}
-        for number in records(scene, answer)
-    )
     return Outcome(
         asked,
         answer.ending.name,
         "" if answer.completed else answer.sentence,
         iterations=_iterations([answer]),
         seconds=perf_counter() - begun,
-        numbers=_kept(found, {"value": "value"}),
+        numbers=_kept(records(scene, answer), {"value": "value"}, _passed(scene, answer)),
     )
 
 
 def _compared(scene: Scene, choices: Choices, solvers: Solvers, begun: float) -> Outcome:
     compared = compare(paired(scene, choices, solvers))
     verdict, pair = compared.verdict, compared.runs.pair
-    passed = _passed(scene, pair[0])
-    found = (
-        {**each, "branch": (each["branch"] or 0) + passed[each["stage"], each["station"]]}
-        for each in comparison_records(compared)
-        if (each["stage"], each["station"]) in passed
-    )
     endings = [answer.ending.name for answer in pair if not answer.completed]
     columns = {"cprbm": "value", "fea": "fea", "difference": "difference", "stated": "stated", "word": "word"}
     return Outcome(
@@ -140,15 +129,20 @@ def _compared(scene: Scene, choices: Choices, solvers: Solvers, begun: float) ->
         "" if verdict.reason is None else verdict.reason.value,
         iterations=_iterations(pair),
         seconds=perf_counter() - begun,
-        numbers=_kept(found, columns),
+        numbers=_kept(comparison_records(compared), columns, _passed(scene, pair[0])),
     )
 
 
-def _kept(records: Iterable[Mapping[str, Any]], values: Mapping[str, str]) -> tuple[NumberRecord, ...]:
-    """Records with the columns of a sweep; ``values`` has new names by old names."""
+def _kept(
+    records: Iterable[Mapping[str, Any]], values: Mapping[str, str], passed: Mapping[tuple[str, float], int]
+) -> tuple[NumberRecord, ...]:
+    """Records with the columns of a sweep, whose branches count ``passed`` points; ``values`` has new by old names."""
     common = ("stage", "station", "station_unit", "branch", "probe", "component", "arc_length", "unit")
     return tuple(
-        {name: each[name] for name in common} | {new: each[old] for old, new in values.items()} for each in records
+        {name: each[name] for name in common}
+        | {"branch": (each["branch"] or 0) + passed[each["stage"], each["station"]]}
+        | {new: each[old] for old, new in values.items()}
+        for each in records
     )
 
 

@@ -162,8 +162,7 @@ def read_points(path: Path, in_si: InSI) -> tuple[Point, ...]:
 
 def axes_of(points: Sequence[Point]) -> tuple[Axis, ...]:
     """Axes of a sample: the least and the largest value of every parameter."""
-    names = list(points[0])
-    columns = {name: [point[name] for point in points] for name in names}
+    columns = {name: [point[name] for point in points] for name in points[0]}
     return tuple(Axis(name, min(values), max(values)) for name, values in columns.items())
 
 

@@ -1,24 +1,19 @@
-"""A sweep: points, keys, known outcomes, the solves of unknown points by an executor, and sweeps from Python."""
-
-from __future__ import annotations
+"""A sweep: points, keys, known outcomes, and the solves of unknown points by an executor."""
 
 import logging
-import os
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from contextlib import nullcontext
-from dataclasses import dataclass, replace
-from itertools import product
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from threading import Lock
 
 from comparisons.choices import Choices, check_counts
 from comparisons.pairing import Solvers
 from comparisons.store import digest, relevant
 from comparisons.sweeps.outcome import Asked, Outcome, crashed, outcome_of, solve_limited
-from comparisons.sweeps.points import Axis, Point, chosen_for_check, in_file_units
-from comparisons.sweeps.tables import write_tables
-from comparisons.sweeps.workers import Workers, workers_on
+from comparisons.sweeps.points import Axis, Point
+from comparisons.sweeps.workers import Workers
 from comparisons.writing import append_line, whole_lines
 from cprbm_scene import Mistake, Scene, SceneError, frozendict
 
@@ -39,7 +34,7 @@ class Task:
     key: str
     compared: str
 
-    def known(self, outcomes: Mapping[str, Outcome]) -> Task:
+    def known(self, outcomes: Mapping[str, Outcome]) -> "Task":
         """The task, or the comparison of the point where known ``outcomes`` have the comparison alone."""
         found = outcomes.get(self.compared)
         if self.asked != "cprbm" or self.key in outcomes or found is None or not found.completed:
@@ -163,7 +158,8 @@ class Runner:
         solvers: the functions that answer.
         limit: time limit per solve, s.
         out: folder of the journal; None for no journal.
-        moved: called with the number of finished points.
+        moved: called with the number of known outcomes.
+        known: outcomes by key; lock: of the known outcomes and the journal, since several threads may ask for points.
     """
 
     workers: Workers
@@ -172,39 +168,49 @@ class Runner:
     limit: float
     out: Path | None = None
     moved: Callable[[int], None] = lambda done: None
+    known: dict[str, Outcome] = field(default_factory=dict)
+    lock: Lock = field(default_factory=Lock)
 
     def run(self, sweep: Sweep, merged: Sequence[Path] = ()) -> Sweep:
-        """The sweep with outcomes of all points; each outcome is written into the journal at once.
-
-        A point that crashed is solved again, and a point that took too long if the time limit is larger.
+        """The sweep with outcomes of all points, as far as possible from the journals.
 
         Args:
-            sweep: points and known outcomes.
+            sweep: points.
             merged: folders with further journals.
 
         Raises:
             OSError: a journal cannot be read or written.
         """
-        folders = merged if self.out is None else (self.out, *merged)
-        every = {**sweep.outcomes, **known_outcomes(folders)}
-        journal = None if self.out is None else self.out / JOURNAL
-        if journal is not None and journal.is_symlink():  # outcomes belong into the folder
-            journal.unlink()
+        every = known_outcomes(merged if self.out is None else (self.out, *merged))
+        if self.out is not None and (self.out / JOURNAL).is_symlink():  # outcomes belong into the folder
+            (self.out / JOURNAL).unlink()
         tasks = tuple(task.known(every) for task in sweep.tasks)
+        self.known.update((task.key, every[task.key]) for task in tasks if task.key in every)
+        return replace(sweep, tasks=tasks, outcomes=self.outcomes(tasks))
+
+    def outcomes(self, tasks: Sequence[Task]) -> dict[str, Outcome]:
+        """Outcomes of points by key; each new outcome is written into the journal at once.
+
+        A point that crashed is solved again, and a point that took too long if the time limit is larger.
+
+        Raises:
+            OSError: the journal cannot be written.
+        """
         wanted = {task.key: task for task in tasks}
-        known = {key: every[key] for key in wanted if key in every}
-        outcomes = {
-            key: outcome
-            for key, outcome in known.items()
-            if not (outcome.ending == "CRASHED" or (outcome.ending == "TIME_LIMIT" and self.limit > outcome.limit))
-        }
-        self.moved(len(outcomes))
-        for task, outcome in self._solved([task for key, task in wanted.items() if key not in outcomes]):
-            outcomes[task.key] = outcome
-            if journal is not None:
-                append_line(journal, outcome.line(task.key))
-            self.moved(len(outcomes))
-        return replace(sweep, tasks=tasks, outcomes=outcomes)
+        self.moved(len(self.known))
+        for task, outcome in self._solved([task for task in wanted.values() if self._is_open(task)]):
+            with self.lock:
+                self.known[task.key] = outcome
+                if self.out is not None:
+                    append_line(self.out / JOURNAL, outcome.line(task.key))
+                self.moved(len(self.known))
+        return {key: self.known[key] for key in wanted}
+
+    def _is_open(self, task: Task) -> bool:
+        """Whether a point is unknown, or is solved again."""
+        found = self.known.get(task.key)
+        late = found is not None and found.ending == "TIME_LIMIT" and self.limit > found.limit
+        return found is None or found.ending == "CRASHED" or late
 
     def _solved(self, tasks: Sequence[Task]) -> Iterator[tuple[Task, Outcome]]:
         """Points with outcomes in the order of their ends.
@@ -237,50 +243,3 @@ class Runner:
         finally:
             for future in pending:
                 future.cancel()
-
-
-def sweep(
-    scene: Scene,
-    vary: Mapping[str, Sequence[float]],
-    solver: Asked = "cprbm",
-    check: int = 0,
-    choices: Choices | None = None,
-    executor: Executor | str | None = None,
-    at_most: float = 600.0,
-    out: str | Path | None = None,
-) -> Sweep:
-    """A scene at all combinations of values of its parameters.
-
-    Points are solved in processes: a script calls this function below ``if __name__ == "__main__":``.
-
-    Args:
-        scene: the question, read from a file with parameters.
-        vary: two values or more by the name of a parameter, SI.
-        solver: solver of every point, or ``compare`` for both with a verdict.
-        check: number of points at which both solvers are compared.
-        choices: how finely, and by which variants; the standard choices if None.
-        executor: executor of the solves, as of :mod:`concurrent.futures`, or ``dask://HOST:PORT`` with the address of
-            a scheduler; None for this machine.
-        at_most: time limit of a solve, s.
-        out: folder of the tables, where a stopped sweep goes on; None for no folder.
-
-    Returns:
-        The points with their outcomes.
-
-    Raises:
-        SceneError: the scene refuses a name or a value.
-        OSError: the folder cannot be written to.
-    """
-    points = tuple(dict(zip(vary, map(float, values), strict=True)) for values in product(*vary.values()))
-    axes = [Axis(name, min(each), max(each), len(each)) for name, each in vary.items()]
-    chosen, place = choices or Choices(), executor or f"local:{os.cpu_count() or 1}"
-    tasks = tasks_of(scene, points, solver, chosen_for_check(points, axes, check), chosen)
-    folder = None if out is None else Path(out)
-    if folder is not None:
-        folder.mkdir(parents=True, exist_ok=True)
-    with workers_on(place) if isinstance(place, str) else nullcontext(Workers(place)) as workers:
-        runner = Runner(workers, chosen, Solvers(), at_most, folder)
-        found = runner.run(Sweep(scene, in_file_units(scene, axes), tasks))
-    if folder is not None:
-        write_tables(folder, found)
-    return found

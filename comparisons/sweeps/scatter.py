@@ -110,11 +110,9 @@ Indices = tuple[tuple[Interval, ...], ...]
 
 def quantiles(values: Array) -> tuple[Interval, ...]:
     """Quantiles of ``values`` (n,) at ``LEVELS``."""
-    found = []
-    for level in LEVELS:
-        ends = quantile_test(values, p=level).confidence_interval(_CONFIDENCE)
-        found.append(Interval(float(np.quantile(values, level)), float(ends.low), float(ends.high)))
-    return tuple(found)
+    ends = [quantile_test(values, p=level).confidence_interval(_CONFIDENCE) for level in LEVELS]
+    estimates = np.quantile(values, LEVELS).tolist()
+    return tuple(Interval(each, float(low), float(high)) for each, (low, high) in zip(estimates, ends, strict=True))
 
 
 def share(count: int, whole: int) -> Interval:

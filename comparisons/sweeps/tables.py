@@ -9,14 +9,11 @@ The page has values over one or two parameters, curves of all points with a slid
 different branches are never joined: a curve is cut, and a contour map leaves the cell out.
 """
 
-from __future__ import annotations
-
 import json
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
@@ -29,12 +26,10 @@ from comparisons.quantities import stage_of
 from comparisons.sweeps.demands import Measure, measures
 from comparisons.sweeps.outcome import NumberRecord, Outcome
 from comparisons.sweeps.points import Axis, place_text
+from comparisons.sweeps.running import Sweep, Task
 from comparisons.verdict import ROUND_OFF
 from comparisons.writing import write
 from cprbm_scene import Array, Scene, Stage
-
-if TYPE_CHECKING:
-    from comparisons.sweeps.running import Sweep, Task
 
 _VALUES = ("value", "fea", "difference", "stated")
 _PLACES = ("stage", "station", "station_unit", "branch", "probe", "component", "arc_length", "arc_length_unit")
@@ -124,17 +119,16 @@ def _table(
     rows: Sequence[Sequence[NumberRecord]], key: str, whole: Sequence[Sequence[NumberRecord]] | None = None
 ) -> Array:
     """Values (points, stations, places) of a ``key`` of ``rows``; ``whole`` rows state all stations by point."""
-    cells = {}
     orders = [list(dict.fromkeys(each["station"] for each in row)) for row in whole or rows]
-    for place, (row, order) in enumerate(zip(rows, orders, strict=True)):
-        counts = Counter[float]()
-        for each in row:
-            cells[place, order.index(each["station"]), counts[each["station"]]] = each[key]
-            counts[each["station"]] += 1
-    sizes = len(rows), max(map(len, orders)), 1 + max((places for _, _, places in cells), default=0)
-    table = np.full(sizes, np.nan)
-    for cell, value in cells.items():
-        table[cell] = value
+    values = [
+        [[each[key] for each in row if each["station"] == station] for station in order]
+        for row, order in zip(rows, orders, strict=True)
+    ]
+    most = max([1, *(len(places) for row in values for places in row)])
+    table = np.full((len(rows), max(map(len, orders)), most), np.nan)
+    for point, row in enumerate(values):
+        for station, places in enumerate(row):
+            table[point, station, : len(places)] = places
     return table
 
 
@@ -143,7 +137,7 @@ _PANELS = 12
 
 _RATIO = "difference over stated uncertainty"
 
-Solved: TypeAlias = "Sequence[tuple[Task, Outcome]]"
+Solved = Sequence[tuple[Task, Outcome]]
 """Points with numbers."""
 
 

@@ -11,8 +11,7 @@ import re
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import contextmanager
-from dataclasses import dataclass
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from comparisons.executor import permit_children, threads
 from comparisons.provenance import program
@@ -44,8 +43,7 @@ class OtherVersionError(RuntimeError):
     """A worker has another version of the program, of Python or of a library."""
 
 
-@dataclass(frozen=True, slots=True)
-class Workers:
+class Workers(NamedTuple):
     """Workers of a sweep.
 
     Attributes:

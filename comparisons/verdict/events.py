@@ -39,9 +39,8 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
-from comparisons.quantities import deflection, load_unit
+from comparisons.quantities import deflection, load_unit, stage_of
 from comparisons.stations import Where, begins_at, ends_at_critical, event_tolerance, span_of
-from comparisons.verdict.point_forces import active_contacts
 from comparisons.verdict.runs import SOLVERS, Bounds, Runs, solver_of
 from comparisons.verdict.words import Reason, Word, first_met
 from cprbm_scene import Answer, Critical, Loss, Scene, Shape, Stage, StationAnswer, frozendict
@@ -236,13 +235,12 @@ def far_closings(runs: Runs) -> Iterator[Closing]:
             key = event.stage, event.contact
             count[key] += 1
             loads.setdefault((*key, count[key]), {})[name] = event.value
-    stages = {stage.name: stage for stage in runs.scene.stages}
-    for (stage, contact, _), here in loads.items():
+    for (name, contact, _), here in loads.items():
         if {*SOLVERS} <= here.keys() == runs.following.keys():
             bounds, pair = _on_load_axis(runs, here, 0.0), (here["cprbm"], here["fea"])
-            allowed = event_tolerance(runs.scene, stages[stage])
+            allowed = event_tolerance(runs.scene, stage := stage_of(runs.scene, name))
             if bounds is not None and abs(pair[0] - pair[1]) > max(allowed, bounds.total):
-                yield stages[stage], contact, pair, bounds
+                yield stage, contact, pair, bounds
 
 
 def _on_load_axis(runs: Runs, loads: Mapping[str, float], round_off: float) -> Bounds | None:
@@ -304,7 +302,8 @@ def passed_by(scene: Scene, stage: Stage, answer: Answer, station: int) -> int:
 
 def _state(scene: Scene, stage: Stage, answer: Answer, index: int, station: StationAnswer) -> State:
     """State of a run at the station with the number ``index``."""
-    active, passed = active_contacts(station), passed_by(scene, stage, answer, index)
+    active = {name for name, contact in station.contacts.items() if contact.active}
+    passed = passed_by(scene, stage, answer, index)
     return {BRANCH: station.branch, PASSED: passed, **{name: int(name in active) for name in scene.contacts}}
 
 

@@ -37,17 +37,15 @@ e ≤ q tells nothing about u.
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from statistics import median
 
 import numpy as np
 
 from comparisons.stations import ABSENT_WHILE_OPEN
 from comparisons.verdict.events import MIRRORED, PASSED, Place
-from comparisons.verdict.point_forces import resultant
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs import SOLVERS, Runs, Solver
 from comparisons.verdict.words import Reason, Word, first_met
-from cprbm_scene import Scene
+from cprbm_scene import Array, PointForces, Scene
 
 Judged = tuple[Word | None, Reason | None]
 """Word and reason; no word where a row takes no part."""
@@ -126,10 +124,18 @@ def _same_resultant(runs: Runs, row: Row) -> bool:
     if row.shared is None:
         return False
     beam, others = row.shared
-    sums = {name: resultant(station, {row.probe.of, *others}, beam) for name, station in runs.at(row.where).items()}
+    sums = {
+        name: _resultant(station.forces, {row.probe.of, *others}, beam) for name, station in runs.at(row.where).items()
+    }
     bounds = runs.bounds(sums, lambda difference: float(np.linalg.norm(difference)))
     v_c, v_f = (sums[name] for name in SOLVERS)
     return bounds is not None and float(np.linalg.norm(v_c - v_f)) <= bounds.total
+
+
+def _resultant(forces: PointForces, sources: Iterable[str], beam: str) -> Array:
+    """Sum of the forces of some ``sources`` on a beam, (2,), N."""
+    mine = np.any([forces.chosen(source, beam) for source in sources], axis=0)
+    return np.asarray(forces.force[mine].sum(axis=0))
 
 
 def _decides(scene: Scene, rows: Sequence[Row], reason: Reason) -> bool:
@@ -218,28 +224,26 @@ def true_errors(row: Row) -> Iterator[ErrorRatio]:
 
 def error_ratios(rows: Iterable[Row]) -> tuple[ErrorRatio, ...]:
     """Error ratios with a true error above q; of a closing load, repeated at later stations, one ratio per stage."""
-    found: list[ErrorRatio] = []
-    closings: set[tuple[str, str]] = set()
-    for row in rows:
-        key = row.probe.name, row.stage
-        if row.true_errors is None or key in closings:
-            continue
-        if row.probe.quantity == "closing_load":
-            closings.add(key)
-        found.extend(each for each in true_errors(row) if each.true > row.true_errors.allowance)
-    return tuple(found)
+    known = [(row, row.true_errors.allowance) for row in rows if row.true_errors is not None]
+    firsts = {(row.probe.name, row.stage): row for row, _ in reversed(known)}
+    return tuple(
+        each
+        for row, allowance in known
+        if row.probe.quantity != "closing_load" or firsts[row.probe.name, row.stage] is row
+        for each in true_errors(row)
+        if each.true > allowance
+    )
 
 
 def tally(ratios: Sequence[ErrorRatio], solver: Solver, *, worst: int = 3) -> Tally:
     """The error ratios of one solver together."""
     mine = sorted((each for each in ratios if each.solver == solver), key=lambda each: -each.ratio)
-    statements: dict[tuple[str, str, int | None], float] = {}
-    for each in mine:  # the largest e/u of a statement comes first
-        statements.setdefault((each.row.probe.name, each.row.stage, each.row.branch), 1.0 / each.ratio)
+    # the largest e/u of a statement stays
+    statements = {(each.row.probe.name, each.row.stage, each.row.branch): 1.0 / each.ratio for each in mine[::-1]}
     return Tally(
         solver=solver,
         rows=len(mine),
         within=sum(each.ratio <= 1.0 for each in mine),
-        over=median(statements.values()) if statements else None,
+        over=float(np.median(list(statements.values()))) if statements else None,
         worst=tuple(mine[:worst]),
     )

@@ -1,4 +1,4 @@
-"""Point forces along a beam: active contacts, places away from point forces, and shared forces.
+"""Point forces along a beam: places away from point forces, and shared forces.
 
 Beside a held end, a moment, and the ends of a contact zone, a discretisation spreads a point force over a link or an
 element.  By Saint-Venant's principle a point force disturbs the real stress over about a thickness.  The comparison
@@ -22,11 +22,6 @@ ZONE_GAP = 3.0
 """Largest distance of neighbouring forces in a zone of contact, in elements of the coarsest mesh."""
 
 
-def active_contacts(station: StationAnswer) -> frozenset[str]:
-    """Names of the contacts that press."""
-    return frozenset(name for name, state in station.contacts.items() if state.active)
-
-
 def away_from_point_forces(scene: Scene, beam: str, places: Array, stations: Sequence[StationAnswer]) -> Flags:
     """Which places (k,) lie outside the disturbance of held ends, moments and ends of zones of contact.
 
@@ -40,8 +35,8 @@ def away_from_point_forces(scene: Scene, beam: str, places: Array, stations: Seq
     whole = length(record.curve)
     thickness = record.thickness_at(places / whole)
     sharp = [s for s, end in ((0.0, record.start), (whole, record.end)) if not isinstance(end, FreeEnd)]
-    loads = scene.loads.values()
-    sharp += [load.at * whole for load in loads if isinstance(load, BeamMoment) and load.beam == beam]
+    moments = (load for load in scene.loads.values() if isinstance(load, BeamMoment) and load.beam == beam)
+    sharp += [load.at * whole for load in moments]
     clear = _farther(places, sharp, thickness)
     coarsest = max((_element(station, beam) for station in stations), default=0.0)
     for contact in (name for name, record in scene.contacts.items() if beam in record.beams):
@@ -60,12 +55,8 @@ def zone_ends(places: Sequence[Array], gap: float) -> list[float]:
     """
     together = np.sort(np.concatenate(places))
     borders = 0.5 * (together[:-1] + together[1:])[np.diff(together) > gap]
-    found: list[float] = []
-    for own in places:
-        zones = np.searchsorted(borders, own)
-        for zone in np.unique(zones):
-            found += [float(own[zones == zone].min()), float(own[zones == zone].max())]
-    return found
+    zones = (zone for own in map(np.sort, places) for zone in np.split(own, np.searchsorted(own, borders)) if zone.size)
+    return [float(end) for zone in zones for end in (zone[0], zone[-1])]
 
 
 def sharing_sources(scene: Scene, stations: Iterable[StationAnswer], source: str) -> tuple[str, frozenset[str]] | None:
@@ -87,19 +78,10 @@ def sharing_sources(scene: Scene, stations: Iterable[StationAnswer], source: str
     return None
 
 
-def resultant(station: StationAnswer, sources: Iterable[str], beam: str) -> Array:
-    """Sum of the forces of some ``sources`` on a beam, (2,), N."""
-    forces = station.forces
-    mine = np.any([forces.chosen(source, beam) for source in sources], axis=0)
-    return np.asarray(forces.force[mine].sum(axis=0))
-
-
 def _neighbours(scene: Scene, station: StationAnswer, source: str, beam: str) -> Iterable[str]:
     own = _significant(station, source, beam)
     joints = _joints(scene.beams[beam])
-    for other in {*scene.contacts, *joints} - {source}:
-        if source in joints and other in joints:
-            continue
+    for other in {*scene.contacts, *(() if source in joints else joints)} - {source}:
         theirs = _significant(station, other, beam)
         if own.size and theirs.size and np.abs(own[:, None] - theirs).min() <= _element(station, beam):
             yield other

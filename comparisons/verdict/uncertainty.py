@@ -179,10 +179,7 @@ def limit(sizes: Sequence[float], values: Values, order: float = OWN, floor: flo
 
 def largest(found: Iterable[tuple[Key, float]]) -> dict[Key, float]:
     """The largest uncertainty of every key: a probe in a stage on a branch, of which the rows are stations."""
-    stated: dict[Key, float] = {}
-    for key, uncertainty in found:
-        stated[key] = max(uncertainty, stated.get(key, 0.0))
-    return stated
+    return dict(sorted(found, key=lambda each: each[1]))  # the last of a key stays
 
 
 def orders(sizes: Sequence[float], values: Array, floor: float = 0.0) -> tuple[float | None, ...]:

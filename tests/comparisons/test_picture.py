@@ -201,6 +201,6 @@ def test_a_window_shows_the_beams_alone_where_the_rest_is_twice_as_large(solved)
     scene, _, views = solved
     low, high = figures.extent(scene, views[-1:])
     assert np.max(high - low) > 0.05
-    small = {name: replace(strip, line=0.02 * strip.line) for name, strip in views[-1].strips.items()}
+    small = {name: strip._replace(line=0.02 * strip.line) for name, strip in views[-1].strips.items()}
     low, high = figures.extent(scene, [views[-1]._replace(strips=small)])
     assert np.max(high - low) < 0.003

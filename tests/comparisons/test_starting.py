@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tomllib
 from dataclasses import replace
+from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 
 import jsonschema
@@ -103,6 +104,19 @@ def test_the_doctor_names_what_is_missing_and_what_installs_it(monkeypatch, caps
     assert run(["doctor"]) == 1
 
 
+def install(monkeypatch, asked, missing):
+    """Let the ``asked`` libraries be installed and sound, except the ``missing`` ones."""
+
+    def version(name):
+        if name in missing:
+            raise PackageNotFoundError(name)
+        return "9.9"
+
+    monkeypatch.setattr(libraries, "LIBRARIES", asked)
+    monkeypatch.setattr(libraries, "version", version)
+    monkeypatch.setattr(libraries, "trouble_with", lambda module: "")
+
+
 def test_the_doctor_lists_all_that_the_project_asks_for():
     from packaging.requirements import Requirement
 
@@ -141,10 +155,9 @@ def test_a_library_that_wants_one_of_the_system_is_told_with_what_installs_it(tm
     ],
 )
 def test_the_doctor_s_last_line_sums_up(found, said, monkeypatch, capsys):
-    states = [libraries.State(each, "" if each.name in found else "9.9", "") for each in libraries.LIBRARIES]
     # whether VTK draws is tried where PyVista is there, and another test's concern
-    states = [each for each in states if each.library.name != "pyvista" or not each.there]
-    monkeypatch.setattr(libraries, "states", lambda: iter(states))
+    asked = tuple(each for each in libraries.LIBRARIES if each.name != "pyvista" or "pyvista" in found)
+    install(monkeypatch, asked, missing=found)
     assert run(["doctor"]) == ("numpy" in found)
     assert capsys.readouterr().out.splitlines()[-1].endswith(said)
 
@@ -164,8 +177,7 @@ def test_quiet_says_nothing_of_what_is_in_order(tmp_path, capsys):
 def test_a_quiet_doctor_says_what_is_needed_and_missing_alone(monkeypatch, capsys):
     there, gone = libraries.LIBRARIES[0], libraries.LIBRARIES[1]
     extra = next(library for library in libraries.LIBRARIES if library.extra)
-    found = [libraries.State(there, "9.9", ""), libraries.State(gone, "", ""), libraries.State(extra, "", "")]
-    monkeypatch.setattr(libraries, "states", lambda: iter(found))
+    install(monkeypatch, (there, gone, extra), missing=(gone.name, extra.name))
     assert run(["doctor", "--quiet"]) == 1
     (line,) = capsys.readouterr().out.splitlines()
     assert line.split()[:2] == [gone.name, "missing"]

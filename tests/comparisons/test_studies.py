@@ -53,7 +53,7 @@ def three_cells(monkeypatch):
     """The command measures three cells of the gripper: a study of all cells draws a figure per cell."""
     sizes = 80, {"beam1": 40, "beam2": 30}
     cells = [cell for cell in table1.CELLS if cell.case == "gripper" and cell.contact and cell.size in sizes]
-    for name in ("session", "result_of"):
+    for name in ("session", "result_of", "pictures"):
         monkeypatch.setattr(table1, name, partial(getattr(table1, name), cells=tuple(cells)))
     return cells
 

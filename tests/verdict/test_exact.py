@@ -189,11 +189,12 @@ def test_the_study_says_whose_statements_hold(hinge):
         assert (mine["within"], mine["share"]) == (mine["rows"], 1.0)
         assert mine["rows"] > 50
         assert 1.0 <= mine["stated_over_true"] <= 10.0
-    assert found.figures[0].svg.startswith(b"<?xml")
+    (figure,) = study.pictures(measured(hinge, EXACT))
+    assert figure.svg.startswith(b"<?xml")
     assert all(len(row) == len(sheet.headers) for sheet in found.tables for row in sheet.rows)
     assert "broken by the CPRBM on hinge" in result_of(measured(hinge, replace(EXACT, stiffness=1.02))).sentences[0]
     silent = result_of(measured(hinge, nobody))
-    assert (silent.figures, silent.tables) == ((), ())
+    assert (study.pictures(measured(hinge, nobody)), silent.tables) == ((), ())
     assert silent.sentences == ("hinge: an exact answer is known for no station. It is made up.",)
 
 
