@@ -96,8 +96,11 @@ def _pressing(state: StationState, name: str, on: str) -> Iterator[Finding]:
         if contact.thick or isinstance(contact, RigidContact):
             step, least = (0.2 * own, ALIGNED) if contact.thick else (2.5 * own, LINE_ALIGNED)
             cosine = (_gap(state, contact, on, x + step * way, s, way) - gap) / step
-            along = f"with {cosine.min():.3f} of the force along the normal"
-            yield least - cosine.min(), f"{name} pulls or rubs {on} at {s[np.argmin(cosine)]:.4g} m, {along}"
+            yield (
+                least - cosine.min(),
+                f"{name} pulls or rubs {on} at {s[np.argmin(cosine)]:.4g} m, "
+                f"with {cosine.min():.3f} of the force along the normal",
+            )
 
 
 def _surface(state: StationState, contact: Contact, on: str, s: Array) -> tuple[Array, Array]:

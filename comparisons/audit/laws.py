@@ -241,8 +241,10 @@ def _expected(state: StationState, probe: Probe) -> tuple[Array, Array | float] 
             if isinstance(contact, SelfContact) and len(on):
                 # a lap bears the opposite force beside the force on the other lap: the lap with the smaller s counts
                 own = on[:, None]
-                apart = np.abs(own["force"] + on["force"]) / (np.abs(own["force"]) + np.finfo(float).tiny)
-                apart += np.abs(own["place"] - on["place"]) / state.longest
+                apart = (
+                    np.abs(own["force"] + on["force"]) / (np.abs(own["force"]) + np.finfo(float).tiny)
+                    + np.abs(own["place"] - on["place"]) / state.longest
+                )
                 on = on[np.arange(len(on)) < np.argmin(apart, axis=1)]
             value = abs(on["force"].sum())
             return np.array([value]), SAME * value + force
@@ -257,8 +259,10 @@ def _expected(state: StationState, probe: Probe) -> tuple[Array, Array | float] 
             return np.array([value]), SAME * (abs(value) + size * state.longest) + moment
         case "potential_energy":
             strain, work, even = _energies(state)
-            error = ENERGY * (strain + abs(work)) + EVEN * even + ENERGY_ROUND_OFF * state.natural
-            return np.array([strain - work]), error
+            return (
+                np.array([strain - work]),
+                ENERGY * (strain + abs(work)) + EVEN * even + ENERGY_ROUND_OFF * state.natural,
+            )
         case "bending_stress" | "combined_stress":
             return _stress(state, probe)
     return None
@@ -269,10 +273,9 @@ def _stress(state: StationState, probe: Probe) -> tuple[Array, Array]:
     beam, s = state.beams[probe.of], arc_lengths(state.scene, probe)
     (F, M), (EI, EA, _), E = state.beyond(probe.of, s), beam.stiffness(s), beam.material.youngs_modulus
     per_moment, per_force = 0.5 * beam.thickness(s) * E / EI, E / EA
-    # where a moment acts between the ends, the stress on either side is right
-    on, between = state.on[probe.of], (s > SAME * beam.length) & (s < (1.0 - SAME) * beam.length)
-    there = between[:, None] & (np.abs(on["s"] - s[:, None]) <= SAME * beam.length)
-    steps = (there * np.abs(on["moment"])).sum(axis=1)
+    # where the moment of a load acts, the stress on either side is right
+    of_loads = state.on[probe.of][np.isin(state.on[probe.of]["source"], list(state.scene.loads))]
+    steps = (np.abs(of_loads["s"] - s[:, None]) <= SAME * beam.length) @ np.abs(of_loads["moment"])
     value, allowed = per_moment * M, per_moment * (moment_errors(state, probe.of, s) + steps)
     if probe.quantity == "combined_stress":
         tangent = beam.rest(s)[1] + beam.displacement(s, 1)
@@ -320,7 +323,12 @@ def path(scene: Scene, answer: Answer, states: Sequence[StationState]) -> Iterat
         h, slope = np.diff(x), np.gradient(g, x) if len(x) > 2 else 0.0 * x
         lost = np.diff(strain - work) - 0.5 * h * (g[1:] + g[:-1])
         error = 2.0 * even + FITTED * (strain + np.abs(work)) + ENERGY_ROUND_OFF * of[0].natural
-        allowed = np.abs(h) * _ranges(states, of) + h**2 * np.abs(np.diff(slope)) / 6.0 + error[1:] + error[:-1]
+        allowed = (
+            np.abs(h) * _ranges(states, of[0].stage.steps, x)
+            + h**2 * np.abs(np.diff(slope)) / 6.0
+            + error[1:]
+            + error[:-1]
+        )
         for i in np.flatnonzero(_judged(answer, of)):
             yield (
                 -lost[i] - allowed[i],
@@ -348,12 +356,10 @@ def _judged(answer: Answer, states: Sequence[StationState]) -> Flags:
     return np.asarray(~changes | (first.stage.steps in first.scene.loads))
 
 
-def _ranges(states: Sequence[StationState], of: Sequence[StationState]) -> Array:
-    """Ranges (k-1,) of g between neighbours of k stations; all stations of the load or drive between them count."""
-    same = [state for state in states if state.stage.steps == of[0].stage.steps]
-    x, g = np.array([(state.station.value, _driving(state)) for state in same]).T
-    ends = [sorted(state.station.value for state in pair) for pair in pairwise(of)]
-    return np.array([np.ptp(g[(low <= x) & (x <= high)]) for low, high in ends])
+def _ranges(states: Sequence[StationState], steps: str, x: Array) -> Array:
+    """Ranges (k-1,) of g between neighbours of the values x (k,) of a load or drive, at all stations between them."""
+    every, g = np.array([(of.station.value, _driving(of)) for of in states if of.stage.steps == steps]).T
+    return np.array([np.ptp(g[(min(pair) <= every) & (every <= max(pair))]) for pair in pairwise(x)])
 
 
 def _driving(state: StationState) -> float:

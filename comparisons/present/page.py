@@ -189,7 +189,11 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
     environment.filters |= {
         "anchor": lambda name: name.replace(" ", "+"),  # an identifier has no spaces, and a name no plus
         "cells": html_cells,
-        "embedded": _embedded,
+        # as text a picture is a quarter shorter than in base64; without quotes and ampersands the text cannot leave an
+        # attribute: a template may call it safe
+        "embedded": lambda svg: (
+            "data:image/svg+xml," + quote(svg.decode("utf-8").replace("\n", " "), safe=" !$'()*+,-./:;=?@[]_<>")
+        ),
         "stations_json": stations_json,
         # a name may break behind points and underscores; the type of an escaped text marks the escape
         "breaking": lambda name: type(name)(re.sub(r"(?<=\w[._])(?=[^\W\d])", "<wbr>", name)),
@@ -197,12 +201,6 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
     }
     whole = {**context, "style": _beside("style.css"), "marked": STYLES}
     return environment.get_template(template).render(whole) + "\n"
-
-
-def _embedded(svg: bytes) -> str:
-    """A picture as an address for a template; as text it is a quarter shorter than in base64."""
-    # without quotes and ampersands the text cannot leave an attribute: a template may call it safe
-    return "data:image/svg+xml," + quote(svg.decode("utf-8").replace("\n", " "), safe=" !$'()*+,-./:;=?@[]_<>")
 
 
 def _beside(name: str) -> str:

@@ -136,7 +136,7 @@ def test_a_contact_that_closes_between_two_stations_of_a_drive_is_no_silent_jump
 @EACH
 @pytest.mark.parametrize("name", ["dead-point", "moment-at-a-probe"])
 def test_a_hump_between_stations_and_a_step_at_a_moment_are_no_faults(name, solver):
-    # reference: statics, the moment of the lever at -15° acts on the way back too; the stress at a moment has two values
+    # reference: statics, the moment of the lever acts on the way back too; the stress at a moment has two values
     scene = read(FOLDER.parent / f"{name}.toml")
     answer = SOLVERS[solver](scene)
     assert answer.completed, answer.sentence
