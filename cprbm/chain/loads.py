@@ -36,8 +36,8 @@ def unit_force(m: Mechanism, beam: str, direction: Direction, at: float, weights
 def hidden_flexibility(m: Mechanism) -> Array:
     """Flexibility (rows, rows) of loads at places of beams, less the flexibility of the chains.
 
-    A straight cantilever has the moments (a − s)^p before the place a of a load, p = 0 for a moment and 1 for a force,
-    and the flexibility ∫ M M′ ds/EI.
+    A straight cantilever has the moments (a − s)^p and the shear forces p before the place a of a load, p = 0 for a
+    moment and 1 for a force, and the flexibility ∫ (M M′/EI + Q Q′/GA_s) ds.
     """
     hidden = np.zeros((len(m.rows), len(m.rows)))
     loads = [(number, row.unit_load) for number, row in enumerate(m.rows) if row.unit_load is not None]
@@ -59,10 +59,15 @@ def hidden_angles(chain: BeamChain, s: Array, load: UnitLoad) -> Array:
 
 def _hidden(chain: BeamChain, one: UnitLoad, other: UnitLoad) -> float:
     """Flexibility of two unit loads, less the flexibility of the chain."""
-    places, exact = np.union1d(chain.borders[chain.borders < min(one.at, other.at)], min(one.at, other.at)), 0.0
-    if len(places) > 1:
-        exact = chain.flexibility(places, lambda s: (one.at - s) ** one.power * (other.at - s) ** other.power).sum()
+    at, compliance = min(one.at, other.at), chain.shear * chain.link_length
+    exact = one.power * other.power * np.interp(at, chain.arcs, np.append(0.0, np.cumsum(compliance)))
+    if at > 0.0:
+        exact += chain.flexibility(
+            np.append(chain.borders[chain.borders < at], at),
+            lambda s: (one.at - s) ** one.power * (other.at - s) ** other.power,
+        ).sum()
     mixed = one.moments * (other.shear[:-1] + other.shear[1:]) + other.moments * (one.shear[:-1] + one.shear[1:])
     bent = one.moments @ (other.moments / chain.stiffness) - 0.5 * chain.skew @ mixed
-    sheared = (chain.lean * chain.link_length + chain.half_lean) @ (one.shear * other.shear)
-    return float(exact - bent - sheared)
+    return float(
+        exact - bent - (chain.lean * chain.link_length + chain.half_lean + compliance) @ (one.shear * other.shear)
+    )

@@ -11,6 +11,7 @@ from tests.cprbm.scenes import (
     MOMENT,
     RIGIDITY,
     THICKNESS,
+    WIDTH,
     cantilever,
     cantilever_data,
     force,
@@ -172,3 +173,17 @@ def test_a_force_on_a_lever():
     assert values["tip.rotation"][0] == pytest.approx(slope, rel=1e-4)
     work = P * (-0.6 * moved[0] + 0.8 * moved[1])
     assert values["scene.potential_energy"][0] == pytest.approx(-0.5 * work, rel=1e-4)
+
+
+@pytest.mark.parametrize("links", [10, 40])
+@pytest.mark.parametrize("at", [0.31, 0.5, 0.95])
+def test_the_energy_under_a_small_force_at_a_place_is_that_of_bending_and_shear(at, links):
+    # reference: Π = −F² (a³/3EI + a/GA_s)/2, with A_s = 5/6 A and a slope that vanishes with F
+    data = cantilever_data({"kind": "beam_force", "beam": "beam", "at": at, "direction": [0.0, -1.0]}, [1e-6])
+    data["theory"] = "shear"
+    answer = cprbm.answer(scene_from(data), cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    a = at * LENGTH
+    shear_stiffness = 5.0 / 6.0 * WIDTH * THICKNESS * MODULUS / (2.0 * 1.31)
+    found = float(answer.stations[-1].values["scene.potential_energy"][0]) / -0.5e-12
+    assert found == pytest.approx(a**3 / (3.0 * RIGIDITY) + a / shear_stiffness, rel=1e-8)
