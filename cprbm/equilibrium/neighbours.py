@@ -1,6 +1,8 @@
-"""Neighbouring places of a pair, compiled: runs of closed joints, minima of the gap, places near a moving place.
+"""Neighbouring places of a pair: runs of closed joints, minima of the gap, places near a moving place.
 
 The joints of a pair's first curve are in the order of the curve; places of a shared force are no joints here.
+
+Loops over joints are compiled.  Array expressions are not: their machine code is long, and the first solve loads it.
 """
 
 import numpy as np
