@@ -18,6 +18,8 @@ near the one before: one step, backwards in time, of a motion that only a drag r
 proximal point method; Rockafellar, SIAM J. Control Optim. 14 (1976) 877).  Contacts act all the way, stops as
 inequalities.  σ falls as long as the steps are short, until none is needed.
 
+What closes on the way closes at the value of the end, at which the motion begins and rests.
+
 Of both senses of φ the lower counts.  Where both lead equally low, the sense of the moments counts.
 """
 
@@ -75,6 +77,7 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost, b
     size = float(np.abs(way[march.model.moving]).max())
     if not size > 0.0:
         return None
+    known, end = dict(march.closing), lost.value * march.model.stepped[load].unit
     iterations, energy = march.iterations, penalised_energy(march.model, march.system, march.values)
     kicks, steps = (_KICKS[:1], _FEW) if np.isfinite(beside) else (_KICKS, _STEPS)
     for kick in kicks:
@@ -93,6 +96,7 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost, b
                 march.iterations += trial.iterations - iterations
                 march.restore(trial)
                 march.tighten()
+                march.closing = dict.fromkeys(march.closing, end) | known
                 if march.turned(march.system, lost.system.z) > beside:
                     return None
                 return potential_energy(march.model, march.system, march.values)
