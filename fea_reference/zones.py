@@ -221,15 +221,24 @@ def end_apart(first: NeutralLine, second: NeutralLine) -> float:
     return float(away[over].min(initial=np.inf))
 
 
-def seen(first: NeutralLine, second: NeutralLine, side: float, T: float, tapers: Tapers | None = None) -> Survey:
-    """The gap of two beams wherever it is less than the second's longest element."""
+def seen(
+    first: NeutralLine,
+    second: NeutralLine,
+    side: float,
+    T: float,
+    tapers: Tapers | None = None,
+    free: tuple[float, float] = (0.0, np.inf),
+) -> Survey:
+    """The gap of two beams wherever it is less than the second's longest element, at ``free`` places of the first."""
 
     def at(where: Array, guess: Array) -> Gap:
         return gap(first, second, one_side(side), T, tapers, where, guess)
 
     reach, none_there = _reach(first, second, T), np.empty(0)
     within = out_of_reach(first, second, T)
-    one, other = near_each_other(first.nodes, second.nodes, within + first.longest + second.longest)
+    begin, end = int(free[0]), int(min(free[1], first.n - 1.0)) + 2
+    one, other = near_each_other(first.nodes[begin:end], second.nodes, within + first.longest + second.longest)
+    one = one + begin
     apart_by, _ = nearest(first.nodes[one], second.nodes[other])
     close = np.zeros(first.n + 1, dtype=bool)
     close[one[apart_by < within]] = True
@@ -242,6 +251,7 @@ def seen(first: NeutralLine, second: NeutralLine, side: float, T: float, tapers:
     knots = () if tapers is None else tapers.first.knots
     if knots:
         zeta = np.union1d(zeta, [knot for knot in knots if min(int(knot), first.n - 1) in beside])
+    zeta = np.unique(np.clip(zeta, *free))
     x = first.around(zeta)
     distance, nearest_node = nearest(first.nodes[x.element] + x.way, second.nodes[other])
     near = np.flatnonzero(distance < reach)
