@@ -65,10 +65,22 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost, b
     None as well where sections or bodies are turned there by more than ``beside``, rad: what goes much farther on the
     way there is followed no further.
     """
+    saved = march.saved()
+    # what lets go under tight penalties holds on under loose ones, and what stands under loose ones may not under tight
+    energy = _descended(march, load, target, span, lost, beside, loose=lost.loss is not Loss.CONTACT)
+    if energy is None or march.curvature > 0.0:
+        return energy
+    march.restore(saved)
+    return _descended(march, load, target, span, lost, beside, loose=False)
+
+
+def _descended(
+    march: March, load: int, target: float, span: float, lost: Lost, beside: float, *, loose: bool
+) -> float | None:
+    """The energy after a fall with ``loose`` penalties, or with the penalties of now."""
     beyond, left = _ASIDE if lost.loss is Loss.BIFURCATION else _BEYOND, target - lost.value
     march.values[load] = lost.value + float(np.sign(left)) * min(beyond * span, abs(left))
-    if lost.loss is not Loss.CONTACT:
-        # what lets go under tight penalties holds on under loose ones
+    if loose:
         march.penalties = {pair: Penalty(pair.stiffness) for pair in march.penalties}
     march.system = lost.system
     march.renew()
