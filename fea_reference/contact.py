@@ -105,7 +105,7 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         distance, scale, measure = (mean, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
         ends, ends_m = _loose(model, scene, first, second), _loose(model, scene, second, first)
         thick = max(beam.record.thickest for beam in (first, second)) / model.units.length if contact.thick else 0.0
-        free, free_m = _free(*lines, JOINED * thick), _free(*lines[::-1], JOINED * thick)
+        free, free_m = (_free(*order, JOINED * thick) for order in ((lines[0], lines[1]), (lines[1], lines[0])))
         penalties = [_penalties(model, beam, mean) for beam in (first, second)]
         loosest, stiffness, stiffest = map(min, zip(*penalties, strict=True))
         tapers = _tapers(model, first, second, thick=contact.thick)
@@ -308,8 +308,7 @@ def _overlap(model: Model, pair: Pair, z: State, distance: float, level: float) 
     line, line_m = model.line(model.beams[pair.first], z), model.line(model.beams[pair.second], z)
     if level < line_m.longest:
         return overlap(line, line_m, distance, _seen(model, pair, z, distance), level, _rays(pair, line_m))
-    wider = _seen(model, pair, z, distance + level)
-    return overlap(line, line_m, distance + level, wider, 0.0, _rays(pair, line_m))
+    return overlap(line, line_m, distance + level, _seen(model, pair, z, distance + level), 0.0, _rays(pair, line_m))
 
 
 @dataclass(frozen=True, slots=True)

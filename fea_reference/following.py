@@ -384,8 +384,7 @@ def _slipping_off(march: March, load: int, target: float, span: float) -> Lost |
             continue
         if abs(way) > _FORESEEN * span:
             break
-        left = softest(march.model, _without(march, one))
-        return _ahead(march, load, way, Loss.SLIP, one, march.curvature, left)
+        return _ahead(march, load, way, Loss.SLIP, one, march.curvature, softest(march.model, _without(march, one)))
     march.restore(saved)
     return None
 

@@ -553,8 +553,7 @@ class March:
         value, gap = float(self.values[load]), self.least_gap(self.system)
         for share in _NEARBY:
             other = value + np.copysign(share, gap) * way
-            guess = advance(self.model, self.system.z, (other - value) * self.rate(load))
-            beyond = self.solve(load, other, guess)
+            beyond = self.solve(load, other, advance(self.model, self.system.z, (other - value) * self.rate(load)))
             if beyond is None:
                 return
             if self.least_gap(beyond) * gap <= 0.0:
@@ -846,8 +845,7 @@ class March:
         for one in system.touches:
             if not one.closed:
                 continue
-            by_depth = isinstance(one.pair, Pair) or one.sharp
-            depth = settings.penetration * one.pair.scale if by_depth else np.inf
+            depth = settings.penetration * one.pair.scale if isinstance(one.pair, Pair) or one.sharp else np.inf
             if (share := known.get(one.pair, 0.0)) > 0.0:
                 little = one.penetration * max(felt_at_most / share, 1.0 / _TIGHTEN)
                 depth = min(depth, max(little, ROUNDED))

@@ -217,8 +217,7 @@ def end_apart(first: NeutralLine, second: NeutralLine) -> float:
     near = nearest(first.nodes[[0, -1]], second.nodes)[1].astype(float)
     zeta, found = project(second, first.points[:, [0, -1]], near)
     over = found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)
-    away = np.hypot(*(first.points[:, [0, -1]] - second.at(zeta)[0]))
-    return float(away[over].min(initial=np.inf))
+    return float(np.hypot(*(first.points[:, [0, -1]] - second.at(zeta)[0]))[over].min(initial=np.inf))
 
 
 def seen(
@@ -437,8 +436,7 @@ def stepped(elements: NDArray[np.int64], knots: tuple[float, ...]) -> tuple[Arra
     Returns:
         Places (m,), and whether nothing is left out between each and the next (m−1,).
     """
-    steps = np.arange(SAMPLES_PER_ELEMENT) / SAMPLES_PER_ELEMENT
-    zeta = (elements[:, None] + steps).ravel()
+    zeta = (elements[:, None] + np.arange(SAMPLES_PER_ELEMENT) / SAMPLES_PER_ELEMENT).ravel()
     ends = elements[np.append(np.diff(elements) > 1, True)] + 1.0
     inner = [knot for knot in knots if knot != int(knot) and int(knot) in elements]
     if ends.size == 1 and not inner:

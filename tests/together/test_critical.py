@@ -188,7 +188,7 @@ def test_a_column_between_pegs_leans_to_one_side_on_every_mesh(solver, settings,
 
 @pytest.mark.parametrize("elements", [40, 91])
 def test_a_dome_under_a_plunger_leans_aside_and_comes_back(elements):
-    """Reference: the CPRBM; beyond the bifurcation a dome that stands upright is a minimum under loose penalties alone."""
+    """Reference: the CPRBM; beyond the bifurcation an upright dome is a minimum under loose penalties alone."""
     radius, half = 0.13233, 0.02
     data = {
         "name": "dome",
