@@ -121,8 +121,7 @@ def _across(march: March, one: Touch) -> float:
 
     The lead is that pressure over the penalty, which goes with the bending stiffness: what is taut asks for more.
     """
-    pressing = one.gap < 0.0
-    return max(0.0, float((one.gap[pressing] + march.penalties[one.pair].lead).max(initial=0.0)))
+    return max(0.0, float((one.gap[one.gap < 0.0] + march.penalties[one.pair].lead).max(initial=0.0)))
 
 
 def _drowned(march: March) -> bool:
@@ -188,8 +187,7 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float,
             forces.append(one.force.sum(axis=1))
             moments.append(float((one.x[0] * one.force[1] - one.x[1] * one.force[0]).sum()))
     largest_force = max((float(np.hypot(*force)) for force in forces), default=0.0)
-    largest_moment = max(map(abs, moments), default=0.0)
     # Forces that vanish are judged by the moments, and these by them: lengths are of order one here.
-    scale = max(largest_force, largest_moment)
+    scale = max(largest_force, max(map(abs, moments), default=0.0))
     scale = scale if scale > NOTHING * system.floor else 1.0
     return float(np.hypot(*sum(forces, np.zeros(2)))) / scale, abs(sum(moments)) / scale, scale

@@ -48,7 +48,8 @@ from typing import Literal
 import numpy as np
 
 from cprbm_scene.answer import Array, Ints
-from cprbm_scene.clearance import overlap_at_rest
+from cprbm_scene.clearance import JOINED, overlap_at_rest
+from cprbm_scene.curve_records import MEETING
 from cprbm_scene.statement import BeamContact, BeamEnd, FreeEnd, Scene, SelfContact
 from fea_reference.carrying import cut_off, joined, shared_out
 from fea_reference.edge import edge_of
@@ -103,13 +104,14 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         side, side_m = side_of(lines[0], lines[1]), side_of(lines[1], lines[0])
         distance, scale, measure = (mean, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
         ends, ends_m = _loose(model, scene, first, second), _loose(model, scene, second, first)
+        thick = max(beam.record.thickest for beam in (first, second)) / model.units.length if contact.thick else 0.0
+        free, free_m = (_free(*order, JOINED * thick) for order in ((lines[0], lines[1]), (lines[1], lines[0])))
         penalties = [_penalties(model, beam, mean) for beam in (first, second)]
         loosest, stiffness, stiffest = map(min, zip(*penalties, strict=True))
         tapers = _tapers(model, first, second, thick=contact.thick)
         strengths = (loosest, stiffness, stiffest)
-        found.append(
-            Pair(name, i, j, turned, side, side_m, distance, scale, measure, *strengths, ends, ends_m, tapers=tapers)
-        )
+        pair = Pair(name, i, j, turned, side, side_m, distance, scale, measure, *strengths, ends, ends_m, tapers=tapers)
+        found.append(replace(pair, free=free, free_m=free_m))
     return tuple(found)
 
 
@@ -146,6 +148,13 @@ def _loose(model: Model, scene: Scene, beam: BeamPart, other: BeamPart) -> tuple
         for which, (holder, place) in enumerate(mine)
         if not any(holder is not None and holder == its and abs(place - there) < near for its, there in theirs)
     )
+
+
+def _free(line: NeutralLine, other: NeutralLine, joined: float) -> tuple[float, float]:
+    """First and last place ζ of a beam, at least a length ``joined`` from an end that it shares with another beam."""
+    shared = np.abs(line.nodes[[0, -1], None] - other.nodes[[0, -1]]).min(axis=1) <= MEETING
+    first, last = np.where(shared, min(joined / float(line.lengths.min()), line.n), 0.0)
+    return float(first), max(float(first), float(line.n - last))
 
 
 def _holder(scene: Scene, end: BeamEnd) -> str | None:
@@ -237,7 +246,7 @@ def _seen(model: Model, pair: Pair, z: State, T: float) -> Survey:
 
     def look() -> Survey:
         if pair.roles is None:
-            return seen(first, second, pair.side, T, pair.tapers)
+            return seen(first, second, pair.side, T, pair.tapers, pair.free)
         return seen_itself(first, pair.roles, T, pair.tapers)
 
     return model.surveys.found(z, (pair, T), look)
@@ -299,8 +308,7 @@ def _overlap(model: Model, pair: Pair, z: State, distance: float, level: float) 
     line, line_m = model.line(model.beams[pair.first], z), model.line(model.beams[pair.second], z)
     if level < line_m.longest:
         return overlap(line, line_m, distance, _seen(model, pair, z, distance), level, _rays(pair, line_m))
-    wider = _seen(model, pair, z, distance + level)
-    return overlap(line, line_m, distance + level, wider, 0.0, _rays(pair, line_m))
+    return overlap(line, line_m, distance + level, _seen(model, pair, z, distance + level), 0.0, _rays(pair, line_m))
 
 
 @dataclass(frozen=True, slots=True)

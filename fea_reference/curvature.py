@@ -182,8 +182,7 @@ def _directions(model: Model, system: System, K: csr_array) -> csr_array:
         rows.append(np.full(here.size, dof))
         columns.append(here)
         entries.append(value * line)
-    coordinates = (np.concatenate(rows), np.concatenate(columns))
-    return csr_array((np.concatenate(entries), coordinates), (model.size, count))
+    return csr_array((np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns))), (model.size, count))
 
 
 def _together(model: Model) -> list[set[int]]:

@@ -38,8 +38,7 @@ def sample(curve: Curve, fractions: Array) -> tuple[Array, Array]:
         case Line():
             end = np.array(curve.end)
             points = start + fractions[:, None] * (end - start)
-            angle = math.atan2(end[1] - start[1], end[0] - start[0])
-            return points, np.full(fractions.shape, angle)
+            return points, np.full(fractions.shape, math.atan2(end[1] - start[1], end[0] - start[0]))
         case Arc():
             turning = _turning(curve)
             centre = np.array(curve.center)

@@ -18,6 +18,8 @@ near the one before: one step, backwards in time, of a motion that only a drag r
 proximal point method; Rockafellar, SIAM J. Control Optim. 14 (1976) 877).  Contacts act all the way, stops as
 inequalities.  σ falls as long as the steps are short, until none is needed.
 
+What closes on the way closes at the value of the end, at which the motion begins and rests.
+
 Of both senses of φ the lower counts.  Where both lead equally low, the sense of the moments counts.
 """
 
@@ -63,10 +65,22 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost, b
     None as well where sections or bodies are turned there by more than ``beside``, rad: what goes much farther on the
     way there is followed no further.
     """
+    saved = march.saved()
+    # what lets go under tight penalties holds on under loose ones, and what stands under loose ones may not under tight
+    energy = _descended(march, load, target, span, lost, beside, loose=lost.loss is not Loss.CONTACT)
+    if energy is None or march.curvature > 0.0:
+        return energy
+    march.restore(saved)
+    return _descended(march, load, target, span, lost, beside, loose=False)
+
+
+def _descended(
+    march: March, load: int, target: float, span: float, lost: Lost, beside: float, *, loose: bool
+) -> float | None:
+    """The energy after a fall with ``loose`` penalties, or with the penalties of now."""
     beyond, left = _ASIDE if lost.loss is Loss.BIFURCATION else _BEYOND, target - lost.value
     march.values[load] = lost.value + float(np.sign(left)) * min(beyond * span, abs(left))
-    if lost.loss is not Loss.CONTACT:
-        # what lets go under tight penalties holds on under loose ones
+    if loose:
         march.penalties = {pair: Penalty(pair.stiffness) for pair in march.penalties}
     march.system = lost.system
     march.renew()
@@ -75,6 +89,7 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost, b
     size = float(np.abs(way[march.model.moving]).max())
     if not size > 0.0:
         return None
+    known, end = dict(march.closing), lost.value * march.model.stepped[load].unit
     iterations, energy = march.iterations, penalised_energy(march.model, march.system, march.values)
     kicks, steps = (_KICKS[:1], _FEW) if np.isfinite(beside) else (_KICKS, _STEPS)
     for kick in kicks:
@@ -93,6 +108,7 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost, b
                 march.iterations += trial.iterations - iterations
                 march.restore(trial)
                 march.tighten()
+                march.closing = dict.fromkeys(march.closing, end) | known
                 if march.turned(march.system, lost.system.z) > beside:
                     return None
                 return potential_energy(march.model, march.system, march.values)

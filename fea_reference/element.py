@@ -111,8 +111,7 @@ def reference(
     stretch = np.divide(axial, shear, out=np.zeros_like(L), where=shear > 0.0)  # GA c_N
     slope = np.einsum("kn,akn,abn,bjn->jn", rotation, rigid, G, stiff)  # ∫ w⁰' ds = 0
     shortening = np.einsum("ain,abn,bjn->ijn", stiff, G - 2.0 * (1.0 - stretch) * m[:, None] * m / L, stiff)
-    slip = shear / L**2 * K.sum(axis=0)
-    return Elements(L, np.hypot(*chord.T), axial / L, slip, rotation, slope, K, shortening)
+    return Elements(L, np.hypot(*chord.T), axial / L, shear / L**2 * K.sum(axis=0), rotation, slope, K, shortening)
 
 
 def _local(form: BilinearForm, basis: CellBasis) -> Array:
@@ -134,8 +133,7 @@ def _section_rotation(D: Array, m: Array, ratio: Array) -> Array:
     """
     flexibility = ratio * m.sum(axis=0)
     middle = -(flexibility * D[2, :2] + m[2] * m[:2]) / (flexibility * D[2, 2] + m[2] ** 2)
-    ends = np.broadcast_to(np.eye(2)[:, :, None], (2, 2, middle.shape[-1]))
-    return np.concatenate([ends, middle[None]], axis=0)
+    return np.concatenate([np.broadcast_to(np.eye(2)[:, :, None], (2, 2, middle.shape[-1])), middle[None]], axis=0)
 
 
 def forces(elements: Elements, dofs: Index, state: State) -> ElementForces:
@@ -217,5 +215,4 @@ def _chord(dx: Array, dy: Array, l: Array) -> tuple[Array, Array, Array]:  # noq
 
 def _wrapped(angle: Array) -> Array:
     """The same angle in [−π, π], with all its digits if it is there already."""
-    turns = np.round(angle / (2 * np.pi))
-    return np.asarray(angle - 2 * np.pi * turns)
+    return np.asarray(angle - 2 * np.pi * np.round(angle / (2 * np.pi)))

@@ -23,8 +23,7 @@ def potential_energy(model: Model, system: System, values: Array) -> float:
         if part.direction is None:
             energy -= float(load * model.body_state(body, z)[2])
         else:
-            moved = model.carried(body, part.arm, z) - (body.centre + part.arm)
-            energy -= float(load * (part.direction @ moved))
+            energy -= float(load * (part.direction @ (model.carried(body, part.arm, z) - (body.centre + part.arm))))
     moments = [(part, float(values[i])) for i, part in enumerate(model.loads) if isinstance(part, BeamMomentPart)]
     for (part, load), (other, its_load) in combinations(moments, 2):
         energy -= load * its_load * shared_work(model, part, other, z)

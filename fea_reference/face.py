@@ -364,8 +364,7 @@ class _Seen:
         n = self.turned(near.normal)
         pushes = overlap * (n[0] + 1j * n[1])
         for i, (at, normal) in enumerate(zip(there.zeta, there.along(out), strict=True)):
-            push = pushes[np.abs(zeta - at) < 1.0].sum()
-            pressed[i] = (normal.conjugate() * push).real > 0.0
+            pressed[i] = (normal.conjugate() * pushes[np.abs(zeta - at) < 1.0].sum()).real > 0.0
         return pressed
 
     def zones(self, lead: float = 0.0) -> tuple[Zones, dict[float, np.int64]]:

@@ -76,8 +76,7 @@ def _discs_of(line: NeutralLine) -> tuple[Complex, Array]:
     starts = np.unique(np.arange(_RUNS) * n // _RUNS)
     lengths = np.diff(starts, append=n)
     c = line.nodes[starts + lengths // 2]
-    away = np.abs(line.nodes - np.repeat(c, lengths))
-    return c, np.maximum.reduceat(away, starts) + float(line.speeds.max())
+    return c, np.maximum.reduceat(np.abs(line.nodes - np.repeat(c, lengths)), starts) + float(line.speeds.max())
 
 
 def _in_frame(model: Model, body: BodyPart, places: Complex, z: State) -> Complex:

@@ -182,12 +182,14 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
                 return CutShort()
             lost = _lost(march, branch, first, here, there, length)
             slipped = lost and _slipped(march, load, [*gone, Stretch(branch, here, length)], lost)
-            if lost is not None and (slipped is not None or lost.uncertainty <= _WIDE * span):
-                # the march reaches a target before the end
-                return turn if slipped is None and (lost.value - target) * onward > 0.0 else slipped or lost
+            known_well = lost is not None and lost.uncertainty <= _WIDE * span
+            if slipped is not None or (lost is not None and known_well and (lost.value - target) * onward <= 0.0):
+                return slipped or lost
             # a step that long leads to another branch, or past where two nearly meet
             wide = wide if lost is None else (lost, march.saved())
             march.values, march.system = branch.at(here.value), here.system
+            if known_well:
+                return turn  # the target comes before the end
             length *= 0.25
             if length < _LEAST:
                 return _back_at(march, wide) or turn
@@ -382,8 +384,7 @@ def _slipping_off(march: March, load: int, target: float, span: float) -> Lost |
             continue
         if abs(way) > _FORESEEN * span:
             break
-        left = softest(march.model, _without(march, one))
-        return _ahead(march, load, way, Loss.SLIP, one, march.curvature, left)
+        return _ahead(march, load, way, Loss.SLIP, one, march.curvature, softest(march.model, _without(march, one)))
     march.restore(saved)
     return None
 

@@ -97,8 +97,7 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None
     reach = 2.0 * abs(T) + 3.0 * line.longest
     knots = () if tapers is None else tapers.first.knots
     zeta = np.union1d(_samples(line, tapers, reach), np.array(knots))
-    x = line.at(zeta)[0]
-    i, j = _elements_near(line, x, reach)
+    i, j = _elements_near(line, line.at(zeta)[0], reach)
     steepest = 0.0 if tapers is None else _steepest(tapers.first, line)
     places, partners, i = _partners(line, zeta, i, j, steepest, roles)
     there = at(places, partners)
@@ -143,8 +142,7 @@ def _partners(
     here, there = f(j), f(j + 1)
     # straight across from an end f is zero but for round-off, and for what the edge leans by
     for at_end, f_end, node in ((j == 0, here, 0), (j == line.n - 1, there, line.n)):
-        away = np.hypot(*(x[:, i[at_end]] - line.points[:, [node]]))
-        nothing = _NOTHING * line.longest**2 + steepest * away
+        nothing = _NOTHING * line.longest**2 + steepest * np.hypot(*(x[:, i[at_end]] - line.points[:, [node]]))
         f_end[at_end] = np.where(np.abs(f_end[at_end]) <= nothing, 0.0, f_end[at_end])
     least = (here >= 0.0) & (there <= 0.0) & (here > there)
     share = here / np.where(least, here - there, 1.0)
@@ -157,8 +155,7 @@ def _partners(
 
 def _steepest(edge: Edge, line: NeutralLine) -> float:
     """The largest sine of a lean, but for what changes the line's speed."""
-    slopes = np.abs(edge.slope(np.array(edge.knots)))
-    return 2.0 * float(slopes.max()) / float(line.lengths.min())
+    return 2.0 * float(np.abs(edge.slope(np.array(edge.knots))).max()) / float(line.lengths.min())
 
 
 def _samples(line: NeutralLine, tapers: Tapers | None, reach: float) -> Array:

@@ -64,6 +64,7 @@ _SHARP = 1e-3  # of the unbalanced force accepted: what is left at a station, wh
 _SHARPENINGS = 3
 _SOFT = 0.1  # of what the elements can follow
 _PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pull before it lets go
+_DIFFERENCE = 1e-4  # of a step: what rates of gaps are seen by
 _INSIDE = 0.01  # of these: how far within what counts as closed its place is sought
 _SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
 _AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
@@ -300,7 +301,7 @@ class March:
         self.change_places()
         if touched:
             self._close_tightly(load, value - start)
-            self.watch_what_touches(load)
+            self.watch_what_touches(load, value - start)
             self.switch(load, changing)
         return None
 
@@ -552,8 +553,7 @@ class March:
         value, gap = float(self.values[load]), self.least_gap(self.system)
         for share in _NEARBY:
             other = value + np.copysign(share, gap) * way
-            guess = advance(self.model, self.system.z, (other - value) * self.rate(load))
-            beyond = self.solve(load, other, guess)
+            beyond = self.solve(load, other, advance(self.model, self.system.z, (other - value) * self.rate(load)))
             if beyond is None:
                 return
             if self.least_gap(beyond) * gap <= 0.0:
@@ -571,8 +571,8 @@ class March:
         """The least of them."""
         return min(self.gaps(system), default=np.inf)
 
-    def watch_what_touches(self, load: int) -> None:
-        """Give a penalty to every open contact whose gap has vanished."""
+    def watch_what_touches(self, load: int, way: float = 0.0) -> None:
+        """Give a penalty to every open contact whose gap has vanished, at the end of a step by a ``way``."""
         z = self.system.z
         closing = [p for p in self.open if least_gap(self.model, p, z) <= CLOSED * p.scale]
         for pair in closing:
@@ -581,9 +581,17 @@ class March:
             unseen = zones_of(self.model, pair, z).least > CLOSED * pair.scale
             closed = pair.about() if unseen and isinstance(pair, Pair) else pair
             self.penalties[closed] = Penalty(pair.stiffness)
-            self.closing.setdefault(pair.name, self.value(load))
+            left = self._left(load, pair, way) * self.model.stepped[load].unit
+            self.closing.setdefault(pair.name, self.value(load) + left)
         if closing:
             self.renew()
+
+    def _left(self, load: int, pair: Contact, way: float) -> float:
+        """How far, at the rate of now, a gap is from zero that a step by a ``way`` has closed but for a tolerance."""
+        step = _DIFFERENCE * way
+        moved = advance(self.model, self.system.z, step * self.rate(load))
+        here, there = (least_gap(self.model, pair, z) for z in (self.system.z, moved))
+        return step * here / (here - there) if 0.0 < here < (here - there) / _DIFFERENCE else 0.0
 
     def loosen(self, *kinds: type[Contact]) -> bool:
         """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.
@@ -837,8 +845,7 @@ class March:
         for one in system.touches:
             if not one.closed:
                 continue
-            by_depth = isinstance(one.pair, Pair) or one.sharp
-            depth = settings.penetration * one.pair.scale if by_depth else np.inf
+            depth = settings.penetration * one.pair.scale if isinstance(one.pair, Pair) or one.sharp else np.inf
             if (share := known.get(one.pair, 0.0)) > 0.0:
                 little = one.penetration * max(felt_at_most / share, 1.0 / _TIGHTEN)
                 depth = min(depth, max(little, ROUNDED))

@@ -412,8 +412,7 @@ def build(scene: Scene, settings: Settings) -> Model:
         float(bending_stiffness(beam, scene.materials[beam.material], beam.knots).max())
         for beam in scene.beams.values()
     )
-    first = next(iter(scene.beams.values()))
-    units = Units(max(lengths.values()), largest, np.array(first.curve.start))
+    units = Units(max(lengths.values()), largest, np.array(next(iter(scene.beams.values())).curve.start))
 
     beams: list[BeamPart] = []
     arc, points, tangents, cells = [], [], [], []
@@ -576,5 +575,4 @@ def _joint(end: BeamEnd, body: int, bodies: list[BodyPart], dofs: Index, angle: 
     """The joint of an end that is not free; its rows begin at ``row``."""
     assert not isinstance(end, FreeEnd)
     rows = np.arange(row, row + (3 if isinstance(end, WeldedEnd) else 2))
-    arm = bodies[body].points[end.point] - bodies[body].centre
-    return JointPart(end.point, body, dofs, rows, arm, angle)
+    return JointPart(end.point, body, dofs, rows, bodies[body].points[end.point] - bodies[body].centre, angle)

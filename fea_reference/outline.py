@@ -333,8 +333,7 @@ class Graph:
         past = ((at == first) & (beyond < 0.0)) | ((at == last) & (beyond > 0.0))
         r = np.hypot(away[0], away[1])
         past &= r > 0.0
-        unit = away / np.where(past, r, 1.0)
-        distance, normal = np.where(past, r, d), np.where(past, unit, side)
+        distance, normal = np.where(past, r, d), np.where(past, away / np.where(past, r, 1.0), side)
         bend = np.where(past, 1.0 / np.where(past, r, 1.0), kappa / (1.0 + kappa * d))
         # behind the edge the sides straight back may be nearer, and beyond its ends they are
         if (behind := d < 0.0).any():
@@ -424,8 +423,7 @@ def outline_of(contact: EdgeContact, origin: Array, unit: float, places: Sequenc
         case LineContact():
             points = (np.array(contact.points).T - origin[:, None]) / unit
             for place in places:
-                near = np.hypot(*(points - place[:, None])) < _SAME
-                points[:, near] = place[:, None]
+                points[:, np.hypot(*(points - place[:, None])) < _SAME] = place[:, None]
             return Broken(points if contact.side == "left" else points[:, ::-1])
         case FunctionContact():
             across = contact.axis == "y"

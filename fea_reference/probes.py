@@ -105,8 +105,7 @@ def _moment(march: March, name: str) -> float:
     moment = sum(stop.moment(z) for stop in stops)
     for one in march.system.touches:
         if one.pair.name == name and stops:
-            beam = model.beam(stops[0].end[0])
-            pin = model.line(beam, z).points[:, 0 if stops[0].end[1] == "start" else -1]
+            pin = model.line(model.beam(stops[0].end[0]), z).points[:, 0 if stops[0].end[1] == "start" else -1]
             arm = one.x - pin[:, None]
             moment += float((arm[0] * one.force[1] - arm[1] * one.force[0]).sum())
     return moment

@@ -23,8 +23,7 @@ def normal_force(model: Model, system: System, beam: BeamPart, fractions: Array)
     """N at ``fractions`` (k,) of the arc length, without units, positive in tension."""
     zeta = fractions * (beam.elements.stop - beam.elements.start)
     tangent = model.line(beam, system.z).at(zeta)[1]
-    force = section_force(model, system, beam, fractions)
-    return np.asarray((force * tangent).sum(axis=0) / np.hypot(*tangent))
+    return np.asarray((section_force(model, system, beam, fractions) * tangent).sum(axis=0) / np.hypot(*tangent))
 
 
 def section_force(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:

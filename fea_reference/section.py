@@ -75,8 +75,7 @@ def compliance(beam: Beam, material: Material, length: float, n: int, upright: t
     def summed(integrand: Array) -> Array:
         return np.asarray(np.bincount(element, weights=(integrand * ds).sum(axis=0), minlength=n), dtype=float)
 
-    area = beam.width_at(u) * beam.thickness_at(u)
-    axial = 1.0 / (material.youngs_modulus * area)
+    axial = 1.0 / (beam.width_at(u) * beam.thickness_at(u) * material.youngs_modulus)
     b = np.stack([xi - 1.0, xi])
     EI = bending_stiffness(beam, material, u)
     bending = np.array([[summed(b[i] * b[j] / EI) for j in range(2)] for i in range(2)])

@@ -37,8 +37,7 @@ def left_to_go(model: Model, one: Touch, z: State) -> float | None:
     inwards = first.tangents[:, near[0]] * (1.0 if near[0] == 0 else -1.0)
     if pair.distance > 0.0 and float(inwards @ one.normal.mean(axis=1)) < 0.0:
         return None
-    x = first.points[:, near]
-    s_m, total = along_line(second, x, float(np.median(one.zeta_m))), float(second.lengths.sum())
+    s_m, total = along_line(second, first.points[:, near], float(np.median(one.zeta_m))), float(second.lengths.sum())
     return min(s_m, total - s_m)
 
 

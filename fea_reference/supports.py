@@ -9,8 +9,7 @@ from fea_reference.state import State
 
 def support(joint: JointPart, z: State) -> tuple[Array, float]:
     """Force (2,) and moment of a joint's body on the beam's end: the multipliers, turned round."""
-    force = -z[joint.rows[:2]]
-    return force, float(-z[joint.rows[2]]) if joint.rows.size == 3 else 0.0
+    return -z[joint.rows[:2]], float(-z[joint.rows[2]]) if joint.rows.size == 3 else 0.0
 
 
 def grounded(model: Model, hinge: HingePart, z: State) -> tuple[str, Array] | None:

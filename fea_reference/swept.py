@@ -53,8 +53,7 @@ def beside(line: NeutralLine, points: Complex, guess: Array | None = None) -> Be
         guess = even[nearest(points, line.nodes[there.element] + there.way)[1]]
     zeta, found, there = closest(line, points, guess)
     n = 1j * there.ahead / np.abs(there.ahead)
-    away = line.nodes[there.element] + there.way - points
-    return Beside(zeta, found, (n.conj() * away).real, n)
+    return Beside(zeta, found, (n.conj() * (line.nodes[there.element] + there.way - points)).real, n)
 
 
 def gone_over(before: tuple[NeutralLine, Complex], after: tuple[NeutralLine, Complex]) -> tuple[Beside, Beside, Flags]:

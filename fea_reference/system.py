@@ -92,8 +92,7 @@ class Drag:
 
 def stiffened(model: Model, system: System, one: Touch, factor: float) -> System:
     """The same state, one of its contacts ``factor`` times as stiff and pushing as before; the tangent only."""
-    stiffer = replace(one, stiffness=factor * one.stiffness)
-    more = stiffer.hessian(one.pushes) - one.hessian(one.pushes)
+    more = replace(one, stiffness=factor * one.stiffness).hessian(one.pushes) - one.hessian(one.pushes)
     return replace(system, tangent=system.tangent + model.patterns.matrix([Block(one.dofs, more)]))
 
 

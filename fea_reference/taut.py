@@ -51,8 +51,7 @@ def beyond(march: March, turn: Turn, target: float) -> bool:
     saved, load = march.saved(), branch.load
     march.values, march.system = branch.at(there.value), there.system
     way = target - there.value
-    speed = float(np.abs(rate[march.model.moving]).max())
-    size = min(abs(way), _PREDICTED / max(speed, 1e-300))
+    size = min(abs(way), _PREDICTED / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
     for _ in range(_CUTS):
         value = target if size >= abs(way) else float(there.value + np.copysign(size, way))
         if march.step(load, value, march.onward(load, rate, target)) is None and march.minimum:

@@ -39,6 +39,8 @@ class Pair:
         ends, ends_m: which ends of the first and of the second (0 and 1) may come to lie on the other's side: not those
             that a body holds beside it.
         carried: ends of the second beam whose zones the second carries the integral of, as ends of the first press too.
+        free, free_m: first and last place ζ of the first and of the second between which the beams may touch: beside an
+            end that both share they overlap as drawn.
         tapers: how the thickness varies, of beams that touch by their edges if it does.
         scale: what the penetration asked is a share of: the mean thickness, or a hundredth of the longest beam for
             lines, which have none.
@@ -64,6 +66,8 @@ class Pair:
     ends: tuple[int, ...] = ()
     ends_m: tuple[int, ...] = ()
     carried: tuple[int, ...] = ()
+    free: tuple[float, float] = (0.0, np.inf)
+    free_m: tuple[float, float] = (0.0, np.inf)
     roles: Roles | None = None
     tapers: Tapers | None = None
 
@@ -96,6 +100,8 @@ class Pair:
             ends=self.ends_m,
             ends_m=self.ends,
             carried=(),
+            free=self.free_m,
+            free_m=self.free,
             tapers=None if self.tapers is None else Tapers(self.tapers.second, self.tapers.first),
         )
 

@@ -64,8 +64,7 @@ def upright(scene: Scene, beam: str) -> tuple[float, float]:
 
 def _layer(scene: Scene, beam: str, which: str) -> float:
     """a at an end, m."""
-    record = scene.beams[beam]
-    ratio = 2.0 * (1.0 + scene.materials[record.material].poisson_ratio) / (12.0 * SHEAR_FACTOR)
+    ratio = 2.0 * (1.0 + scene.materials[scene.beams[beam].material].poisson_ratio) / (12.0 * SHEAR_FACTOR)
     return math.sqrt(ratio) * _thickness(scene, beam, which)
 
 

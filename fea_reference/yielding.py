@@ -50,8 +50,7 @@ def in_points(one: Touch) -> bool:
         return False
     first, last = one.zones.intervals.T
     begins = one.zones.begins
-    ends = np.append(begins[1:], True)
-    return bool((last[ends] - first[begins]).max() < POINT)
+    return bool((last[np.append(begins[1:], True)] - first[begins]).max() < POINT)
 
 
 def _beside_joint(one: Touch) -> bool:
@@ -124,8 +123,7 @@ def _at_one_place(one: Touch, other: Touch) -> bool:
     if one.pair.first != other.pair.first:
         return False
     apart = max(one.zeta.min(), other.zeta.min()) - min(one.zeta.max(), other.zeta.max())
-    alike = float(one.force.sum(axis=1) @ other.force.sum(axis=1))
-    return apart < POINT and alike > 0.0
+    return apart < POINT and float(one.force.sum(axis=1) @ other.force.sum(axis=1)) > 0.0
 
 
 def _beside(
@@ -144,8 +142,7 @@ def _beside(
         gap = least_gap(model, pair, system.z)
         if not 0.0 <= gap < _NEAR:
             continue
-        lead = gap + _BESIDE * pair.measure
-        there = touch(model, pair, Penalty(pair.stiffness, lead), quadrature, system.z)
+        there = touch(model, pair, Penalty(pair.stiffness, gap + _BESIDE * pair.measure), quadrature, system.z)
         if not there.closed or _beside_joint(there):
             continue
         opening = np.zeros(model.size)

@@ -217,19 +217,27 @@ def end_apart(first: NeutralLine, second: NeutralLine) -> float:
     near = nearest(first.nodes[[0, -1]], second.nodes)[1].astype(float)
     zeta, found = project(second, first.points[:, [0, -1]], near)
     over = found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)
-    away = np.hypot(*(first.points[:, [0, -1]] - second.at(zeta)[0]))
-    return float(away[over].min(initial=np.inf))
+    return float(np.hypot(*(first.points[:, [0, -1]] - second.at(zeta)[0]))[over].min(initial=np.inf))
 
 
-def seen(first: NeutralLine, second: NeutralLine, side: float, T: float, tapers: Tapers | None = None) -> Survey:
-    """The gap of two beams wherever it is less than the second's longest element."""
+def seen(
+    first: NeutralLine,
+    second: NeutralLine,
+    side: float,
+    T: float,
+    tapers: Tapers | None = None,
+    free: tuple[float, float] = (0.0, np.inf),
+) -> Survey:
+    """The gap of two beams wherever it is less than the second's longest element, at ``free`` places of the first."""
 
     def at(where: Array, guess: Array) -> Gap:
         return gap(first, second, one_side(side), T, tapers, where, guess)
 
     reach, none_there = _reach(first, second, T), np.empty(0)
     within = out_of_reach(first, second, T)
-    one, other = near_each_other(first.nodes, second.nodes, within + first.longest + second.longest)
+    begin, end = int(free[0]), int(min(free[1], first.n - 1.0)) + 2
+    one, other = near_each_other(first.nodes[begin:end], second.nodes, within + first.longest + second.longest)
+    one = one + begin
     apart_by, _ = nearest(first.nodes[one], second.nodes[other])
     close = np.zeros(first.n + 1, dtype=bool)
     close[one[apart_by < within]] = True
@@ -242,6 +250,7 @@ def seen(first: NeutralLine, second: NeutralLine, side: float, T: float, tapers:
     knots = () if tapers is None else tapers.first.knots
     if knots:
         zeta = np.union1d(zeta, [knot for knot in knots if min(int(knot), first.n - 1) in beside])
+    zeta = np.unique(np.clip(zeta, *free))
     x = first.around(zeta)
     distance, nearest_node = nearest(first.nodes[x.element] + x.way, second.nodes[other])
     near = np.flatnonzero(distance < reach)
@@ -427,8 +436,7 @@ def stepped(elements: NDArray[np.int64], knots: tuple[float, ...]) -> tuple[Arra
     Returns:
         Places (m,), and whether nothing is left out between each and the next (m−1,).
     """
-    steps = np.arange(SAMPLES_PER_ELEMENT) / SAMPLES_PER_ELEMENT
-    zeta = (elements[:, None] + steps).ravel()
+    zeta = (elements[:, None] + np.arange(SAMPLES_PER_ELEMENT) / SAMPLES_PER_ELEMENT).ravel()
     ends = elements[np.append(np.diff(elements) > 1, True)] + 1.0
     inner = [knot for knot in knots if knot != int(knot) and int(knot) in elements]
     if ends.size == 1 and not inner:

@@ -6,8 +6,11 @@ growth, r = 0.38 at 2.5 and 0.07 at 8.  A fall by steps of which every other fai
 step may be, takes five times as many.
 """
 
+import numpy as np
+import pytest
+
 from cprbm_scene import scene_from
-from fea_reference import Settings, descent, prepared
+from fea_reference import Settings, answer, descent, prepared
 from fea_reference.assembly import assemble_ends
 from fea_reference.following import followed
 from fea_reference.travel import Course, reach
@@ -38,3 +41,12 @@ def test_a_fall_beyond_a_fold_takes_few_steps(monkeypatch):
     monkeypatch.setattr(descent, "_step", watched)
     assert descent.descended(march, 0, TURNED, TURNED, lost) is not None
     assert len(failed) <= 2
+
+
+@pytest.mark.parametrize("elements", [20, 40])
+def test_a_contact_that_closes_in_a_fall_closes_at_the_critical_load(elements):
+    # reference: Euler, π² EI/L²; the load stays as it is while the column falls to the peg
+    data = branches.column_between_pegs([5.0, 12.0], gap=2e-3, beyond="jump")
+    data["probes"].append({"of": "right", "quantity": "closing_load"})
+    values = answer(scene_from(data), Settings(elements=elements, kinematics="bending")).stations[-1].values
+    assert values["right.closing_load"] == pytest.approx(np.pi**2 * branches.FORCE, rel=1e-5)

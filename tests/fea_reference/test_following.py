@@ -18,6 +18,7 @@ from fea_reference.curvature import Mode
 from fea_reference.following import followed
 from fea_reference.travel import Course, reach
 from tests.fea_reference import faint_contact
+from tests.fea_reference.cantilever import EI, LENGTH, cantilever
 from tests.together import branches
 from tests.together.branches import SNAP
 
@@ -59,6 +60,35 @@ def test_a_contact_with_little_force_left_lets_go_and_is_no_fold():
     assert (critical.loss, critical.what) == (Loss.CONTACT, "plane")
     assert critical.value == pytest.approx(v, rel=5e-4)
     assert critical.left < 0.0 < critical.curvature
+
+
+GREENHILL = 7.8373 * EI / LENGTH**3  # A. G. Greenhill (1881): a column clamped below and free above, by its own weight
+
+
+def column(stations):
+    weight = {"kind": "distributed", "beam": "beam", "direction": [-1.0, 0.0]}
+    return cantilever(weight, tuple(share * GREENHILL for share in stations))
+
+
+@pytest.mark.parametrize("elements", [20, 40, 60, 80])
+def test_the_march_stands_before_a_station_behind_which_the_branch_ends(elements):
+    scene = column([0.9, 0.99])
+    march = prepared(scene, Settings(elements=elements)).march
+    assemble_ends(scene, march)
+    before, target = (share * GREENHILL / march.model.stepped[0].unit for share in (0.9, 0.99))
+    reach(march, Course(0, before), before)
+    assert followed(march, 0, target, target) is None
+    assert before < march.values[0] <= target
+    assert march.curvature > 1e-3
+
+
+@pytest.mark.parametrize("elements", [20, 60, 91])
+def test_a_column_reaches_all_stations_before_its_critical_load(elements):
+    found = fea_reference.answer(column([0.5, 0.9, 0.99, 1.2]), Settings(elements=elements))
+    assert len(found.stations) == 3
+    (critical,) = found.critical
+    assert critical.loss is Loss.BIFURCATION
+    assert critical.value == pytest.approx(GREENHILL, rel=5e-5)
 
 
 END, RADIUS = 0.137, 0.0021

@@ -186,6 +186,53 @@ def test_a_column_between_pegs_leans_to_one_side_on_every_mesh(solver, settings,
         assert values["right.force"][0] > 0.0
 
 
+@pytest.mark.parametrize("elements", [40, 91])
+def test_a_dome_under_a_plunger_leans_aside_and_comes_back(elements):
+    """Reference: the CPRBM; beyond the bifurcation an upright dome is a minimum under loose penalties alone."""
+    radius, half = 0.13233, 0.02
+    data = {
+        "name": "dome",
+        "materials": {"steel": {"youngs_modulus": 1.93e11, "poisson_ratio": 0.3}},
+        "bodies": {
+            "ground": {"motion": "fixed", "points": {"A": [-half, 0.0], "B": [half, 0.0]}},
+            "plunger": {"motion": "slides", "points": {"P": [0.0, 0.01]}, "along": [0.0, 1.0]},
+        },
+        "beams": {
+            "dome": {
+                "curve": {
+                    "kind": "arc",
+                    "center": [0.0, -radius],
+                    "start": [-half, 0.0],
+                    "end": [half, 0.0],
+                    "direction": "clockwise",
+                },
+                "thickness": 2e-4,
+                "width": 5e-3,
+                "material": "steel",
+                "start": {"joint": "weld", "point": "A"},
+                "end": {"joint": "weld", "point": "B"},
+            }
+        },
+        "contacts": {
+            "k": {"kind": "beam-circle", "beam": "dome", "body": "plunger", "center": [0.0, 3.603e-3], "radius": 2e-3}
+        },
+        "drives": {"v": {"kind": "displacement", "point": "P", "direction": [0.0, -1.0]}},
+        "stages": [
+            {"name": "on", "steps": "v", "stations": [8e-4, 1.2e-3, 2e-3], "beyond": "jump"},
+            {"name": "off", "steps": "v", "stations": [8e-4, 0.0], "beyond": "jump"},
+        ],
+        "probes": [{"of": "k", "quantity": "force"}],
+    }
+    scene = scene_from(data)
+    found = fea_reference.answer(scene, fea_reference.Settings(elements=elements))
+    forces, expected = (
+        [station.values["k.force"][0] for station in answer.stations]
+        for answer in (found, cprbm.answer(scene, cprbm.Settings(links=40)))
+    )
+    assert found.completed, found.sentence
+    assert forces == pytest.approx(expected, rel=1e-3, abs=1e-9)
+
+
 @pytest.mark.parametrize("elements", [80, 91, 160])
 def test_a_frame_that_sways_bifurcates(elements):
     """Both guided columns of a frame carry π² EI/L² (Euler); round-off near the load makes no fold of it.
