@@ -140,9 +140,9 @@ def overlap_at_rest(scene: Scene, contact: BeamContact) -> float:
     """
     first, second = beams = [scene.beams[beam] for beam in contact.between]
     mean, largest = 0.5 * (first.thinnest + second.thinnest), 0.5 * (first.thickest + second.thickest)
-    depth = -beam_gap(first, second, *_apart(scene, beams, JOINED * largest))[0] if contact.thick else 0.0
+    depth = -beam_gap(first, second, *ranges_apart(scene, beams, JOINED * largest))[0] if contact.thick else 0.0
     if OVERLAP * mean < depth <= TOUCHING * mean:
-        depth = -beam_gap(first, second, *_apart(scene, beams, JOINED * largest, SIDE_BY_SIDE * largest))[0]
+        depth = -beam_gap(first, second, *ranges_apart(scene, beams, JOINED * largest, SIDE_BY_SIDE * largest))[0]
     return depth if depth > OVERLAP * mean else 0.0
 
 
@@ -169,7 +169,7 @@ def crossing(scene: Scene, *names: str) -> str:
     beams = [scene.beams[name] for name in names]
     shapes = [shape_of(beam.curve) for beam in beams]
     shortest = min(shape.length for shape in shapes)
-    gap, *places = beam_gap(*beams, *_apart(scene, beams, CROSSING_ANGLE * shortest), thick=False)
+    gap, *places = beam_gap(*beams, *ranges_apart(scene, beams, CROSSING_ANGLE * shortest), thick=False)
     t1, t2 = (shape.tangent(np.array([u]))[0] for shape, u in zip(shapes, places, strict=True))
     crosses = (
         gap <= MEETING * shortest
@@ -179,7 +179,7 @@ def crossing(scene: Scene, *names: str) -> str:
     return written_place(shapes[0].point(np.array(places[:1]))[0]) if crosses else ""
 
 
-def _apart(scene: Scene, beams: Sequence[Beam], left_out: float, near: float = 0.0) -> list[Range]:
+def ranges_apart(scene: Scene, beams: Sequence[Beam], left_out: float, near: float = 0.0) -> list[Range]:
     """Ranges of u of two beams without ``left_out`` (m) beside ends at the same place.
 
     Ends that are welded to the same body, up to ``near`` (m) from each other, count as such ends.

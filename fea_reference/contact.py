@@ -104,7 +104,7 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         side, side_m = side_of(lines[0], lines[1]), side_of(lines[1], lines[0])
         distance, scale, measure = (mean, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
         ends, ends_m = _loose(model, scene, first, second), _loose(model, scene, second, first)
-        thick = max(beam.record.thickest for beam in (first, second)) / model.units.length if contact.thick else 0.0
+        thick = 0.5 * contact.thick * sum(beam.record.thickest for beam in (first, second)) / model.units.length
         free, free_m = (_free(*order, JOINED * thick) for order in ((lines[0], lines[1]), (lines[1], lines[0])))
         penalties = [_penalties(model, beam, mean) for beam in (first, second)]
         loosest, stiffness, stiffest = map(min, zip(*penalties, strict=True))

@@ -22,20 +22,18 @@ import numpy as np
 
 from cprbm.chain import Direction, Mechanism, unit_direction
 from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
-from cprbm.contact.fixed import FREE, Sites, is_on_end_body, is_straight, matched, places_at_feet
+from cprbm.contact.fixed import FREE, Sites, is_on_end_body, is_straight, places_at_feet
 from cprbm.contact.gap import Law, Places, gap_frame
 from cprbm.contact.pairs import Pair, contact_pairs
 from cprbm.contact.settling import new_counters, settle
-from cprbm_scene import FreeEnd, Scene, WeldedEnd
+from cprbm_scene import BeamContact, FreeEnd, Scene, WeldedEnd
 from cprbm_scene.answer import Array, Flags, Ints
+from cprbm_scene.clearance import JOINED, ranges_apart
 from cprbm_scene.freedoms import FREEDOMS, Freedoms
 from cprbm_scene.statement import Body, SlidingBody
 
 LEANING = 0.1
 """Gap beside a weld, over the layers of the sections there, that a lean could close: no material bears such a shear."""
-
-OVERLAPPING = 2e-3
-"""Overlap as drawn, over the mean thickness, beyond the rounded coordinates that a scene may have (1e-3)."""
 
 TOUCHING = 1e-9
 """Gap, over the longest beam, below which curves touch: round-off of a scene's coordinates."""
@@ -92,17 +90,19 @@ def contact_geometry(m: Mechanism) -> Geometry:
     Adds the nodes of rigid curves and the rows of beams pinned on their edge to the mechanism.
     """
     curves, pairs = contact_pairs(m)
-    arrays, z = curve_arrays(curves), np.array(m.rest)
-    geometry = Geometry(curves, pairs, arrays, _sites(m, curves, pairs, arrays))
-    # a scene has overlaps of two beams beside a shared end alone: the ends are one body there, without a contact
-    sites, contacts = geometry.sites, open_contacts(geometry, z)
-    of_beams = np.array([not (pair.itself or sites.rigid[pair.second]) for pair in pairs], dtype=bool)
-    places = fixed_places(geometry, z, contacts.sides, of_beams, contacts.counters)
-    gaps = _gaps_at(geometry, z, contacts, places)
-    deep = places.pair[gaps < -OVERLAPPING * half_thicknesses(arrays, places)]
-    inside = taken(places, (gaps < -TOUCHING) & np.isin(places.pair, deep))
-    outside = taken(sites.possible, matched(arrays, sites.possible, inside) < 0)
-    return replace(geometry, sites=sites._replace(possible=outside))
+    arrays = curve_arrays(curves)
+    sites = _sites(m, curves, pairs, arrays)
+    possible, outside = sites.possible, np.ones(len(sites.possible.pair), dtype=bool)
+    arcs = arrays.arc[possible.piece] + possible.xi * arrays.span[possible.piece]
+    for number, pair in enumerate(pairs):
+        if isinstance(contact := m.scene.contacts[pair.name], BeamContact):
+            beams = [m.scene.beams[beam] for beam in contact.between]
+            # beside a shared end the beams are one body, without a contact
+            ranges = ranges_apart(m.scene, beams, 0.5 * JOINED * contact.thick * sum(beam.thickest for beam in beams))
+            for k, span in zip((pair.first, pair.second), ranges, strict=True):
+                within = np.clip(arcs, *np.multiply(m.chains[curves[k].beam].length, span)) == arcs
+                outside &= within | (possible.pair != number) | (possible.curve != k)
+    return Geometry(curves, pairs, arrays, sites._replace(possible=taken(possible, outside)))
 
 
 def hold_sections_upright(m: Mechanism, geometry: Geometry) -> None:

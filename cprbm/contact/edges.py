@@ -111,9 +111,8 @@ def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Arr
     settle(z, arrays, trial, gap, curvature, counters, FINDING)
     apart = arrays.arc[trial.piece] + trial.xi * arrays.span[trial.piece]
     apart -= arrays.arc[places.foot[k]] + places.eta[k] * arrays.span[places.foot[k]]
-    goes = not trial.at_point[0] and is_movable(arrays, geometry.sites, trial, 0)
-    near = abs(apart[0]) < BESIDE * arrays.span[trial.piece[0]]
-    return trial if near and goes and curvature[0] > 0.0 else None
+    near = abs(apart[0]) < BESIDE * arrays.span[trial.piece[0]] and not trial.at_point[0] and curvature[0] > 0.0
+    return trial if near and is_movable(arrays, geometry.sites, trial, 0) else None
 
 
 def _slopes(geometry: Geometry, z: Array, places: Places, k: int) -> tuple[float, float]:

@@ -121,8 +121,10 @@ def is_movable(curves: CurveArrays, sites: Sites, places: Places, k: int) -> boo
     """True if a place may move along the place's curve."""
     curve, piece, xi = places.curve[k], places.piece[k], places.xi[k]
     at_first, at_last = piece == curves.first[curve], piece == curves.last[curve]
-    held_at_first = at_first and (xi == 0.0 or is_on_end_body(curves, sites, places, k, 0))
-    return not (held_at_first or (at_last and (xi == 1.0 or is_on_end_body(curves, sites, places, k, 1))))
+    return not (
+        (at_first and (xi == 0.0 or is_on_end_body(curves, sites, places, k, 0)))
+        or (at_last and (xi == 1.0 or is_on_end_body(curves, sites, places, k, 1)))
+    )
 
 
 @compiled
