@@ -27,7 +27,8 @@ def change_set(
     """Close overlapping places and open pulling places; the number of places with a wrong sign.
 
     With more than ``most`` such places nothing changes; with ``most`` = 1 the worst overlap closes, or without overlaps
-    the largest pull opens.  ``pairs`` (pairs, 2) holds the numbers of both curves of every pair.
+    the largest pull opens.  Without a closed place the worst overlap closes first: far beyond a closing curves overlap
+    over a length and press in a point.  ``pairs`` (pairs, 2) holds the numbers of both curves of every pair.
     """
     allowed, beside, depth = closable(curves, places, closed, pairs)
     own, gap = places.shares == 0, gaps.copy()
@@ -36,7 +37,7 @@ def change_set(
     opens = own & closed & ((places.force < 0.0) | beside)
     closes = own & allowed & ~closed & (gap < -OVERLAP - depth)
     count = int(np.count_nonzero(opens | closes))
-    if count > most == 1:
+    if count > 1 and (most == 1 or (most > 1 and not np.any(closed))):
         wrong, size = (closes, gap) if np.any(closes) else (opens, places.force)
         worst = np.flatnonzero(wrong)[np.argmin(size[wrong])]
         closed[worst] = closes[worst]
