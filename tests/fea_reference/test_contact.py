@@ -168,37 +168,36 @@ C, DROP = 0.08, 0.005
 CLOSING = DROP * 6 * EI / (C**2 * (3 * A - C))  # by small deflections
 
 
-@pytest.mark.parametrize("elements", [20, 40])
-@pytest.mark.parametrize("gap", [1e-3 * T, 1e-4 * T])
-def test_a_contact_closes_where_its_gap_is_zero(gap, elements):
-    # reference: w = P a² (3 L − a)/6EI and w' = P a (2 L − a)/2EI at a peg, which is w + R w'²/2 away
-    at, radius = 0.6 * B, 2.0 * T
-    sinks, turns, away = at**2 * (3.0 * B - at) / (6.0 * EI), at * (2.0 * B - at) / (2.0 * EI), radius + 0.5 * T
-    scene = scene_from(
+def pressed_at_the_tip(contact, station, probes, further=()):
+    """A cantilever along x under a force at the tip, with ``further`` beams and a contact named ``touch``."""
+    return scene_from(
         {
-            "name": "peg",
+            "name": "pressed",
             "theory": "bending",
             "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
             "bodies": {
                 "ground": {"motion": "fixed", "points": {"V": [0.0, 0.0]}},
                 "end": {"motion": "free", "points": {"tip": [B, 0.0]}},
             },
-            "beams": {"beam": clamped(0.0, B, "V", "tip")},
+            "beams": {"upper": clamped(0.0, B, "V", "tip")} | dict(further),
             "loads": {"P": {"kind": "force", "point": "tip", "direction": [0.0, -1.0]}},
-            "contacts": {
-                "peg": {
-                    "kind": "beam-circle",
-                    "beam": "beam",
-                    "body": "ground",
-                    "center": [at, -away - gap],
-                    "radius": radius,
-                }
-            },
-            "stages": [{"name": "load", "steps": "P", "stations": [5.0 * gap / sinks]}],
-            "probes": [{"of": "peg", "quantity": "closing_load"}],
+            "contacts": {"touch": contact},
+            "stages": [{"name": "load", "steps": "P", "stations": [station]}],
+            "probes": probes,
         }
     )
-    found = answer(scene, Settings(elements=elements, kinematics="bending")).stations[-1].values["peg.closing_load"]
+
+
+@pytest.mark.parametrize("elements", [20, 40])
+@pytest.mark.parametrize("gap", [1e-3 * T, 1e-4 * T])
+def test_a_contact_closes_where_its_gap_is_zero(gap, elements):
+    # reference: w = P a² (3 L − a)/6EI and w' = P a (2 L − a)/2EI at a peg, which is w + R w'²/2 away
+    at, radius = 0.6 * B, 2.0 * T
+    sinks, turns, away = at**2 * (3.0 * B - at) / (6.0 * EI), at * (2.0 * B - at) / (2.0 * EI), radius + 0.5 * T
+    center = [at, -away - gap]
+    peg = {"kind": "beam-circle", "beam": "upper", "body": "ground", "center": center, "radius": radius}
+    scene = pressed_at_the_tip(peg, 5.0 * gap / sinks, [{"of": "touch", "quantity": "closing_load"}])
+    found = answer(scene, Settings(elements=elements, kinematics="bending")).stations[-1].values["touch.closing_load"]
     closing = 2.0 * gap / (sinks + np.sqrt(sinks**2 + 2.0 * away * turns**2 * gap))
     assert found == pytest.approx(closing, rel=1e-9)
 
@@ -208,25 +207,12 @@ def test_a_contact_closes_where_its_gap_is_zero(gap, elements):
 def test_beams_do_not_press_where_they_overlap_beside_an_end_that_they_share(angle, elements):
     # reference: the elastica of Bisshopp and Drucker, P L²/EI = 0.2: the legs of a V meet nowhere else
     x, y = (float(B * f(np.radians(angle))) for f in (np.cos, np.sin))
-    leg = clamped(0.0, B, "V")
-    scene = scene_from(
-        {
-            "name": "fork",
-            "theory": "bending",
-            "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
-            "bodies": {
-                "ground": {"motion": "fixed", "points": {"V": [0.0, 0.0]}},
-                "end": {"motion": "free", "points": {"tip": [B, 0.0]}},
-            },
-            "beams": {
-                "upper": clamped(0.0, B, "V", "tip"),
-                "lower": leg | {"curve": {"kind": "line", "start": [0.0, 0.0], "end": [x, -y]}},
-            },
-            "loads": {"P": {"kind": "force", "point": "tip", "direction": [0.0, -1.0]}},
-            "contacts": {"touch": {"kind": "beam-beam", "between": ["upper", "lower"]}},
-            "stages": [{"name": "load", "steps": "P", "stations": [0.2 * EI / B**2]}],
-            "probes": [{"of": "touch", "quantity": "force"}, {"of": "tip", "quantity": "displacement"}],
-        }
+    lower = clamped(0.0, B, "V") | {"curve": {"kind": "line", "start": [0.0, 0.0], "end": [x, -y]}}
+    scene = pressed_at_the_tip(
+        {"kind": "beam-beam", "between": ["upper", "lower"]},
+        0.2 * EI / B**2,
+        [{"of": "touch", "quantity": "force"}, {"of": "tip", "quantity": "displacement"}],
+        {"lower": lower},
     )
     found = answer(scene, Settings(elements=elements, kinematics="bending"))
     assert found.ending is Ending.COMPLETED, found.sentence
