@@ -251,9 +251,11 @@ def contact_changes(before: Solved, after: Solved, solve: Callable[[float, froze
 
 
 def changes_unseen(before: Solved, after: Solved, change: Change) -> bool:
-    """True if other pairs close or open before a change, and are back at the end of the step."""
+    """True if other pairs close or open before a change well within a step, and are back at the end of the step."""
     old, new = pressing(before), pressing(after)
-    return bool(apart_pairs(before, new - old - change.pairs) or old - new - change.pairs)
+    return change.share < 1.0 - TOGETHER and bool(
+        apart_pairs(before, new - old - change.pairs) or old - new - change.pairs
+    )
 
 
 def _closing(

@@ -25,7 +25,6 @@ from typing import Literal
 import numpy as np
 
 from cprbm.continuation.closing import (
-    TOGETHER,
     Change,
     changed,
     changes_unseen,
@@ -173,7 +172,8 @@ class Driver:
                 at, change = begin + change.share * (t - begin), change._replace(early=change.early * (t - begin))
                 opened = change.pairs if change.closes else frozenset()
                 solved = solve(change.share, opened) if change.share else self.solved
-                if change.share < 1.0 - TOGETHER and changes_unseen(self.solved, solved, change):
+                if changes_unseen(self.solved, solved, change):
+                    # a step that ends at the change sees the other pairs
                     return self._trial(way, at, largest)
             self._check_turn(solved, largest)
         except StepError as refused:
