@@ -217,11 +217,15 @@ class Contacts:
 
     def gaps(self, geometry: Geometry, z: Array) -> Array:
         """Gaps of all places at a state, the feet moved; the present feet stay."""
+        return self.settled(geometry, z)[1]
+
+    def settled(self, geometry: Geometry, z: Array) -> tuple[Places, Array]:
+        """All places at a state with moved feet, and their gaps."""
         places, gaps = copied(self.places), np.empty(len(self.closed))
         settle(z, geometry.arrays, places, gaps, np.empty(len(gaps)), self.counters, 0)
         if geometry.law is not None:
             geometry.law.write_gaps(z, places, gaps)
-        return gaps
+        return places, gaps
 
 
 def touching_as_drawn(geometry: Geometry, z: Array, contacts: Contacts) -> frozenset[int]:

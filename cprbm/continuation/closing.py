@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.contact import TOUCHING, Geometry, taken, touching_as_drawn
+from cprbm.contact import TOUCHING, Geometry, Places, joined, taken, touching_as_drawn
 from cprbm.continuation.path import SMALLEST_TURN, tangent, turned
 from cprbm.equilibrium import (
     NotConvergedError,
@@ -33,6 +33,7 @@ from cprbm.equilibrium import (
     State,
     System,
     equilibrium,
+    gap_rates,
     points_between,
     with_fixed_places,
 )
@@ -59,9 +60,6 @@ CLOSED = 1e-11
 
 LOCATED = 0.5
 """Accuracy of the overlap at a closing, over ``CLOSED``."""
-
-ALONG = 1e-6
-"""Part of a step along the tangent for the slope of a gap."""
 
 RELEASED = 1e-9
 """Force of an opening contact, over the force at the begin of the step, that counts as none."""
@@ -168,15 +166,24 @@ def with_stops(system: System, state: State, acting: Flags, iterations: int, spr
 
 def least_gap(geometry: Geometry, state: State, pair: int) -> float:
     """Least gap of an open pair, between joints too; inf if the curves are far apart."""
+    return nearest_place(geometry, state, pair)[0]
+
+
+def nearest_place(geometry: Geometry, state: State, pair: int) -> tuple[float, Places, Flags]:
+    """Least gap of an open pair, between joints too, all places, and the mark of the nearest.
+
+    The gap is inf, and no place is marked, if the curves are far apart.
+    """
     z, contacts = state.z, replace(state.contacts, kept_open=frozenset())
     full = with_fixed_places(geometry, z, contacts)
-    gaps = full.gaps(geometry, z)
-    mine = gaps[full.places.pair == pair]
-    least = float(mine.min(initial=np.inf))
-    if geometry.joints_alone:
-        return least
-    known = full.places, full.closed, gaps, pair, contacts.counters
-    return float(points_between(z, geometry.arrays, geometry.sites, *known)[1].min(initial=least))
+    places, gaps = full.settled(geometry, z)
+    if not geometry.joints_alone:
+        known = places, full.closed, gaps, pair, contacts.counters
+        between, least = points_between(z, geometry.arrays, geometry.sites, *known)
+        places, gaps = joined(places, between), np.append(gaps, least)
+    gaps = np.append(np.where(places.pair == pair, gaps, np.inf), np.inf)
+    nearest = (np.arange(len(gaps)) == np.argmin(gaps)) & np.isfinite(gaps)
+    return float(gaps.min()), places, nearest[:-1]
 
 
 def apart_pairs(solved: Solved, pairs: frozenset[int]) -> frozenset[int]:
@@ -276,9 +283,11 @@ def _closing(
 
     def gap(share: float) -> tuple[float, float]:
         solved = solve(share, apart) if share else before
-        moved = replace(solved.state, z=solved.state.z + ALONG * tangent(solved, change))
-        found, first[share] = min((least_gap(solved.system.geometry, solved.state, pair), pair) for pair in apart)
-        slopes[share] = (least_gap(solved.system.geometry, moved, first[share]) - found) / ALONG
+        geometry, state = solved.system.geometry, solved.state
+        near = {pair: nearest_place(geometry, state, pair) for pair in apart}
+        first[share] = min(apart, key=lambda pair: near[pair][0])
+        found, places, nearest = near[first[share]]
+        slopes[share] = float(gap_rates(geometry, state.z, places, nearest, tangent(solved, change)).sum())
         return found + CLOSED if abs(found + CLOSED) > LOCATED * CLOSED else 0.0, slopes[share]
 
     end = gap(1.0)

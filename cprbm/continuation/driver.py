@@ -155,11 +155,15 @@ class Driver:
         """Fraction and state at the end of the next step, and the change there, or why there is no step."""
         begin = self.reached
 
+        starts = dict[frozenset[int], dict[float, State]]()
+
         @cache  # events ask again for the states at the ends of the step and at the located share
         def solve(share: float, pairs: frozenset[int]) -> Solved:
-            target = way.target(begin + share * (t - begin))
-            # a state between has other sides and other closed places: only the begin of the step is certified
-            return self._equilibrium(replace(kept_open(self.solved.state, pairs), target=target))
+            near = starts.setdefault(pairs, {0.0: kept_open(self.solved.state, pairs)})
+            start = near[min(near, key=lambda known: abs(known - share))]
+            solved = self._equilibrium(replace(start, target=way.target(begin + share * (t - begin))))
+            near[share] = solved.state
+            return solved
 
         try:
             solved = solve(1.0, frozenset())

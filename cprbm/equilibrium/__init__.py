@@ -1,7 +1,7 @@
 """Equilibria of a mechanism: Newton's method, exact elimination with inertia, certificate, stability."""
 
 from cprbm.equilibrium.certificate import certify
-from cprbm.equilibrium.columns import contact_columns, contact_terms, squares_of
+from cprbm.equilibrium.columns import contact_columns, contact_terms, gap_rates, squares_of
 from cprbm.equilibrium.contact_set import NotConvergedError, with_fixed_places
 from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.neighbours import points_between
@@ -23,6 +23,7 @@ __all__ = [
     "contact_columns",
     "contact_terms",
     "equilibrium",
+    "gap_rates",
     "hidden_forces",
     "points_between",
     "repeated_rows",

@@ -55,6 +55,13 @@ def contact_terms(geometry: Geometry, z: Array, places: Places, closed: Flags) -
     return contact_columns(z, geometry.arrays, places, closed, gradient), gradient
 
 
+def gap_rates(geometry: Geometry, z: Array, places: Places, which: Flags, motion: Array) -> Array:
+    """Changes of the gaps of the places marked ``which`` with a ``motion`` (size,) of the unknowns."""
+    columns, _ = contact_terms(geometry, z, places._replace(shares=np.zeros_like(places.shares)), which)
+    moved = columns.entry_value * motion[columns.entry_index]
+    return np.asarray(-np.bincount(columns.entry_column, moved, len(columns.diagonal))[: len(columns.values)])
+
+
 @compiled
 def squares_of(
     a: float, b: float, c: float

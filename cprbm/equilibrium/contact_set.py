@@ -83,6 +83,9 @@ RETURNS = 2
 FEW_CHANGES = 4
 """Places that may change together where the linearised problem is not convex."""
 
+NEAR = 2.0
+"""Largest gap of a place in the linearised problem, over the deepest overlap: a farther place may follow later."""
+
 SOFT = 1e-14
 """Compliance of every place over the largest: two places at one point share their force."""
 
@@ -229,7 +232,8 @@ def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> None:
     z, m, curves, places, closed, gaps = linear[0], linear[1], *settling[:4]
     allowed, beside, depth = closable(curves, places, closed, settling[-1])
     leaders = np.arange(len(closed)) + places.shares
-    trial = ((allowed & np.isfinite(gaps)) | (closed & ~beside))[leaders]
+    near = gaps < NEAR * max(0.0, -float(gaps[np.isfinite(gaps)].min(initial=0.0)))
+    trial = ((allowed & near) | (closed & ~beside))[leaders]
     columns, gradient = contact_terms(geometry, z, places, trial)
     bordered, _, reduced = reduced_system(*linear, columns, gradient)
     own = trial & (places.shares == 0)

@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm.contact import TOUCHING, Contacts, joined
-from cprbm.equilibrium.columns import contact_terms
+from cprbm.equilibrium.columns import gap_rates
 from cprbm.equilibrium.iteration import closable
 from cprbm.equilibrium.neighbours import points_between
 from cprbm.equilibrium.solving import Solved, at_state
@@ -59,12 +59,10 @@ def blocked(solved: Solved) -> Solved:
         return solved
     contacts, touching = _touching(solved)
     while solved.lost and touching.any():
-        columns, _ = contact_terms(system.geometry, state.z, contacts.places, touching)
         load = np.zeros(system.size)
         load[system.angles] = system.metric * _softest(solved).turns
         motion = solved.response(load)
-        moved = columns.entry_value * motion[columns.entry_index]
-        rates = np.bincount(columns.entry_column, moved)[: len(columns.values)]
+        rates = gap_rates(system.geometry, state.z, contacts.places, touching, motion)
         least = UNMOVED * np.abs(motion[system.motions]).max()
         if not rates.min() < -least < least < rates.max():
             break

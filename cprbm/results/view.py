@@ -180,8 +180,6 @@ class View:
         for both in (arcs, at, forces):
             both[backward] = both[backward, ::-1]
         every = Pressed(arcs, at, forces, surface, places.moves, places.shares, on_first)
-        names = np.array([pair.name for pair in geometry.pairs], dtype=object)[places.pair]
-        order = np.argsort(arcs[:, 0], kind="stable")
-        return {
-            name: Pressed(*(column[order[names[order] == name]] for column in every)) for name in self.scene.contacts
-        }
+        names, order = list(self.scene.contacts), np.argsort(arcs[:, 0], kind="stable")
+        number = np.array([names.index(pair.name) for pair in geometry.pairs])[places.pair[order]]
+        return {name: Pressed(*(column[order[number == k]] for column in every)) for k, name in enumerate(names)}
