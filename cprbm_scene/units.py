@@ -178,20 +178,21 @@ def evaluated(text: str, named: Callable[[str], Value], units: FileUnits) -> Val
         match node:
             case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
                 return Value(float(number))
-            case ast.Name(id=name):
-                return Value(math.pi) if name == "pi" else named(name)
+            case ast.Name(id=marked):
+                return Value(math.pi) if marked == "pi_" else named(marked[:-1])
             case ast.UnaryOp(op=ast.UAdd() | ast.USub() as sign, operand=operand):
                 return _product(operator.mul, [Value(-1.0 if isinstance(sign, ast.USub) else 1.0), of(operand)], units)
             case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _SIGNS:
-                return of(ast.Call(ast.Name(_SIGNS[type(sign)]), [left, right], []))
-            case ast.Call(func=ast.Name(id=name), args=nodes, keywords=[]) if name in _RULES:
-                function, rule, count = _RULES[name]
-                _refuse(len(nodes) != (count or max(len(nodes), 1)), f"{name} of {len(nodes)} numbers")
+                return of(ast.Call(ast.Name(_SIGNS[type(sign)] + "_"), [left, right], []))
+            case ast.Call(func=ast.Name(id=marked), args=nodes, keywords=[]) if marked[:-1] in _RULES:
+                function, rule, count = _RULES[marked[:-1]]
+                _refuse(len(nodes) != (count or max(len(nodes), 1)), f"{marked[:-1]} of {len(nodes)} numbers")
                 return rule(function, [of(each) for each in nodes], units)
-        raise ExpressionError(f"{ast.unparse(node)!r}, which is no arithmetic")
+        raise ExpressionError(repr(re.sub(r"_\b", "", ast.unparse(node))) + ", which is no arithmetic")
 
     try:
-        value = of(ast.parse(text.strip(), mode="eval").body)
+        # names get a mark: the unit 'in' and a parameter 'lambda' are words of Python
+        value = of(ast.parse(re.sub(r"(?<![\w.])[^\W\d]\w*", r"\g<0>_", text.strip()), mode="eval").body)
     except SyntaxError:
         raise ExpressionError("no arithmetic") from None
     except SceneError:

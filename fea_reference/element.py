@@ -18,7 +18,8 @@ c        slip, γ by −Δ: the shear force is −(1, 1)·K Δ / L, so that c = 
 
 The element's contribution to the Hellinger–Reissner functional is
 
-    Π_e = ½ Δᵀ K Δ + N [ (l − l⁰) + ½ ∫ (w'² − w⁰'² − (1 − 2 GA c_N) γ²) ds ] − ½ c_N L N²,
+    Π_e = ½ Δᵀ K Δ + N [ (l − l⁰) + ½ ∫ (w'² − w⁰'² − (1 − 2 GA c_N) γ²) ds ] − ½ c_N L N²
+          + L [ (⅓ − ½ GA c_N) GA γ⁴ − ½ (1 − GA c_N) c_N N² γ² ],
 
 with the membrane strain averaged over the element (a shallow arch on its chord), so that a curved element is
 neither locked nor shortened by its own curvature.  The parabola's middle value makes the energy of bending
@@ -32,7 +33,8 @@ section.  Let the line have the stretch λ and lean from the section's normal by
     ½ EA (λ cos γ − 1)² + ½ GA (λ sin γ)² ≈ ½ EA (λ − 1 − ½ γ²)² + ½ GA γ² + GA (λ − 1) γ²,
 
 where λ − 1 is N c_N up to a term in γ².  Without the term, N acts along the line (Engesser's beam), and displacements
-differ by N/GA of the share of shear.
+differ by N/GA of the share of shear.  Without the terms of fourth order in γ and N they differ by ⅔ γ² of this share,
+which no mesh shows.  With λ eliminated by N all orders are N + ½ EA − ½ (N + EA cos γ)²/(EA cos² γ + GA sin² γ).
 Corotational kinematics: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1,
 ch. 7.
 """
@@ -52,7 +54,8 @@ class Elements:
     """What n elements keep of their undeformed shape: element last in every array.
 
     ``length`` L, ``chord`` l⁰, ``compliance`` c_N (n,); ``slip`` c, ``rotation`` ϑ⁰, ``slope`` ∫ w⁰' ∂w'/∂Δ ds (2, n);
-    ``bending`` K, ``shortening`` ∫ (∂w'/∂Δ ∂w'/∂Δ − (1 − 2 GA c_N) ∂γ/∂Δ ∂γ/∂Δ) ds (2, 2, n).
+    ``bending`` K, ``shortening`` ∫ (∂w'/∂Δ ∂w'/∂Δ − (1 − 2 GA c_N) ∂γ/∂Δ ∂γ/∂Δ) ds (2, 2, n);
+    ``fourth`` (2, n) the factors of γ⁴ and −½ N² γ², zero in elements with a moment between nodes.
     """
 
     length: Array
@@ -63,6 +66,7 @@ class Elements:
     slope: Array
     bending: Array
     shortening: Array
+    fourth: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,10 +103,9 @@ def reference(
     m = G.sum(axis=1)  # ∫ of each function: together they are one
     L = m.sum(axis=0)
 
-    first, second = mesh.t
-    chord = points[second] - points[first]
+    chord = points[mesh.t[1]] - points[mesh.t[0]]
     alpha = np.arctan2(chord[:, 1], chord[:, 0])
-    rotation = _wrapped(np.array([tangents[first] - alpha, tangents[second] - alpha]))
+    rotation = _wrapped(tangents[mesh.t] - alpha)
 
     # of an even moment: Δ = (−1, 1) turns the element by ∫ ds/(EI)
     turning = flexibility[0, 0] - flexibility[0, 1] - flexibility[1, 0] + flexibility[1, 1]
@@ -111,7 +114,9 @@ def reference(
     stretch = np.divide(axial, shear, out=np.zeros_like(L), where=shear > 0.0)  # GA c_N
     slope = np.einsum("kn,akn,abn,bjn->jn", rotation, rigid, G, stiff)  # ∫ w⁰' ds = 0
     shortening = np.einsum("ain,abn,bjn->ijn", stiff, G - 2.0 * (1.0 - stretch) * m[:, None] * m / L, stiff)
-    return Elements(L, np.hypot(*chord.T), axial / L, shear / L**2 * K.sum(axis=0), rotation, slope, K, shortening)
+    quartic = np.divide(L**2 * (1.0 / 3.0 - 0.5 * stretch), shear, out=np.zeros_like(L), where=shear > 0.0)
+    fourth, slip = np.array([quartic, (1.0 - stretch) * axial]), shear / L**2 * K.sum(axis=0)
+    return Elements(L, np.hypot(*chord.T), axial / L, slip, rotation, slope, K, shortening, fourth)
 
 
 def _local(form: BilinearForm, basis: CellBasis) -> Array:
@@ -121,8 +126,7 @@ def _local(form: BilinearForm, basis: CellBasis) -> Array:
 
 def _inverse(F: Array) -> Array:
     """Of symmetric matrices (2, 2, n)."""
-    determinant = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]
-    return np.asarray(np.array([[F[1, 1], -F[0, 1]], [-F[1, 0], F[0, 0]]]) / determinant)
+    return np.asarray(np.array([[F[1, 1], -F[0, 1]], [-F[1, 0], F[0, 0]]]) / (F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]))
 
 
 def _section_rotation(D: Array, m: Array, ratio: Array) -> Array:
@@ -140,18 +144,19 @@ def forces(elements: Elements, dofs: Index, state: State) -> ElementForces:
     """Value and derivatives in ``state``, its unknowns ``dofs`` (7, n) in the order (x₁, y₁, θ₁, x₂, y₂, θ₂, N)."""
     dx, dy = state.difference(dofs[3:5], dofs[:2])
     l = np.hypot(dx, dy)  # noqa: E741 - the chord's length
-    alpha = np.arctan2(dy, dx)
-    ends = dofs[[2, 5]]
-    theta = _wrapped(state[ends] - alpha) + state.rest[ends]
+    theta = _wrapped(state[dofs[[2, 5]]] - np.arctan2(dy, dx)) + state.rest[dofs[[2, 5]]]
     delta = theta - elements.rotation
-    N = state[dofs[6]]
+    N, slip, (quartic, mixed) = state[dofs[6]], elements.slip, elements.fourth
+    gamma = -(slip * delta).sum(axis=0)
 
     bent = np.einsum("ijn,jn->in", elements.bending, delta)
     shortened = np.einsum("ijn,jn->in", elements.shortening, delta)
-    strain_by_rotation = elements.slope + shortened
-    moment = bent + N * strain_by_rotation
-    elongation = l - elements.chord + ((elements.slope + 0.5 * shortened) * delta).sum(axis=0)
-    energy = 0.5 * (delta * bent).sum(axis=0) + 0.5 * elements.compliance * elements.length * N**2
+    strain_by_rotation = elements.slope + shortened + 2.0 * mixed * N * gamma * slip
+    moment = bent + N * strain_by_rotation - (4.0 * quartic * gamma**3 + mixed * N**2 * gamma) * slip
+    elongation = l - elements.chord + ((elements.slope + 0.5 * shortened) * delta).sum(axis=0) - mixed * N * gamma**2
+    energy = 0.5 * (
+        (delta * bent).sum(axis=0) + elements.compliance * elements.length * N**2 + mixed * (N * gamma) ** 2
+    )
 
     r, z, turn = _chord(dx, dy, l)
     total = moment.sum(axis=0)
@@ -159,14 +164,17 @@ def forces(elements: Elements, dofs: Index, state: State) -> ElementForces:
     gradient = N * r + np.einsum("in,ian->an", moment, turn)
     gradient[6] += elongation - elements.compliance * elements.length * N
     rz = r[:, None] * z[None, :]
-    turned = np.einsum("ijn,jbn->ibn", elements.bending + N * elements.shortening, turn)
+    stiffness = (
+        elements.bending + N * elements.shortening + (12.0 * quartic * gamma**2 - mixed * N**2) * slip[:, None] * slip
+    )
+    turned = np.einsum("ijn,jbn->ibn", stiffness, turn)
     H = np.einsum("ian,ibn->abn", turn, turned)
     H += N / l * (z[:, None] * z[None, :]) + total / l**2 * (rz + rz.transpose(1, 0, 2))
     coupling = r + np.einsum("in,ian->an", strain_by_rotation, turn)
     H[6] += coupling
     H[:, 6] += coupling
-    H[6, 6] -= elements.compliance * elements.length
-    return ElementForces(gradient, H, energy, theta)
+    H[6, 6] -= elements.compliance * elements.length + mixed * gamma**2
+    return ElementForces(gradient, H, energy + quartic * gamma**4, theta)
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,9 +198,8 @@ def shear(elements: Elements, part: slice | Index, dofs: Index, state: State) ->
 def shear_angle(elements: Elements, part: slice, dofs: Index, state: State) -> Array:
     """γ of the same elements, (n,)."""
     dx, dy = state.difference(dofs[3:5], dofs[:2])
-    ends = dofs[[2, 5]]
-    delta = _wrapped(state[ends] - np.arctan2(dy, dx)) + state.rest[ends] - elements.rotation[:, part]
-    return np.asarray(-(elements.slip[:, part] * delta).sum(axis=0))
+    theta = _wrapped(state[dofs[[2, 5]]] - np.arctan2(dy, dx)) + state.rest[dofs[[2, 5]]]
+    return np.asarray(-(elements.slip[:, part] * (theta - elements.rotation[:, part])).sum(axis=0))
 
 
 def layer(elements: Elements, e: int) -> float:

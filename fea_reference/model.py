@@ -492,8 +492,9 @@ def build(scene: Scene, settings: Settings) -> Model:
                 loads.append(LoadPart(name, i, arm, direction, units.force))
             case BeamMoment():
                 i = [part.name for part in beams].index(load.beam)
-                n = beams[i].nodes.stop - 1 - beams[i].nodes.start
-                loads.append(BeamMomentPart(name, i, load.at * n, units.moment))
+                # such a moment gives its element an angle of shear that no force makes
+                elements.fourth[:, beams[i].elements][:, int(np.ceil(load.at * counts[load.beam])) - 1] = 0.0
+                loads.append(BeamMomentPart(name, i, load.at * counts[load.beam], units.moment))
             case BeamForce() | DistributedLoad():
                 loads.append(_on_beam(name, load, [part.name for part in beams].index(load.beam), beams, units))
 

@@ -77,31 +77,21 @@ def probe_values(statics: Statics, stage: str) -> dict[str, Array]:
 
 
 def _reaction(statics: Statics, of: str) -> tuple[Array, float]:
-    """Force and moment of the ground at a point or on a sliding body, or of the drives of a point or body."""
-    view, drives = statics.view, statics.view.scene.drives.items()
-    moved = {name: drive.point if isinstance(drive, DisplacementDrive) else drive.body for name, drive in drives}
-    sources = {of, *(name for name, part in moved.items() if part == of)}
-    force, moment = np.zeros(2), 0.0
-    for each in statics.forces:
-        if each.source in sources and _from_ground(view, each.source, each.target):
-            force, moment = force + each.force, moment + each.moment
-        elif each.source in view.scene.pins and of in view.scene.pins[each.source].points:
-            # a pin between the ground and a body
-            fixed = view.scene.body_of(of) not in view.mechanism.bodies
-            if fixed and each.target in view.mechanism.bodies:
-                force = force + each.force
-    slides = of in view.scene.bodies and not sources - {of}
-    return force, 0.0 if slides else moment
+    """Force and moment of the ground at a point or on a sliding body, or of the drives of a point or body.
 
-
-def _from_ground(view: View, source: str, target: str) -> bool:
-    """True if a force of a source on a target is one of the ground: a held beam, a guide, or a drive."""
-    scene, moving, owners = view.scene, view.mechanism.bodies, view.scene.owners
-    if source in scene.drives or source == target:
-        return True
-    if target in scene.beams:
-        return source in owners and owners[source] not in moving
-    return target in moving and getattr(scene.bodies[target], "about", None) == source and target == owners[source]
+    Joints of two moving parts exert opposite forces on the parts, and cancel.
+    """
+    view, scene = statics.view, statics.view.scene
+    drives = scene.drives.items()
+    held = {name: drive.point if isinstance(drive, DisplacementDrive) else drive.body for name, drive in drives}
+    held |= {name: getattr(scene.beams[stop.beam], stop.end).point for name, stop in scene.stops.items()}
+    held |= {name: of for name, pin in scene.pins.items() if of in pin.points}
+    sources = {of, *(name for name, part in held.items() if part == of)}
+    moving = {*scene.beams, *view.mechanism.bodies}
+    found = [each for each in statics.forces if each.source in sources and each.target in moving]
+    slides = of in scene.bodies and not sources - {of}
+    moment = 0.0 if slides else sum(each.moment for each in found)
+    return sum((each.force for each in found), np.zeros(2)), moment
 
 
 def contact_force(view: View, contact: str) -> float:

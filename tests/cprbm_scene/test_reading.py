@@ -465,6 +465,15 @@ def test_an_expression_has_the_value_of_its_arithmetic():
         ].thickness == pytest.approx(thickness, rel=1e-14)
 
 
+def test_words_of_python_are_names_and_units_like_others():
+    """``in`` is the inch, and a parameter may be called lambda."""
+    parameters = {"lambda": {"value": 0.04, "unit": "in"}, "is": {"value": "= 2*lambda"}}
+    data = edited(("parameters", parameters), ("beams/lower/thickness", "= is - lambda"), base=PARAMETRIC)
+    assert scene_from(data).beams["lower"].thickness == pytest.approx(0.04 * 0.0254, rel=1e-14)
+    halved = scene_from(data, parameters={"lambda": "0.02in"})
+    assert halved.beams["lower"].thickness == pytest.approx(0.02 * 0.0254, rel=1e-14)
+
+
 def test_literals_have_the_unit_of_the_key():
     """The same two cantilevers in millimetres, degrees and kilonewtons: 50 is 50 mm, sin takes degrees."""
     data = edited(("beams/lower/thickness", "= 4*sin(30) + k*0"), base=PARAMETRIC)

@@ -31,7 +31,7 @@ LENGTH, THICKNESS, WIDTH, YOUNGS_MODULUS, POISSON_RATIO = 0.025, 0.005, 0.01, 2e
 AREA = THICKNESS * WIDTH
 AXIAL, BENDING = YOUNGS_MODULUS * AREA, YOUNGS_MODULUS * AREA * THICKNESS**2 / 12.0
 SHEAR = 5.0 / 6.0 * YOUNGS_MODULUS / (2.0 * (1.0 + POISSON_RATIO)) * AREA
-PRESSED, PULLED = (-300.0, 40.0), (250.0, 200.0)
+PRESSED, PULLED, STRAINED = (-300.0, 40.0), (250.0, 200.0), (1000.0, 3000.0)
 
 
 def _rates(_: float, state: np.ndarray, force: tuple[float, float]) -> list[float]:
@@ -77,8 +77,8 @@ def _scene(force: tuple[float, float]) -> Data:
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("force", [PRESSED, PULLED])
-def test_both_solvers_find_reissners_beam(force):
+@pytest.mark.parametrize(("force", "within"), [(PRESSED, 2e-7), (PULLED, 2e-7), (STRAINED, 3e-6)])
+def test_both_solvers_find_reissners_beam(force, within):
     scene, reference = scene_from(_scene(force)), _tip(force)
     answers = (
         cprbm.answer(scene, cprbm.Settings(links=160)),
@@ -87,5 +87,5 @@ def test_both_solvers_find_reissners_beam(force):
     for answer in answers:
         assert answer.completed, answer.sentence
         error = answer.stations[-1].values["T.displacement"] - reference
-        # a grid of 160 leaves 5e-7, the second power of N/(k G A) in the finite elements 2e-6
-        assert np.linalg.norm(error) < 3e-6 * np.linalg.norm(reference), error
+        # a grid of 160 leaves 1e-7; STRAINED shears by 9 %, and orders above the fourth leave 2e-6 in finite elements
+        assert np.linalg.norm(error) < within * np.linalg.norm(reference), error
