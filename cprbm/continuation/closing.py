@@ -20,6 +20,7 @@ g = −CLOSED there, so that the active set closes the pair in the least gap.  A
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -174,12 +175,12 @@ def nearest_place(geometry: Geometry, state: State, pair: int) -> tuple[float, P
 
     The gap is inf, and no place is marked, if the curves are far apart.
     """
-    z, contacts = state.z, replace(state.contacts, kept_open=frozenset())
-    full = with_fixed_places(geometry, z, contacts)
-    places, gaps = full.settled(geometry, z)
+    full = with_fixed_places(geometry, state.z, replace(state.contacts, kept_open=frozenset()))
+    places, gaps = full.settled(geometry, state.z)
     if not geometry.joints_alone:
-        known = places, full.closed, gaps, pair, contacts.counters
-        between, least = points_between(z, geometry.arrays, geometry.sites, *known)
+        between, least = points_between(
+            state.z, geometry.arrays, geometry.sites, places, full.closed, gaps, pair, full.counters
+        )
         places, gaps = joined(places, between), np.append(gaps, least)
     gaps = np.append(np.where(places.pair == pair, gaps, np.inf), np.inf)
     nearest = (np.arange(len(gaps)) == np.argmin(gaps)) & np.isfinite(gaps)
@@ -208,8 +209,9 @@ def drawn_names(system: System, state: State) -> frozenset[str]:
     """Names of the contacts that touch in a state as drawn: such contacts neither close nor open later."""
     geometry = system.geometry
     at_ends = touching_as_drawn(geometry, state.z, state.contacts)
-    gaps = {pair: least_gap(geometry, state, pair) for pair in range(len(geometry.pairs))}
-    return frozenset(geometry.pairs[pair].name for pair, gap in gaps.items() if pair in at_ends or gap < TOUCHING)
+    return frozenset(
+        pair.name for k, pair in enumerate(geometry.pairs) if k in at_ends or least_gap(geometry, state, k) < TOUCHING
+    )
 
 
 def kept_open(state: State, pairs: frozenset[int]) -> State:
@@ -284,9 +286,8 @@ def _closing(
     def gap(share: float) -> tuple[float, float]:
         solved = solve(share, apart) if share else before
         geometry, state = solved.system.geometry, solved.state
-        near = {pair: nearest_place(geometry, state, pair) for pair in apart}
-        first[share] = min(apart, key=lambda pair: near[pair][0])
-        found, places, nearest = near[first[share]]
+        near = ((*nearest_place(geometry, state, pair), pair) for pair in sorted(apart))
+        found, places, nearest, first[share] = min(near, key=itemgetter(0))
         slopes[share] = float(gap_rates(geometry, state.z, places, nearest, tangent(solved, change)).sum())
         return found + CLOSED if abs(found + CLOSED) > LOCATED * CLOSED else 0.0, slopes[share]
 

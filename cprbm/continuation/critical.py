@@ -126,11 +126,8 @@ def contact_ends(trail: list[Reached], beyond: float) -> CriticalPoint | None:
 
 def _may_lift(solved: Solved) -> list[Pressed]:
     """Closed pairs, and every closed place."""
-    contacts = solved.state.contacts
-    places = zip(
-        contacts.places.pair[contacts.closed].tolist(), contacts.places.piece[contacts.closed].tolist(), strict=True
-    )
-    return [*map(Pressed, sorted(pressing(solved))), *(Pressed(*place) for place in places)]
+    places = taken(solved.state.contacts.places, solved.state.contacts.closed)
+    return [*map(Pressed, sorted(pressing(solved))), *map(Pressed, places.pair.tolist(), places.piece.tolist())]
 
 
 def _without(solved: Solved, lifted: Pressed) -> Solved | None:

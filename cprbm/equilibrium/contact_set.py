@@ -232,8 +232,7 @@ def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> None:
     z, m, curves, places, closed, gaps = linear[0], linear[1], *settling[:4]
     allowed, beside, depth = closable(curves, places, closed, settling[-1])
     leaders = np.arange(len(closed)) + places.shares
-    near = gaps < NEAR * max(0.0, -float(gaps[np.isfinite(gaps)].min(initial=0.0)))
-    trial = ((allowed & near) | (closed & ~beside))[leaders]
+    trial = ((allowed & (gaps < -NEAR * gaps.min(initial=0.0))) | (closed & ~beside))[leaders]
     columns, gradient = contact_terms(geometry, z, places, trial)
     bordered, _, reduced = reduced_system(*linear, columns, gradient)
     own = trial & (places.shares == 0)

@@ -54,8 +54,7 @@ class Factors:
         Prescribed multipliers stay unchanged, and closed places closed, but for ``values`` (at most forces,).
         """
         m, bordered, solution = self.system.numbers, self.bordered, np.array(load)
-        both = np.zeros(len(bordered.columns.diagonal))
-        both[: len(values)] = values
+        both = np.concatenate([values, np.zeros(len(bordered.columns.diagonal) - len(values))])
         reduced = reduced_load(m.beams, m.border, bordered.chains, bordered.coupling, self.driven, both, solution)
         within = solved_border(self.factored, self.order, reduced)
         restored(m.beams, m.border, bordered.coupling, within, solution)
