@@ -164,8 +164,7 @@ def closest_point(
     ``force`` is F of a point contact, 0 otherwise; ``weights`` (2, STENCIL) is scratch space.  R is negative for a
     point beyond the curve, seen from ``side``.
     """
-    rests = curves.is_point[curve]
-    if rests:
+    if curves.is_point[curve]:
         return piece, 0.0, True
     for _ in range(STEPS):
         px, py, tx, ty, kx, ky = curve_jet(z, curves, piece, eta, weights, weights)
@@ -177,16 +176,18 @@ def closest_point(
         curvature = square + px * kx + py * ky + 0.5 * R * force * lost_at(curves, piece, eta, 2)
         step = -slope / (curvature if curvature > LEAST_CURVATURE * square else square)
         step = min(1.0, max(-1.0, step))
-        rests = not 0.0 <= eta + step <= 1.0
+        arrived, rests = abs(step) < max(ARRIVED, ROUNDED / sqrt(square)), not 0.0 <= eta + step <= 1.0
         behind, before = border_pieces(curves, curve, piece, step) if rests else (piece, piece)
-        if behind != before:
-            if is_corner(z, curves, behind, before, x, y, R, weights):
-                return behind, 0.0, True
-            # the next piece has another direction behind a corner: the search stops at the border
-            piece, eta, rests = behind if step > 0.0 else before, 0.0 if step > 0.0 else 1.0, False
-        else:
+        rests = rests and behind == before
+        if arrived or behind == before:
+            # within round-off of a border the foot stays on the piece, whatever the direction of the next piece
             eta = min(1.0, max(0.0, eta + step))
-        if abs(step) < max(ARRIVED, ROUNDED / sqrt(square)) or (rests and abs(step) < 1.0):
+        elif is_corner(z, curves, behind, before, x, y, R, weights):
+            return behind, 0.0, True
+        else:
+            # the next piece has another direction behind a corner: the search stops at the border
+            piece, eta = behind if step > 0.0 else before, 0.0 if step > 0.0 else 1.0
+        if arrived or (rests and abs(step) < 1.0):
             break
     return piece, eta, rests
 

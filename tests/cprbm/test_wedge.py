@@ -32,3 +32,22 @@ def test_what_is_before_a_sharp_wedge_is_not_behind_its_sides(other_way_round):
     (station,) = answer.stations
     assert station.values["tip.rotation"] == pytest.approx([turn], rel=1e-10)
     assert station.values["wedge.force"] == pytest.approx([0.0], abs=0.0)
+
+
+@pytest.mark.parametrize("angle", np.radians([0, 45, 135, 225, 315]).tolist())
+def test_a_joint_before_the_very_end_of_an_edge_has_the_distance_of_the_edge(angle):
+    """An edge slides along a straight beam until the perpendicular through the edge's end meets a joint."""
+    # joints lie at odd multiples of half a link
+    slope, height, slide = 1.0, 0.2 * LENGTH, 0.1 * LENGTH
+    axes = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    end = np.array([0.825 * LENGTH - slope * height - slide, height])
+    points = np.array([end, end + 0.3 * LENGTH * np.array([1.0, slope])]) @ axes
+    edge = {"kind": "beam-line", "beam": "beam", "body": "slider", "points": points.tolist(), "side": "right"}
+    way = {"kind": "displacement", "point": "V", "direction": axes[0].tolist()}
+    data = cantilever_data(way, [slide])
+    data["bodies"]["slider"] = {"motion": "slides", "along": axes[0].tolist(), "points": {"V": [0.0, 0.0]}}
+    data["bodies"]["tip"]["points"]["T"] = data["beams"]["beam"]["curve"]["end"] = (LENGTH * axes[0]).tolist()
+    data |= {"contacts": {"edge": edge}, "drives": data.pop("loads"), "probes": [{"of": "edge", "quantity": "force"}]}
+    answer = cprbm.answer(scene_from(data), cprbm.Settings(links=20))
+    assert answer.completed, answer.sentence
+    assert answer.stations[-1].values["edge.force"] == pytest.approx([0.0], abs=0.0)
