@@ -119,8 +119,20 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     kept_open, old = np.zeros(len(geometry.pairs), dtype=bool), contacts.places
     kept_open[list(contacts.kept_open)] = True
     apart = taken(old, np.zeros(0, dtype=np.int64)) if contacts.apart is None else contacts.apart
-    sides = contacts.sides, contacts.corner_sides, kept_open, old, contacts.closed, apart
-    places, closed = contact_places(z, geometry.arrays, geometry.sites, *sides, contacts.counters)
+    places, closed = contact_places(
+        z,
+        geometry.arrays,
+        geometry.sites,
+        contacts.sides,
+        contacts.corner_sides,
+        kept_open,
+        old,
+        contacts.closed,
+        apart,
+        contacts.counters,
+    )
+    # a joint that shared a force may have been replaced by a point of contact
+    follow_leaders(places, closed)
     return replace(contacts, places=places, closed=closed)
 
 

@@ -268,3 +268,37 @@ def test_beyond_an_edges_end_a_beam_meets_the_side_of_what_is_rigid_behind_it(ki
         assert other.values["edge.force"][0] > 0.0
         for probe, values in other.values.items():
             assert one.values[probe] == pytest.approx(values, rel=1e-9)
+
+
+def test_a_thick_arc_that_is_unloaded_beside_its_weld_on_an_edge_comes_back_as_drawn():
+    """The second joint shares the first joint's force, and a point of contact takes the second joint's place."""
+    tip, curve = [0.04, 0.04], {"kind": "arc", "center": [0.0, 0.04], "direction": "counterclockwise"}
+    scene = scene_from(
+        {
+            "name": "quarter",
+            "theory": "shear",
+            "materials": {"m": {"youngs_modulus": 26e6, "poisson_ratio": 0.45}},
+            "bodies": {
+                "wall": {"motion": "fixed", "points": {"A": [0.0, 0.0]}},
+                "tip": {"motion": "free", "points": {"T": tip}},
+            },
+            "beams": {
+                "b": {
+                    "curve": curve | {"start": [0.0, 0.0], "end": tip},
+                    "thickness": 6e-3,
+                    "width": 0.01,
+                    "material": "m",
+                    "start": weld("A"),
+                    "end": weld("T"),
+                }
+            },
+            "contacts": {"k": HALF | {"beam": "b", "body": "wall", "point": [0.0, -3e-3]}},
+            "loads": {"F": {"kind": "force", "point": "T", "direction": [-0.2, -1.0]}},
+            "stages": [
+                {"name": "in", "steps": "F", "stations": [0.05, 0.3, 1.0, 2.0]},
+                {"name": "out", "steps": "F", "stations": [0.3, 0.0]},
+            ],
+            "probes": [{"of": "T", "quantity": "displacement"}],
+        }
+    )
+    assert np.all(np.abs(solved(scene, 40)["T.displacement"]) < 1e-12 * tip[0])
