@@ -16,6 +16,9 @@ No force resists s of a body that contacts alone hold: the motion is neutral as 
 or drive acts, with a row that prescribes s of every such body.  The body with the largest push μ moves in the sense of
 μ until a contact closes at g = 0.  From there on the contact holds the body, and the row is free.  The push goes on
 to the next body.
+
+A beam with a pinned end may lie on a contact with the other end.  The motion about the pin is neutral as drawn,
+too, and the places that touch as drawn begin as closed places: the first load presses them, or opens them.
 """
 
 from collections.abc import Iterator, Mapping
@@ -28,7 +31,16 @@ from cprbm.chain import Mechanism, Row, apart_ends, stop_angle, unit_direction
 from cprbm.continuation.closing import CLOSED, drawn_names, kept_open, least_gap, located, pressing, pressing_names
 from cprbm.continuation.driver import Driver, StepError
 from cprbm.continuation.path import Way
-from cprbm.equilibrium import NotConvergedError, Solved, State, System, equilibrium, repeated_rows, rest_state
+from cprbm.equilibrium import (
+    NotConvergedError,
+    Solved,
+    State,
+    System,
+    equilibrium,
+    repeated_rows,
+    rest_state,
+    with_touching,
+)
 from cprbm.settings import Settings, loose_bodies
 from cprbm_scene import Ending, Mistake
 from cprbm_scene.answer import Array, Flags
@@ -66,9 +78,8 @@ def assembled(system: System, settings: Settings) -> Driver:
         passed = system.limits & (first.values < 0.0)
         if system.mechanism.scene.assembly is None and passed.any():
             # rounded coordinates of a beam drawn beyond an edge at the own pin: the beam turns to the edge
-            closed = replace(first.state, driven=first.state.driven | passed)
-            first = equilibrium(system, closed, settings.iterations)
-        first = landed(system, first, settings.iterations)
+            first = equilibrium(system, replace(first.state, driven=first.state.driven | passed), settings.iterations)
+        first = with_touching(landed(system, first, settings.iterations))
     except NotConvergedError as failure:
         raise StepError(Ending.STEP_TOO_SMALL, f"no equilibrium as drawn: {failure}") from failure
     driver = Driver(system, settings, first, np.zeros(len(loose), dtype=bool), drawn=drawn_names(system, state))

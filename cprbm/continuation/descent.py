@@ -64,8 +64,7 @@ def descend(system: System, saddle: Solved, curvature: float, target: Array, act
     Raises:
         NotConvergedError: the descent does not end.
     """
-    start = replace(saddle.state, target=target)
-    state, strength = _kicked(system, start, curvature, acting, iterations)
+    state, strength = _kicked(system, replace(saddle.state, target=target), curvature, acting, iterations)
     energy, last, kicks = potential(system, state), 0.0, 0
     stiffest = STIFFEST * strength
     for _ in range(STEPS):

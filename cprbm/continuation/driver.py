@@ -199,8 +199,7 @@ class Driver:
         """
         turn = turned(self.solved, solved)
         if turn > largest:
-            sentence = f"a link turned by {turn:.2f} rad in one load step"
-            raise StepError(Ending.STEP_TOO_SMALL, sentence, too_long=True)
+            raise StepError(Ending.STEP_TOO_SMALL, f"a link turned by {turn:.2f} rad in one load step", too_long=True)
 
     def _equilibrium(self, state: State) -> Solved:
         solved = equilibrium(self.system, state, self.settings.iterations)

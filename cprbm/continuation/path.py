@@ -136,8 +136,7 @@ def energy_before(solved: Solved, change: Array, part: float) -> float:
 
 def turned(before: Solved, after: Solved) -> float:
     """Largest turn of a link or a body between two states, rad."""
-    system = before.system
-    return float(np.abs(after.state.z - before.state.z)[system.turns].max())
+    return float(np.abs(after.state.z - before.state.z)[before.system.turns].max())
 
 
 def pressing_joints(solved: Solved) -> list[tuple[int, int]]:

@@ -6,7 +6,7 @@ from cprbm.equilibrium.contact_set import NotConvergedError, with_fixed_places
 from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.neighbours import points_between
 from cprbm.equilibrium.solving import Solved, at_state, balanced_forces, equilibrium, repeated_rows, shared_multipliers
-from cprbm.equilibrium.stability import Mode, blocked, softest
+from cprbm.equilibrium.stability import Mode, blocked, softest, with_touching
 from cprbm.equilibrium.system import State, System, hidden_forces, rest_state, system_of
 
 __all__ = [
@@ -33,4 +33,5 @@ __all__ = [
     "squares_of",
     "system_of",
     "with_fixed_places",
+    "with_touching",
 ]

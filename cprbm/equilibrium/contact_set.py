@@ -197,8 +197,8 @@ def solve_set(system: System, start: State, iterations: int, springs: Springs | 
         if arrived and not changed:
             room[:] = 0.0
             if _settle_set(geometry, z, settling, len(closed), FINDING) == 0:
-                settled = replace(contacts, places=places, closed=closed)
-                return Touched(replace(start, z=z, contacts=settled), gaps, curvatures, iteration)
+                state = replace(start, z=z, contacts=replace(contacts, places=places, closed=closed))
+                return Touched(state, gaps, curvatures, iteration)
     raise NotConvergedError(f"{iterations} iterations did not converge")
 
 

@@ -32,6 +32,9 @@ ACCURACY = 1e-6
 STIFF = 1e-3
 """Share of the stiffest spring's compliance below which a compliance is round-off: no direction is free."""
 
+NEUTRAL = 1e-9
+"""Curvature, in EI/ℓ², that counts as none: round-off of a mechanism that moves without bending a beam is 1e-13."""
+
 VECTORS = 6
 """Lanczos vectors before a restart: the softest mode is well apart from the others."""
 
@@ -72,6 +75,19 @@ def blocked(solved: Solved) -> Solved:
     return solved
 
 
+def with_touching(solved: Solved) -> Solved:
+    """The state with all touching places closed where a motion costs no energy; else the state.
+
+    Raises:
+        NotConvergedError: the touching places repeat one another.
+    """
+    if not solved.system.geometry.pairs or softest(solved).curvature > NEUTRAL:
+        return solved
+    contacts, touching = _touching(solved)
+    closed = contacts.closed | touching
+    return at_state(solved.system, replace(solved.state, contacts=replace(contacts, closed=closed)))
+
+
 def _touching(solved: Solved) -> tuple[Contacts, Flags]:
     """Contacts with places at touching minima between joints, and the touching open places."""
     geometry, z, contacts = solved.system.geometry, solved.state.z, solved.state.contacts
@@ -82,8 +98,8 @@ def _touching(solved: Solved) -> tuple[Contacts, Flags]:
         places = joined(places, points)
     closed = np.concatenate([contacts.closed, np.zeros(len(places.pair) - len(contacts.closed), dtype=bool)])
     every = replace(contacts, places=places, closed=closed)
-    allowed = closable(curves, places, closed, geometry.sites.columns)[0]
-    return every, ~closed & allowed & (places.shares == 0) & (np.abs(every.gaps(geometry, z)) < TOUCHING)
+    open_places = closable(curves, places, closed, geometry.sites.columns)[0] & ~closed
+    return every, open_places & (places.shares == 0) & (np.abs(every.gaps(geometry, z)) < TOUCHING)
 
 
 def _softest(solved: Solved) -> Mode:

@@ -99,8 +99,8 @@ def _drives(view: View) -> Iterator[PointForce]:
             force = -view.multipliers[name] * np.array(unit_direction(drive.direction))
             yield PointForce(name, view.scene.body_of(drive.point), nan, view.place(drive.point), force, 0.0)
         else:
-            place = view.place(next(iter(view.scene.bodies[drive.body].points)))
-            yield PointForce(name, drive.body, nan, place, NO_FORCE, -view.multipliers[name])
+            first = next(iter(view.scene.bodies[drive.body].points))
+            yield PointForce(name, drive.body, nan, view.place(first), NO_FORCE, -view.multipliers[name])
 
 
 def _pins(view: View) -> Iterator[PointForce]:
@@ -171,8 +171,9 @@ class Statics:
 
     def __init__(self, view: View) -> None:
         self.view = view
-        kinds = _joints, _guides, _drives, _pins, _stops, _contacts
-        self.forces = tuple(force for forces in kinds for force in forces(view))
+        self.forces = tuple(
+            force for forces in (_joints, _guides, _drives, _pins, _stops, _contacts) for force in forces(view)
+        )
         self.cuts = cache(self._cuts)
 
     def state(self, beam: str) -> BeamState:
