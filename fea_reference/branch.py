@@ -1,19 +1,19 @@
-"""Following a branch of equilibria by its arc length, through where its load turns back.
+"""Path following of a branch of equilibria by arc length, through limit points.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-z, λ    state, and value of the stepped load or drive: both unknown
+z, λ    state, and value of the stepped parameter: both unknown
 R, K    unbalanced forces and their tangent; f = −∂R/∂λ
 t, τ    direction of the branch, dz/ds and dλ/ds
-w       weights of an arc length: the mean square of all motions, and of λ over a span
+w       weights of the arc length: mean square of all motions, and of λ over a span
 ======  =====================================================================================
 
-From a point (z₀, λ₀) the next one at distance s along (t, τ) has
+From a point (z₀, λ₀) with direction (t, τ) the next point at distance s satisfies
 
     R(z, λ) = 0,     t·w (z − z₀) + w_λ τ (λ − λ₀) = s,
 
-which is regular where K is not because λ turns back (Riks, Int. J. Solids Struct. 15 (1979) 529; Keller, in
+which is regular at limit points, where K is singular (Riks, Int. J. Solids Struct. 15 (1979) 529; Keller, in
 Applications of Bifurcation Theory, 1977, p. 359).
 """
 
@@ -35,16 +35,15 @@ from fea_reference.system import System, assemble, factors, load_direction
 from fea_reference.touch import Contact, Penalty
 
 _ITERATIONS = 20
-_NEAR = 1e-9  # of a way along which a place is sought: how near it is known
+_NEAR = 1e-9  # relative accuracy of a root along the arc
 _ROUNDED = 4.0 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """What stays the same along a piece of a branch: all but the state and the value that is stepped.
+    """Constant data of a branch: model, settings, penalties, constraints and the values of other parameters.
 
-    ``values`` are those of all that is stepped, of which number ``load`` is; ``span`` is what its changes are measured
-    by.
+    ``load`` is the number of the stepped parameter among ``values``; ``span`` is the reference for its changes.
     """
 
     model: Model
@@ -56,14 +55,14 @@ class Branch:
     span: float
 
     def at(self, value: float) -> Array:
-        """The values of all that is stepped, (number,)."""
+        """Values (number,) of all stepped parameters."""
         values = self.values.copy()
         values[self.load] = value
         return values
 
     @property
     def weights(self) -> Array:
-        """w of the unknowns, (size,)."""
+        """w (size,) of the unknowns."""
         moving = self.model.moving
         weights = np.zeros(self.model.size)
         weights[moving] = 1.0 / moving.size
@@ -71,13 +70,15 @@ class Branch:
 
     @property
     def weight(self) -> float:
-        """w of the value."""
+        """w of the stepped parameter."""
         return 1.0 / self.span**2
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """An equilibrium on a branch: the ``value``, its softest ``mode``, and the direction ``way`` (t), ``rate`` (τ)."""
+    """A point of a branch: the ``value``, the system, the softest ``mode``, and the direction ``way`` (t), ``rate``
+    (τ).
+    """
 
     value: float
     system: System
@@ -87,12 +88,14 @@ class Place:
 
     @property
     def curvature(self) -> float:
-        """The smallest."""
+        """The smallest curvature."""
         return self.mode.curvature
 
 
 def place(branch: Branch, value: float, system: System, before: tuple[Array, float]) -> Place | None:
-    """The place of an equilibrium, its direction that which goes with the one ``before``; None where it has none."""
+    """Point of a branch at an equilibrium, with a direction in the sense of ``before``; None if there is no
+    direction.
+    """
     f = load_direction(branch.model, branch.load, system.z, system.acting)
     solved = _solve(branch, system, f, before, np.zeros(branch.model.size), 1.0)
     if solved is None:
@@ -105,7 +108,7 @@ def place(branch: Branch, value: float, system: System, before: tuple[Array, flo
 
 
 def onwards(branch: Branch, start: Place, length: float) -> Place | None:
-    """The place at a ``length`` of arc beyond ``start``; None where Newton's method finds none."""
+    """The point at arc ``length`` beyond ``start``; None if Newton's method fails."""
     model, settings = branch.model, branch.settings
     z, value = advance(model, start.system.z, length * start.way), start.value + length * start.rate
     foreseen = {one.pair: one.foreseen(length * start.way) for one in start.system.touches}
@@ -138,9 +141,9 @@ def onwards(branch: Branch, start: Place, length: float) -> Place | None:
 
 
 def sought(branch: Branch, start: Place, length: float, size: Callable[[Place], float]) -> Place | None:
-    """The place just behind where a ``size`` goes from positive to negative, within a ``length`` of arc from ``start``.
+    """The point just behind a sign change of ``size`` from positive to negative, within arc ``length`` of ``start``.
 
-    None where Newton's method finds no place on the way there.
+    None if Newton's method fails on the way.
     """
     behind: list[tuple[float, Place]] = []
 
@@ -166,7 +169,7 @@ def sought(branch: Branch, start: Place, length: float, size: Callable[[Place], 
 def _solve(
     branch: Branch, system: System, f: Array, along: tuple[Array, float], right: Array, last: float
 ) -> tuple[Array, float] | None:
-    """K t − f τ = ``right`` and w t₀·t + w τ₀ τ = ``last``, of the direction ``along`` (t₀, τ₀)."""
+    """Solution of K t − f τ = ``right`` and w t₀·t + w τ₀ τ = ``last``, with ``along`` (t₀, τ₀); None if singular."""
     way, rate = along
     matrix = bordered(system.tangent, -f, branch.weights * way, branch.weight * rate)
     try:
@@ -177,7 +180,7 @@ def _solve(
 
 
 def bordered(K: csc_matrix, column: Array, row: Array, corner: float) -> csc_matrix:
-    """K (size, size) with one more ``column`` and ``row`` (size,) each, and what is in the ``corner``."""
+    """K (size, size) bordered by a ``column`` and a ``row`` (size,) and the ``corner``."""
     size = column.size
     below, beside = np.flatnonzero(row), np.flatnonzero(column)
     ends = K.indptr[below + 1]

@@ -1,4 +1,4 @@
-"""What makes a station's answer believable."""
+"""Certificate of a station's answer."""
 
 import numpy as np
 
@@ -15,22 +15,22 @@ from fea_reference.yielding import FELT, felt
 
 _VIOLATION = 1e-9
 _BALANCE = 1e-8
-_RESOLVED = 0.05  # of the thickness: overlap with what is rigid, whose penalty is as stiff as the elements can follow
-_FROM_AFAR = 0.05  # of the thickness: a gap across which something may press
-_SLENDER = 0.01  # of the longest beam: the most that stands for the thickness there
-_SOFT = 0.05  # by which a penalty may fall short of the stiffness that its elements ask for
-_NONE_MET = 1e3  # units of round-off of the stiffest element: measured up to twelve from 10 to 640 elements
-_PULLS = 1e-8  # of the largest force or of EI/length: what a stop may pull with
+_RESOLVED = 0.05  # thicknesses: penetration of a rigid body, whose penalty is the stiffest that the elements resolve
+_FROM_AFAR = 0.05  # thicknesses: largest gap with contact pressure
+_SLENDER = 0.01  # lengths of the longest beam: largest reference thickness for this gap
+_SOFT = 0.05  # accepted relative deficit of a penalty against the resolution of the elements
+_NONE_MET = 1e3  # units of round-off of the stiffest element: measured up to twelve for 10 to 640 elements
+_PULLS = 1e-8  # times the largest force or EI/length: largest tension of a stop
 
 
 def certify(march: March) -> Certificate:
-    """Look at the state that the march has reached, summed up anew.
+    """Certificate of the current state, from a fresh assembly.
 
-    The complementarity of a penalty is not zero: the gap that remains times the pressure, over the mean
-    thickness times the largest pressure, is the penetration again.
+    The complementarity of a penalty contact is not zero: gap times pressure, relative to mean thickness times largest
+    pressure, equals the relative penetration.
     """
     model, settings = march.model, march.settings
-    march.renew()  # the loop that came here foresaw pushes
+    march.renew()  # the last Newton iteration used predicted contact forces
     march.poise()
     system = march.system
     free = np.ones(model.size, dtype=bool)
@@ -42,8 +42,8 @@ def certify(march: March) -> Certificate:
     violation = max(violation, *(-stop.room(system.z)[0] for stop in model.stops), 0.0)
     penetration = max((one.penetration / one.pair.measure for one in system.touches), default=0.0)
     force, moment, largest = _balance(model, march.values, system)
-    # What is left over all is the sum of what is left at every node; round-off adds up like a random walk.  What bends
-    # a beam bears generalised forces much larger than any that acts on it from outside.
+    # The sum of residuals of all nodes: round-off adds like a random walk. Generalised forces in bent beams exceed the
+    # external forces by far.
     balance = max(_BALANCE, system.floor * float(np.sqrt(model.node_dofs.shape[1])) / largest)
     curvature = march.curvature
 
@@ -117,17 +117,17 @@ def certify(march: March) -> Certificate:
 
 
 def _across(march: March, one: Touch) -> float:
-    """The widest gap across which a contact presses: a pressure that was foreseen begins before the gap is none.
+    """Widest gap with pressure: a lead starts the pressure before the gap closes.
 
-    The lead is that pressure over the penalty, which goes with the bending stiffness: what is taut asks for more.
+    The lead is the predicted pressure over the penalty, which is proportional to EI; a taut beam needs a larger lead.
     """
     return max(0.0, float((one.gap[one.gap < 0.0] + march.penalties[one.pair].lead).max(initial=0.0)))
 
 
 def _drowned(march: March) -> bool:
-    """Whether a drive meets resistance, and has gone no farther than to where that is round-off.
+    """True if a drive meets resistance, but its reaction so far is below round-off.
 
-    What turns or shifts all as one meets no more than elements, of 12 EI/h³, are rounded to, however far it goes.
+    A rigid motion meets only the round-off of elements, of 12 EI/h³, at any distance.
     """
     model = march.model
     none = _NONE_MET * float(np.finfo(float).eps) * model.stiffest / float(model.elements.length.min())
@@ -140,12 +140,13 @@ def _drowned(march: March) -> bool:
 
 
 def _balance(model: Model, values: Array, system: System) -> tuple[float, float, float]:
-    """|ΣF| and |ΣM| about the origin of loads, supports, guides and drives, and the largest force or moment in these.
+    """|ΣF| and |ΣM| about the origin of loads, supports, guides and drives, and the largest force or moment among
+    them.
 
-    Both are over that if it is no round-off.
+    Both sums are relative to this largest value if it exceeds round-off.
 
-    A contact's two forces are opposite on one line: they cancel in both sums, unless one of them is on what
-    is rigid and fixed to the ground, which makes the other a support's.
+    The two forces of a contact are opposite on one line and cancel in both sums. A contact force on a fixed body is a
+    reaction of the support.
     """
     z = system.z
     forces: list[Array] = []
@@ -187,7 +188,7 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float,
             forces.append(one.force.sum(axis=1))
             moments.append(float((one.x[0] * one.force[1] - one.x[1] * one.force[0]).sum()))
     largest_force = max((float(np.hypot(*force)) for force in forces), default=0.0)
-    # Forces that vanish are judged by the moments, and these by them: lengths are of order one here.
+    # vanishing forces are judged relative to the moments and conversely: lengths are of order one
     scale = max(largest_force, max(map(abs, moments), default=0.0))
     scale = scale if scale > NOTHING * system.floor else 1.0
     return float(np.hypot(*sum(forces, np.zeros(2)))) / scale, abs(sum(moments)) / scale, scale

@@ -1,9 +1,9 @@
-"""Frictionless contact of a beam with a rigid circle by a penalty along the beam's neutral line.
+"""Frictionless penalty contact of a beam with a rigid circle, integrated along the beam's neutral line.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-x, c    point of the neutral line, centre of the circle: X + R(φ) arm from its body's own
+x, c    point of the neutral line, centre of the circle: X + R(φ) arm from its body's centre
 r, n    distance |x − c| and its direction (x − c)/r;  τ is n turned clockwise
 R, T    radius; half of the beam's thickness at ζ, zero for a line
 g       gap r − R − T
@@ -16,15 +16,17 @@ Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the beam's undeformed arc lengt
 
     δg = n·(δx − δc),     δ²g = n·(δ²x − δ²c) + (τ·(δx − δc))²/r,
 
-and by ζ alone g' = n·x' − T', g'' = n·x'' + (τ·x')²/r.  The integral runs over the exact intervals on which g < δ,
-as in :mod:`fea_reference.contact`: the pressure vanishes at their ends.
+and by ζ alone g' = n·x' − T', g'' = n·x'' + (τ·x')²/r. The integral runs over the exact intervals with g < δ, as in
+:mod:`fea_reference.contact`: the pressure vanishes at their ends.
 
-An even beam that lies on a circle has the circle's curvature κ = 1/(R + T), so it has no shear force, so its tension is
-constant and presses it on with N κ (Landau and Lifshitz, Theory of Elasticity, §19).  Where EI varies, the shear force
-is −κ EI', so that N + κ² EI is constant and the pressure κ (N − EI'').  Without a lead, the beam sinks in by
-that over ε, and beside a clamp, which does not, a layer of width (4 EI/ε)^¼ leaves its pressure to the clamp: an
-error of first order in the layer's width in the contact's force.  With δ = κ (N − EI'')/ε at the clamp there is no such
-layer, and what is left, at the end of the zone, is of second order.
+Resting pressure: a prismatic beam on a circle has the constant curvature κ = 1/(R + T), hence no shear force and a
+constant tension, whose pressure is N κ (Landau and Lifshitz, Theory of Elasticity, §19). With varying EI the shear
+force is −κ EI'. Then N + κ² EI is constant and the pressure is κ (N − EI'').
+
+Lead: without a lead the beam penetrates by the pressure over ε. A clamp does not penetrate. Beside a clamp a layer of
+width (4 EI/ε)^¼ therefore transfers its pressure to the clamp, an error of the contact force of first order in the
+layer's width. With δ = κ (N − EI'')/ε at the clamp this layer vanishes; the remaining error, at the end of the zone,
+is of second order.
 """
 
 from __future__ import annotations
@@ -43,18 +45,19 @@ from fea_reference.swept import gone_over
 from fea_reference.touch import Circle, Penalty, Touch, gauss, together
 from fea_reference.zones import Gap, Zones, negative, stepped
 
-_BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states
-_SAGITTA = 0.15  # of the square of a way along an arc, by which its chord may leave it
+_BETWEEN = np.arange(1, 8) / 8.0  # shares of the way between two states
+_SAGITTA = 0.15  # times the square of a motion along an arc: largest deviation of its chord
 _AT_END = 1e-6  # elements
-_LAYERS = 32.0  # of the first penalty, in a beam's length
-_RESOLVED = 3.0  # layers in an element: what they leave is of second order in their width
-# Layers in a beam's length at the standard penetration: what they leave is below 1e-7, and thinner ones make more of a
-# clamp's place being rounded. Penetration goes with the fourth power of the layer: who asks for less gets thinner ones.
+_LAYERS = 32.0  # layers per beam length, for the first penalty
+_RESOLVED = 3.0  # layers per element: their error is of second order in the layer's width
+# Layers per beam length at the standard penetration: their error is below 1e-7, while thinner layers amplify the
+# round-off of a clamp's place. Penetration goes with the fourth power of the layer, so that a smaller requested
+# penetration has thinner layers.
 _THINNEST, _STANDARD = 800.0, 1e-4
 
 
 def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...]:
-    """The scene's contacts of a beam with a circle, ``penetration`` as in the settings."""
+    """The scene's contacts of a beam with a circle; ``penetration`` as in the settings."""
     found = []
     thinnest = _THINNEST * (_STANDARD / penetration) ** 0.25
     beams = [beam.name for beam in model.beams]
@@ -87,12 +90,12 @@ def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...
 
 
 def zones_of(model: Model, circle: Circle, z: State) -> Zones:
-    """Where the beam overlaps the circle in state ``z``."""
+    """Zones of overlap of the beam with the circle in state ``z``."""
     return model.leads.found(z, (circle, 0.0), lambda: (_find(_seen(model, circle, z), circle, 0.0), {}))[0]
 
 
 def room(model: Model, circle: Circle, z: State) -> float:
-    """How far the beam can move against the circle before it may touch it: a lower bound."""
+    """Lower bound of the relative motion before the beam may touch the circle."""
     seen = _seen(model, circle, z)
     return float(np.abs(seen.away).min()) - circle.radius - circle.edge.farthest - seen.line.longest
 
@@ -102,15 +105,15 @@ def _seen(model: Model, circle: Circle, z: State) -> _Seen:
 
 
 def centre(model: Model, circle: Circle, z: State) -> Array:
-    """Where the circle's centre is, (2,)."""
+    """Current centre (2,) of the circle."""
     return model.carried(model.bodies[circle.body], np.array(circle.arm), z)
 
 
 def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
-    """Whether a beam that goes straight from one state to another sweeps over the circle's centre or cuts its inside.
+    """True if a beam, straight from one state to another, sweeps over the circle's centre or cuts its inside.
 
-    It sweeps over the centre if the loop of its old place, its end's way, its new place backwards and its start's
-    way winds round that.  On the way it may lie in the circle by what the straight way of a turning beam leaves out.
+    The beam sweeps over the centre if the closed loop of old line, end's path, new line and start's path winds around
+    the centre. During the motion the beam may lie in the circle by the deviation of straight paths of a turning beam.
     """
     beam = model.beams[circle.first]
     old, new = (model.line(beam, z).points - centre(model, circle, z)[:, None] for z in (before, after))
@@ -123,14 +126,14 @@ def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
     lines = [model.line(beam, z) for z in (before, after)]
     first, last, over = gone_over((lines[0], centres[0]), (lines[1], centres[1]))
     if (over & (first.d * last.d < 0.0)).any():
-        return True  # a circle smaller than what chords leave of arcs
+        return True  # a circle smaller than the distance between chords and arcs
     way = np.hypot(*(new - old)).max()
     allowed = circle.radius + circle.edge.nearest - circle.deepest - _SAGITTA * way**2
     return any(np.hypot(*(old + part * (new - old))).min() < allowed for part in _BETWEEN)
 
 
 def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: State) -> Touch:
-    """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
+    """Contact energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[circle.first], model.bodies[circle.body]
     seen, c = _seen(model, circle, z), centre(model, circle, z)
     line = seen.line
@@ -182,10 +185,10 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
 
 
 def resting_pressure(model: Model, touch: Touch, circle: Circle, z: State) -> float:
-    """κ (N − EI'') where a zone meets an end of the beam, else in the middle; zero where the beam is compressed.
+    """κ (N − EI'') at the beam's end in contact, else in the middle of the zone; zero in compression.
 
-    Zero too where what meets the end is less than an element: beside an end that touches and leaves the circle at once.
-    N + κ² EI, which is constant, is the median along the zone, which its end cannot spoil.
+    Also zero if the contact at the end is shorter than an element: the end leaves the circle at once. The constant N
+    + κ² EI is the median along the zone, insensitive to the zone's end.
     """
     if not touch.closed:
         return 0.0
@@ -213,9 +216,9 @@ def resting_pressure(model: Model, touch: Touch, circle: Circle, z: State) -> fl
 
 @dataclass(frozen=True)
 class _Seen:
-    """A neutral ``line`` from the centre of a circle: its nodes by ``away`` x − c (n+1,), and ``over`` (n+1,) there.
+    """A neutral ``line`` relative to a circle's centre: vectors ``away`` x − c (n+1,) of its nodes.
 
-    That is r² − (R + T)² of the least T, with all digits.
+    ``over`` (n+1,) is r² − (R + T)² there, for the least T, without cancellation.
     """
 
     line: NeutralLine
@@ -224,7 +227,7 @@ class _Seen:
 
     @classmethod
     def of(cls, line: NeutralLine, c: Array, circle: Circle) -> _Seen:
-        """Of a circle about ``c`` (2,)."""
+        """Relative to a circle with centre ``c`` (2,)."""
         away, error = summed(line.nodes, np.full(line.nodes.shape, -complex(*c), dtype=np.complex128))
         rest = error + line.rests
         (x, lost_x), (y, lost_y) = squared(away.real), squared(away.imag)
@@ -235,7 +238,7 @@ class _Seen:
         return cls(line, away, over + (lost_in_difference + lost_in_sum - lost_of_own + lost))
 
     def near(self, circle: Circle, lead: float) -> Ints:
-        """Elements (k,) in which the gap may be less than a ``lead``, and those about the node that is nearest."""
+        """Elements (k,) with a possible gap below ``lead``, and the elements at the nearest node."""
         r = np.abs(self.away)
         least = np.minimum(r[:-1], r[1:])
         reach = circle.radius + circle.edge.farthest + max(lead, 0.0) + self.line.longest
@@ -246,10 +249,10 @@ class _Seen:
 
 
 def _clearance(seen: _Seen, circle: Circle, there: Around, zeta: Array) -> tuple[Array, Complex, Array]:
-    """r (k,), n (k,) and g (k,) at places ``zeta`` (k,): g by (r² − (R + T)²)/(r + R + T) of the least T.
+    """r (k,), n (k,) and g (k,) at places ``zeta`` (k,); g is (r² − (R + T)²)/(r + R + T) for the least T.
 
-    At an element's first node the numerator has all its digits; from there on it changes by no more than the
-    element is long, and so does its round-off.
+    The numerator is exact at an element's first node and changes by at most the element's length, with a round-off to
+    match.
     """
     q, d = seen.away[there.element], there.way
     away = q + d
@@ -262,7 +265,7 @@ def _clearance(seen: _Seen, circle: Circle, there: Around, zeta: Array) -> tuple
 
 
 def _find(seen: _Seen, circle: Circle, lead: float) -> Zones:
-    """All intervals on which the gap is less than ``lead``; those of a thick beam end at its knots too."""
+    """Intervals with a gap below ``lead``, divided at the knots of a thick beam."""
     line = seen.line
 
     def at(zeta: Array, none: Array) -> Gap:

@@ -1,4 +1,4 @@
-"""Frictionless contact of two beams, or of one and itself, by a penalty along the first one's neutral line.
+"""Frictionless penalty contact of two beams, or self-contact, integrated along the first beam's neutral line.
 
 ======  =====================================================================================
 symbol  meaning
@@ -7,37 +7,36 @@ symbol  meaning
 δ       lead: the gap at which the pressure begins
 p       line pressure ε⟨δ − g⟩
 N, EI   axial force and bending stiffness of either beam
-κ       curvature of the first where it lies on the second, positive where that is convex
+κ       curvature of the first beam on the second, positive where the second is convex
 r, p_τ  x − x_m, and τ·δr
 k       n·δx_m'
 J, a    |x_m'| and n·x_m'';  Z = J² − d a
 ======  =====================================================================================
 
-Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the first beam's undeformed arc length.  At the closest point
+Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the first beam's undeformed arc length. At the closest point
 
     δg = side n·δr,     δ²g = side { n·δ²r − [ a p_τ² + d k² + 2 J p_τ k ] / Z }
 
-(Konyukhov and Schweizerhof, Computational Contact Mechanics, ch. 5, in the plane).  The integral runs over
-the exact intervals on which g < δ, so the pressure vanishes at their moving ends, which therefore add nothing
-to either derivative, and what is integrated is smooth in between.  It does not vanish where an interval ends
-because the second beam does; there ½ ε (δ − g)²/|x'·τ| along τ is missing, x' by arc length.  So a beam whose end
-lies over the inside of the other is the first, what is missing all the same is measured, and where that is more than
-nothing the beams change places.  Where ends of both lie so, each zone is left to the beam whose end it has
-(:mod:`fea_reference.carrying`).
+(Konyukhov and Schweizerhof, Computational Contact Mechanics, ch. 5, in the plane). The integral runs over the exact
+intervals with g < δ. The pressure vanishes at their moving ends, so that the ends add nothing to either derivative,
+and the integrand is smooth in between. The pressure does not vanish where the second beam ends. There the term ½ ε (δ
+− g)²/|x'·τ| along τ is missing, x' by arc length. Therefore a beam with an end over the inside of the other becomes
+the first; the missing force is measured all the same, and a significant one exchanges the beams. If both beams have
+such ends, every zone is integrated along the beam of its end (:mod:`fea_reference.carrying`).
 
-Where a thickness varies, g is the least of |x − x_m| − T − T_m over x_m, T and T_m being half of the thickness at
-either place (:mod:`fea_reference.facing`): a zone's middle is where that is least over x as well, n·x' = T' and, away
-from corners, −n·x_m' = T_m'.  n leans from the second beam's normal and τ with it, J is τ·x_m', and all the rest stays
-as it is; at a corner that juts out ζ_m is fixed, and δ²g = side { n·δ²r + p_τ²/d }.  At one that goes in, n jumps from
-one side to the other; as in :mod:`fea_reference.face` the place at which it does moves, and adds −ε g (Δδg)²/Δg' to the
-second derivatives, of the first order in the jump of T_m' and in what the beams sink in there.  That is left out.
+With varying thickness g is the minimum of |x − x_m| − T − T_m over x_m, where T and T_m are the half thicknesses
+(:mod:`fea_reference.facing`). At the middle of a zone g is minimal over x, too: n·x' = T' and, away from corners,
+−n·x_m' = T_m'. n and τ lean from the second beam's normal, and J is τ·x_m'; the other formulas stay. At a convex
+corner ζ_m is fixed and δ²g = side { n·δ²r + p_τ²/d }. At a concave corner n jumps. As in :mod:`fea_reference.face`
+the moving place then adds −ε g (Δδg)²/Δg' to the second derivatives; this term, of first order in the jump of T_m'
+and in the penetration, is neglected.
 
-Beams that lie on each other are parallel, and each is in balance across.  Per length of the first that is
-p = N₁ κ − EI₁ κ'' and −p = N₂ κ − EI₂ κ'', but for the thickness over the radius in what belongs to κ''.  Hence
+Resting pressure: beams that lie on each other are parallel, and both satisfy the transverse equilibrium. Per length
+of the first, p = N₁ κ − EI₁ κ'' and −p = N₂ κ − EI₂ κ'', up to the ratio of thickness to radius in κ''. Hence
 
     p = κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂),
 
-and δ = p/ε lets it act where the gap is zero; see :mod:`fea_reference.circle` for what it would do otherwise.
+and with δ = p/ε the pressure acts at zero gap; :mod:`fea_reference.circle` describes the error without this lead.
 """
 
 from __future__ import annotations
@@ -77,16 +76,16 @@ from fea_reference.zones import (
 )
 
 _AT_END = 1e-6  # elements
-_BESIDE = 2.0  # mean thicknesses: held ends no further apart stand beside each other
-_SLENDER = 0.01  # of the longest beam: what stands for the thickness of beams that touch as lines
-_LYING = 1.0  # elements: what is shorter at an end does not lie on the other beam
+_BESIDE = 2.0  # mean thicknesses: distance of held ends that stand beside each other
+_SLENDER = 0.01  # lengths of the longest beam: substitute for the thickness of beams in contact as lines
+_LYING = 1.0  # elements: least length of a zone at an end with a resting pressure
 _LINE = 7  # unknowns of an element's line
-_WEIGHTLESS = 1e-6  # of what all zones press with
-_LAYERS = 32.0  # the widest in a beam's length
+_WEIGHTLESS = 1e-6  # least share of the force of all zones
+_LAYERS = 32.0  # layers per beam length, for the widest layer
 
 
 def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
-    """The scene's contacts of beams, their sides seen in the undeformed state."""
+    """The scene's contacts of two beams, with their sides in the undeformed state."""
     found = []
     number = {beam.name: i for i, beam in enumerate(model.beams)}
     for name, contact in scene.contacts.items():
@@ -116,10 +115,10 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
 
 
 def looked_at(model: Model, pair: Pair, z: State) -> Pair:
-    """Two beams that are apart in state ``z``, in the order and on the sides in which they lie there.
+    """The pair with order and sides of the beams as they lie apart in state ``z``.
 
-    What is beyond the other's end at rest has no side, and an end of the second may come to be what is nearest to the
-    first: on which side the beams touch is told by where they were last.
+    Beams next to each other's ends have no side at rest, and an end of the second may approach the first. The side is
+    that of the last state in which the beams lay opposite to each other.
     """
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
     away = end_apart(second, first)
@@ -130,7 +129,7 @@ def looked_at(model: Model, pair: Pair, z: State) -> Pair:
 
 
 def _loose(model: Model, scene: Scene, beam: BeamPart, other: BeamPart) -> tuple[int, ...]:
-    """Ends of a beam that no body holds beside an end of another: 0 for its start, 1 for its end."""
+    """Ends of ``beam`` (0 start, 1 end), except those on the same body as, and beside, an end of ``other``."""
     mine, theirs = (
         [
             (_holder(scene, end), place)
@@ -151,19 +150,19 @@ def _loose(model: Model, scene: Scene, beam: BeamPart, other: BeamPart) -> tuple
 
 
 def _free(line: NeutralLine, other: NeutralLine, joined: float) -> tuple[float, float]:
-    """First and last place ζ of a beam, at least a length ``joined`` from an end that it shares with another beam."""
+    """First and last place ζ with contact, at least ``joined`` from an end shared with the other beam."""
     shared = np.abs(line.nodes[[0, -1], None] - other.nodes[[0, -1]]).min(axis=1) <= MEETING
     first, last = np.where(shared, min(joined / float(line.lengths.min()), line.n), 0.0)
     return float(first), max(float(first), float(line.n - last))
 
 
 def _holder(scene: Scene, end: BeamEnd) -> str | None:
-    """What an end moves with, none of all that stay; None of a free end."""
+    """Body that an end moves with, the same for all fixed bodies; None for a free end."""
     return None if isinstance(end, FreeEnd) else frame_of(scene, scene.body_of(end.point))
 
 
 def _tapers(model: Model, first: BeamPart, second: BeamPart, *, thick: bool) -> Tapers | None:
-    """How the thickness of either varies, if any does and it matters."""
+    """Thickness variation of both beams; None without variation, or for contact as lines."""
     if not thick or not (first.record.tapered or second.record.tapered):
         return None
     edges = [
@@ -174,7 +173,7 @@ def _tapers(model: Model, first: BeamPart, second: BeamPart, *, thick: bool) -> 
 
 
 def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
-    """The scene's contacts of beams with themselves."""
+    """The scene's self-contacts."""
     found = []
     for name, contact in scene.contacts.items():
         if not isinstance(contact, SelfContact):
@@ -194,29 +193,29 @@ def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
 
 
 def _grounded(scene: Scene, beam: str, which: Literal["start", "end"]) -> bool:
-    """Whether an end is held by what does not move, and cannot come to lie on the beam's side."""
+    """True if the end is on a fixed body, so that it cannot come to lie on the beam's side."""
     end = getattr(scene.beams[beam], which)
     return not isinstance(end, FreeEnd) and not frame_of(scene, scene.body_of(end.point))
 
 
 def _penalties(model: Model, beam: BeamPart, thickness: float) -> tuple[float, float, float]:
-    """EI over the fourth power of the widest layer, of the first, and of the thinnest."""
+    """EI over the fourth power of the widest, the first and the thinnest layer."""
     h = float(model.elements.length[beam.elements.start])
     first = max(h, 0.5 * thickness)
     return beam.softest / max(first, beam.length / _LAYERS) ** 4, beam.softest / first**4, beam.softest / h**4
 
 
 def zones_of(model: Model, pair: Pair, z: State) -> Zones:
-    """Where the beams of a pair overlap in state ``z``."""
+    """Zones of overlap of a pair in state ``z``."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
     return overlap(first, second, pair.distance, _seen(model, pair, z, pair.distance), 0.0, _rays(pair, second))
 
 
 def least_at_ends(model: Model, pair: Pair, z: State) -> float:
-    """The least gap of the ends of the second beam that may come to lie on the first; infinite where none is near.
+    """Least gap of the second beam's ends that may touch the first; infinite without such an end nearby.
 
-    The gap along the first is normal to the second.  An end meets the first's side along the normal of that, and where
-    the beams are not parallel that is the less.
+    Contact along the first is measured normal to the second. An end of the second touches the first's side along the
+    first's normal; between beams at an angle this gap is smaller.
     """
     if not pair.ends_m:
         return np.inf
@@ -225,18 +224,18 @@ def least_at_ends(model: Model, pair: Pair, z: State) -> float:
     near = nearest(second.nodes[zeta.astype(int)], first.nodes)[1].astype(float)
     there = gap(second, first, one_side(about.side), pair.distance, about.tapers, zeta, near)
     inside = there.found & (there.zeta_m > _AT_END) & (there.zeta_m < first.n - _AT_END)
-    # deeper is the other side, which it has come to round an end
+    # a deeper end came around an end of the first and lies on the other side
     return float(there.g[inside & (there.g > -0.5 * pair.scale)].min(initial=np.inf))
 
 
 def room(model: Model, pair: Pair, z: State) -> float:
-    """How far two beams can move against each other before a place of one is seen from the other: a lower bound."""
+    """Lower bound of the relative motion before any place of a beam faces the other."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
     return nodes_apart(first, second) - out_of_reach(first, second, pair.distance)
 
 
 def ends_apart(model: Model, pair: Pair, z: State) -> float:
-    """How far places of the first beam are from touching the circles about the ends of the second: a lower bound."""
+    """Lower bound of the distance between the first beam and the circles about the second's ends."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
     return float(nearest(second.nodes[[0, -1]], first.nodes)[0].min()) - first.longest - pair.distance
 
@@ -253,16 +252,16 @@ def _seen(model: Model, pair: Pair, z: State, T: float) -> Survey:
 
 
 def _rays(pair: Pair, second: NeutralLine) -> list[Borders]:
-    """At which of the second beam's places the gap's curvature jumps; of a beam and itself by either side."""
+    """Places of the second beam with a jump of the gap's curvature; for self-contact of both sides."""
     sides = (pair.side,) if pair.roles is None else (1.0,) if pair.tapers is None else (1.0, -1.0)
     return [borders(second, pair.edge_m, side) for side in sides]
 
 
 def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State, held: float | None = None) -> Touch:
-    """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval.
+    """Contact energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval.
 
-    A ``held`` contact acts, in tension too, where the gap is least by up to that depth: while Newton's method
-    is still far from equilibrium, a contact that was closed before neither vanishes nor hits like a wall.
+    A contact ``held`` at a depth acts, in tension too, where the gap exceeds its minimum by no more than this depth.
+    Far from equilibrium, a contact that was closed then neither vanishes nor becomes a rigid wall in Newton's method.
     """
     distance = pair.distance + penalty.lead
     least = _seen(model, pair, z, distance).least
@@ -304,7 +303,7 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
 
 
 def _overlap(model: Model, pair: Pair, z: State, distance: float, level: float) -> Zones:
-    """Where the gap is below a ``level``, along the first beam, both neutral lines being ``distance`` apart."""
+    """Zones along the first beam with a gap below ``level``, for a ``distance`` of the neutral lines."""
     line, line_m = model.line(model.beams[pair.first], z), model.line(model.beams[pair.second], z)
     if level < line_m.longest:
         return overlap(line, line_m, distance, _seen(model, pair, z, distance), level, _rays(pair, line_m))
@@ -313,10 +312,11 @@ def _overlap(model: Model, pair: Pair, z: State, distance: float, level: float) 
 
 @dataclass(frozen=True, slots=True)
 class _Along:
-    """Gauss points (k,) of an integral along the first beam, and the gap there with its derivatives.
+    """Gauss points (k,) along the first beam: elements, places and points of both lines, and the gap with
+    derivatives.
 
-    Of either line the element, the place and the point, ``ds`` of the first's arc; ``by`` what the first line goes by
-    and then the second, (14, k).
+    ``ds`` (k,) is arc length of the first beam. ``by`` (14, k) and ``by_twice`` (14, 14, k) are derivatives of the
+    gap by the element unknowns of the first line, then of the second.
     """
 
     e: Ints
@@ -332,7 +332,7 @@ class _Along:
     normal: Array
 
     def with_other(self, other: _Along, order: Ints) -> _Along:
-        """These points and those of an integral along the second, put in ``order``."""
+        """These points and the points of an integral along the second beam, in ``order``."""
 
         def both(one: Array, its: Array) -> Array:
             return np.concatenate([one, its], axis=-1)[..., order]
@@ -360,7 +360,7 @@ def _along(model: Model, pair: Pair, distance: float, quadrature: int, z: State,
     width = zones.intervals[:, 1] - zones.intervals[:, 0]
     zeta = (zones.intervals[:, :1] + width[:, None] * share).ravel()
     guess = (zones.zeta_m[:, :1] + np.diff(zones.zeta_m, axis=1) * share).ravel()
-    # An interval lies within one element, and so do its Gauss points.
+    # an interval and its Gauss points lie within a single element
     e, xi = line.locate(zeta)
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
@@ -394,16 +394,17 @@ def _along(model: Model, pair: Pair, distance: float, quadrature: int, z: State,
 
 
 def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
-    """κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂) where a zone meets an end of the first beam, where it matters; else the median.
+    """Resting pressure κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂) at an end of the first beam in contact, else the median of the
+    zones.
 
-    Zero where the beams pull apart, and where what meets the end is less than an element: beside ends that are held
-    side by side and part at once.  Their gap is zero there but for round-off, and has nothing to press against.
+    Zero where the beams pull apart, and for a contact shorter than an element at the end. Ends held side by side may
+    part at once: their gap is zero up to round-off, and no pressure acts.
     """
     if not touch.closed:
         return 0.0
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
     line, line_m = model.line(beam, z), model.line(beam_m, z)
-    zones = touch.zones.chosen(np.argsort(touch.zones.intervals[:, 0]))  # laps of a beam follow each other in no order
+    zones = touch.zones.chosen(np.argsort(touch.zones.intervals[:, 0]))  # self-contact loops are not ordered
     intervals, zone = zones.intervals, zones.numbers
     at_end = np.array([intervals[0, 0] <= _AT_END, intervals[-1, 1] >= line.n - _AT_END])
     widths = [np.ptp(intervals[zone == one]) for one in (zone[[0, -1]][at_end] if at_end.any() else np.unique(zone))]
@@ -425,9 +426,9 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
 
 
 def _missing(model: Model, pair: Pair, penalty: Penalty, z: State, zones: Zones, found: _Along) -> tuple[float, float]:
-    """½ ε g²/|x'·τ|, summed over the intervals' ends that are across from an end of the second beam.
+    """The force ½ ε g²/|x'·τ| missing at intervals cut off by an end of the second beam, and its largest share.
 
-    And the largest share that it is of what a zone presses with; zones without any weight in the whole do not count.
+    The share is relative to the force of the zone; zones with a negligible part of the total force do not count.
     """
     if pair.ended:
         return 0.0, 0.0

@@ -1,4 +1,4 @@
-"""All of a scene's contacts, of whichever kind."""
+"""All of a scene's contacts, of any kind."""
 
 from dataclasses import replace
 
@@ -15,14 +15,14 @@ from fea_reference.touch import Circle, Contact, Face, Pair, Penalty, Touch
 from fea_reference.zones import Zones, none
 
 CLOSED = 1e-9
-"""Of the thickness, a gap that is none."""
+"""Thicknesses: a gap that counts as closed."""
 
 
-_APART = 1e-3  # of the thickness: a gap at which one sees on which side of each other beams lie
+_APART = 1e-3  # thicknesses: gap above which the sides of beams are evident
 
 
 def contacts(scene: Scene, model: Model, penetration: float) -> tuple[Contact, ...]:
-    """What may touch, in the scene's order."""
+    """The scene's contacts in order."""
     every: tuple[Contact, ...] = (
         *contact.pairs(scene, model),
         *contact.selves(scene, model),
@@ -34,12 +34,12 @@ def contacts(scene: Scene, model: Model, penetration: float) -> tuple[Contact, .
 
 
 def zones_of(model: Model, what: Contact, z: State) -> Zones:
-    """Where there is overlap in state ``z``."""
+    """Zones of overlap in state ``z``."""
     return model.overlaps.found(z, what, lambda: _zones_of(model, what, z))
 
 
 def least_gap(model: Model, what: Contact, z: State) -> float:
-    """The least gap in state ``z``; of two beams also where an end of the second is on the side of the first."""
+    """The least gap in state ``z``; for two beams including ends of the second on the side of the first."""
     least = zones_of(model, what, z).least
     if not isinstance(what, Pair) or what.roles is not None or least > FAR:
         return least
@@ -60,7 +60,7 @@ def _zones_of(model: Model, what: Contact, z: State) -> Zones:
 
 
 def touch(model: Model, what: Contact, penalty: Penalty, quadrature: int, z: State, held: float | None = None) -> Touch:
-    """The penalty's energy derivatives, see :func:`fea_reference.contact.touch`; only beams are ever held."""
+    """Contact energy derivatives, see :func:`fea_reference.contact.touch`; only pairs of beams are held."""
     key = what, penalty, quadrature, held
     return model.touches.found(z, key, lambda: _touch(model, what, penalty, quadrature, z, held))
 
@@ -76,10 +76,7 @@ def _touch(model: Model, what: Contact, penalty: Penalty, quadrature: int, z: St
 
 
 def resting_pressure(model: Model, one: Touch, z: State) -> float:
-    """The line pressure that the axial forces give where a beam lies on what it touches, on average.
-
-    On a straight edge they give none.
-    """
+    """Mean line pressure from axial forces where a beam lies on the opposite surface; zero on a straight edge."""
     match one.pair:
         case Pair():
             return contact.resting_pressure(model, one, one.pair, z)
@@ -90,14 +87,14 @@ def resting_pressure(model: Model, one: Touch, z: State) -> float:
 
 
 def looked_at(model: Model, what: Contact, z: State) -> Contact:
-    """The same contact; of a beam and itself with the sides on which its places lie in state ``z``."""
+    """The contact; for self-contact with the sides of state ``z``."""
     if isinstance(what, Pair) and what.roles is not None:
         return replace(what, roles=what.roles.renewed(model.line(model.beams[what.first], z)))
     return what
 
 
 def open_in(model: Model, what: Contact, z: State) -> Contact:
-    """The same of a contact that is open in state ``z``; of two beams that are near each other, as they lie there."""
+    """An open contact in state ``z``; for two beams near each other with the sides of that state."""
     if not isinstance(what, Pair) or what.roles is not None:
         return looked_at(model, what, z)
     apart = least_apart(model, what, z) <= FAR and least_gap(model, what, z) > _APART * what.scale
@@ -105,10 +102,7 @@ def open_in(model: Model, what: Contact, z: State) -> Contact:
 
 
 def room(model: Model, what: Contact, z: State) -> float:
-    """How far what may touch can move, each against the other, before anything of it is seen to: a lower bound.
-
-    Of a beam and itself, and of an edge, nothing is known.
-    """
+    """Lower bound of the relative motion before the contact needs evaluation; −∞ for self-contact and edges."""
     match what:
         case Pair(roles=None):
             return contact.room(model, what, z)
@@ -119,16 +113,16 @@ def room(model: Model, what: Contact, z: State) -> float:
 
 
 def clear(model: Model, what: Contact, z: State) -> float:
-    """How far what may touch can move, each against the other, before it overlaps: by the least gap, a lower bound.
+    """Lower bound of the relative motion before an overlap, from the least gap.
 
-    No two places come nearer to each other by more than they move.  Places of a beam beyond an end of the other have
-    no gap, and are as far from it as from that end; of a line's own ends nothing is known.  That a beam bends double
-    within its own thickness is no motion that its elements follow.
+    No two places approach by more than their motions. Places beyond an end of the other beam have no gap; their
+    distance from the beam is their distance from the end. The ends of a line in self-contact have no bound. A beam
+    folded within its own thickness is beyond the elements.
     """
     least = zones_of(model, what, z).least
     numbers = (what.first, what.second) if isinstance(what, Pair) else (what.first,)
     longest = [model.line(model.beams[i], z).longest for i in numbers]
-    # what is farther than an element may be known by nodes only, and be nearer between them
+    # a distance above an element's length may be between nodes only, and smaller in between
     least = least if least <= longest[-1] else max(longest[-1], least - max(longest))
     if not isinstance(what, Pair) or what.ended:
         return least
@@ -136,7 +130,7 @@ def clear(model: Model, what: Contact, z: State) -> float:
 
 
 def against(model: Model, what: Contact, before: State, after: State) -> float:
-    """The most by which places of what may touch move against each other on the straight way between two states."""
+    """Upper bound of the relative motion on the straight way between two states; infinite for an edge."""
 
     def way(number: int) -> float:
         dofs = model.node_dofs[:2, model.beams[number].nodes]
@@ -156,7 +150,7 @@ def against(model: Model, what: Contact, before: State, after: State) -> float:
 
 
 def passed_through(model: Model, what: Contact, before: State, after: State) -> bool:
-    """Whether what may touch has passed through each other on the way from one state to another."""
+    """True if the bodies of the contact passed through each other between two states."""
     if isinstance(what, Circle | Face):
         gaps = zones_of(model, what, before).least, zones_of(model, what, after).least
         if kept_apart(model, what, gaps, before, after):
@@ -169,7 +163,7 @@ def passed_through(model: Model, what: Contact, before: State, after: State) -> 
     if what.roles is not None:
         line = model.line(model.beams[what.first], before)
         return ends_through(what, line, first) or crosses_itself(first, contact.zones_of(model, what, after))
-    # Lines without thickness cross by what the penalty lets through; that is held, and measured.  Where one just
-    # touches the other, chords cross by what their elements bow.
+    # Lines without thickness cross by the penetration of the penalty, which is held and measured. At mere contact,
+    # chords cross by the sagitta of their elements.
     held = what.distance == 0.0 and least_gap(model, what, after) <= CLOSED * what.scale
     return not held and cross(first, second)

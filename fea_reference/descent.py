@@ -1,26 +1,26 @@
-"""From the end of a branch down to a minimum of the potential energy.
+"""Energy descent from a critical point to a minimum of the potential energy.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-Π       potential energy with what penalties store
+Π       potential energy, with the energy of penalties
 M       lumped mass
 σ       drag: EI per length to the fourth
-z_k     states on the way
-φ       motions along which the end of the branch has no positive curvature
+z_k     states of the descent
+φ       critical mode, without positive curvature
 ======  =====================================================================================
 
-At a value just beyond the end, and from a state a little aside of it along φ, each state is the minimum of
+The value is just beyond the critical point, and the start is displaced along φ. Every state is the minimum of
 
     Π(z) + ½ σ (z − z_k)ᵀ M (z − z_k)
 
-near the one before: one step, backwards in time, of a motion that only a drag resists, which cannot raise Π (the
-proximal point method; Rockafellar, SIAM J. Control Optim. 14 (1976) 877).  Contacts act all the way, stops as
-inequalities.  σ falls as long as the steps are short, until none is needed.
+near its predecessor: an implicit Euler step of a motion resisted by drag alone, which cannot raise Π (proximal point
+method; Rockafellar, SIAM J. Control Optim. 14 (1976) 877). Contacts and stops remain active as inequalities. σ
+decreases while the steps are short, until no drag is needed.
 
-What closes on the way closes at the value of the end, at which the motion begins and rests.
+A contact closing during the descent is recorded at the critical value.
 
-Of both senses of φ the lower counts.  Where both lead equally low, the sense of the moments counts.
+Both senses of φ are tried, and the lower minimum counts. For equally low minima the sense of the moments counts.
 """
 
 from dataclasses import replace
@@ -40,33 +40,33 @@ from fea_reference.state import State
 from fea_reference.system import Drag, System
 from fea_reference.touch import Penalty
 
-_BEYOND = 1e-6  # of the span
-_ASIDE = 1e-4  # the same where another branch goes off: both are as good as one nearer by
-_KICKS = (3e-3, 1e-2)  # rad (and lengths)
-_FARTHEST = 0.05  # rad (and lengths): the most that one step may move anything
-_AIM = 0.03  # the same that is aimed at; after a step no longer, none but that to the minimum is tried
-_CONVEX = 2.5  # times a negative curvature: the least drag that is tried
-_FIRMER = 1.6  # times as much drag where curvature is negative, after a step that failed
-_RAISED = 4.0  # the same elsewhere
-_SOFTER = 0.9  # of that after one that did not
-_SOON = 12  # iterations in which a step is found, if it is one
+_BEYOND = 1e-6  # times the span: distance beyond the critical point
+_ASIDE = 1e-4  # the same at a bifurcation, where the distance is not critical
+_KICKS = (3e-3, 1e-2)  # rad (and lengths): displacements along φ
+_FARTHEST = 0.05  # rad (and lengths): largest motion of a step
+_AIM = 0.03  # the intended motion of a step; a shorter step is followed by a step without drag
+_CONVEX = 2.5  # times a negative curvature: the least drag
+_FIRMER = 1.6  # factor of the drag after a failed step with negative curvature
+_RAISED = 4.0  # factor of the drag after any other failed step
+_SOFTER = 0.9  # factor of the least drag after a successful step
+_SOON = 12  # iterations for a step
 _STEPS = 400
-_FEW = 60  # of them, where it is not to lead far
-_ASTRAY = 2.0  # times as far as what it is to lead to: what goes farther on the way is followed no further
-_CHANGES = 8  # of contacts and stops in one step
-_ROUNDED = 1e-9  # of the energy
-_SAME = 1e-3  # of the larger fall: two senses lead equally low, the rest of Newton's residual is 3e-5 of the fall
+_FEW = 60  # steps to a neighbouring state
+_ASTRAY = 2.0  # times the permitted rotation: a larger one during the descent ends it
+_CHANGES = 8  # changes of contacts and stops in a step
+_ROUNDED = 1e-9  # relative to the energy
+_SAME = 1e-3  # relative to the larger decrease: equally low senses; Newton's residual is 3e-5 of the decrease
 _STRONGEST = 1e12
 
 
 def descended(march: March, load: int, target: float, span: float, lost: Lost, beside: float = np.inf) -> float | None:
-    """Let the march fall from the end of a branch; the energy where it comes to rest, without units, or None.
+    """Descend from a critical point to a minimum; the dimensionless energy there, or None without a minimum.
 
-    None as well where sections or bodies are turned there by more than ``beside``, rad: what goes much farther on the
-    way there is followed no further.
+    Also None if sections or bodies rotate by more than ``beside`` (rad); a much larger rotation ends the descent.
     """
     saved = march.saved()
-    # what lets go under tight penalties holds on under loose ones, and what stands under loose ones may not under tight
+    # a contact opening under tight penalties may stay closed under loose ones; a minimum under loose penalties may be
+    # none under tight ones
     energy = _descended(march, load, target, span, lost, beside, loose=lost.loss is not Loss.CONTACT)
     if energy is None or march.curvature > 0.0:
         return energy
@@ -77,7 +77,7 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost, b
 def _descended(
     march: March, load: int, target: float, span: float, lost: Lost, beside: float, *, loose: bool
 ) -> float | None:
-    """The energy after a fall with ``loose`` penalties, or with the penalties of now."""
+    """Energy after a descent with ``loose`` or with the current penalties; None without a minimum."""
     beyond, left = _ASIDE if lost.loss is Loss.BIFURCATION else _BEYOND, target - lost.value
     march.values[load] = lost.value + float(np.sign(left)) * min(beyond * span, abs(left))
     if loose:
@@ -116,14 +116,16 @@ def _descended(
 
 
 def _fallen(march: March, load: int, drag: float, first: State, farthest: float, steps: int) -> bool:
-    """Fall to a minimum, if there is one to be found in so many ``steps`` and not farther from the ``first`` state."""
+    """Descend within ``steps`` to a minimum whose rotation from ``first`` is at most ``farthest`` (rad); True on
+    success.
+    """
     march.renew()  # without the drag
     convex = _CONVEX
     for _ in range(steps):
         if drag > _STRONGEST or march.turned(march.system, first) > farthest:
             return False
         if stiffer := march.stiffer(march.system):
-            # on coarse elements a penalty may begin so soft that what presses would go through
+            # on coarse elements the initial penalty may be too soft to prevent passing through
             march.penalties.update(stiffer)
             march.renew()
         before, saved = march.system, march.saved()
@@ -151,12 +153,12 @@ def _fallen(march: March, load: int, drag: float, first: State, farthest: float,
 
 
 def _risen(march: March, energy: float) -> bool:
-    """Whether the energy is more than it was."""
+    """True if the energy exceeds ``energy``."""
     return penalised_energy(march.model, march.system, march.values) > energy + _ROUNDED * abs(energy)
 
 
 def _step(march: March, load: int, anchor: State, drag: float, start: State) -> bool:
-    """One step from ``anchor``, sought from ``start``; whether it could be made."""
+    """A proximal step from ``anchor``, with Newton's method started at ``start``; True on success."""
     held = Drag(anchor, drag * lumped_mass(march.model))
     settings = replace(march.settings, newton_limit=min(_SOON, march.settings.newton_limit))
     for _ in range(_CHANGES):
@@ -183,7 +185,7 @@ def _step(march: March, load: int, anchor: State, drag: float, start: State) -> 
 
 
 def _changes(march: March, load: int, system: System) -> bool:
-    """Let contacts close that overlap, and stops close or let go that must; whether any had to."""
+    """Close overlapping contacts and switch stops as needed; True if there was any change."""
     closing = [pair for pair in march.open if zones_of(march.model, pair, system.z).least < 0.0]
     changing = [stop for stop in march.model.stops if march.room(stop, system) < 0.0]
     for pair in closing:

@@ -1,26 +1,27 @@
-"""Where a branch of minima ends, and why.
+"""Path following to the critical point of a branch of minima, and the type of instability.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-μ, φ    smallest curvature of the potential energy on the feasible directions, and its motions
-s, τ    arc length of the branch, and dλ/ds by it
+μ, φ    smallest curvature of the potential energy on the feasible directions, and its mode
+s, τ    arc length of the branch, and dλ/ds
 P       force of a contact
 ======  =====================================================================================
 
-The branch is followed by its arc length to where μ(s) changes its sign, and the zero is found between.  It is a fold
-if λ turns back there, and the branch goes there along φ; otherwise it is a bifurcation.
+The branch is followed by arc length until μ(s) changes sign; the zero is then bracketed. The critical point is a fold
+if λ turns back there and the path tangent is along φ, else a bifurcation.
 
-A contact without friction holds with a force that may go to zero while μ, of what it holds, is positive; what is left
-without it may have a negative curvature.  Its penalty's stiffness goes to zero with P, too, so that the equilibria
-with the penalty have a fold at some P of the third power of the penetration, and beyond it lead back without contact
-by a sharp turn.  Here P(λ) is followed to its zero.  Where a contact presses in several places, each of them may let
-go.  A fold at which μ would be positive, were the penalty many times as stiff, is none of the mechanism's own either,
-if P has gone to nothing: of what it was where the following began, or, where that began so close that there was little
-left, if what a rigid contact holds has not changed since and P has fallen to a tenth or, at the rate of then, vanishes
-within next to nothing.
+A frictionless contact may lose its force P while μ with the contact is still positive, and the mechanism without the
+contact may have a negative curvature. The stiffness of a penalty contact vanishes with P. The penalised equilibria
+therefore have a fold at P of order penetration³, and return without contact after a sharp turn. Hence P(λ) is
+extrapolated to its zero instead. In a contact with several zones every zone may lose its force.
 
-A stop's moment is an unknown; it is zero to the last digits where it lets go.
+A fold is also attributed to the penalty if two conditions hold. With a much stiffer penalty μ would be positive, and
+P is negligible against its value at the start of the following. If the start was too close for this test, the
+stiffness of the rigid contact has to be unchanged. Then P must have fallen to a tenth or, at the initial rate, must
+vanish almost at once.
+
+The moment of a stop is an unknown; it vanishes exactly where the stop opens.
 """
 
 from collections.abc import Iterator
@@ -41,46 +42,48 @@ from fea_reference.system import System, assemble, stiffened
 from fea_reference.taut import Turn, beyond
 from fea_reference.touch import Touch
 
-WEAKER = 0.6  # of the curvature when contacts were tight: from there on they are to be so again
+WEAKER = 0.6  # times the curvature under tight penalties: below, penalties are tightened again
 _FIRST = 0.01  # arc length of the first step
-_MOST = 0.03  # rad (and lengths): the most that one may move anything
+_MOST = 0.03  # rad (and lengths): largest motion of a step
 _LEAST = 1e-9
 _STEPS = 400
-_LOOK = 30  # of them after which it is seen whether they lead on
-_STRAIGHT = 0.9  # cosine between the directions at both ends of a step
-_LONGER = 2.0  # times as far away as a step is long: a place that is farther is on another branch
-_SHARP = 1e-6  # arc length below which a turn is one
-_GROWN = 1.2  # of the least curvature on the way: it has come past
+_LOOK = 30  # steps between two checks of progress
+_STRAIGHT = 0.9  # cosine between the tangents at both ends of a step
+_LONGER = 2.0  # step lengths: a farther point is on another branch
+_SHARP = 1e-6  # arc length of a turn that counts as sharp
+_GROWN = 1.2  # times the least curvature so far: the minimum of the curvature has been passed
 _PAST = 5  # steps
 _ROOTS = 60
-_FINE = 1e-8  # of the span
-_SHORT = 1e-4  # of a step
-_WIDE = 1e-4  # of the span: an end that is not known better may be none, passed beside by shorter steps
-_KEPT = 20  # stretches
-_FARTHER = 30.0  # times the arc between them: places that are farther apart are on no one branch
-_BETWEEN = 1.0  # elements: between places that are farther apart along the beam there is no contact
-_ALONG = 0.5  # cosine between branch and φ at a fold
-_TURNING = 0.1  # of dλ/ds at the beginning: the most that is left of it at a fold
-_CLEAR, _NEAR = 1e-5, 1e-2  # of μ at the beginning: above round-off, and near enough for what is left of dλ/ds
-_APPROACHED = 1e-8  # of the span: from where a contact's force is zero
-_SHARE = 0.9  # of the way there, at a time
-_SLIPPING = 0.1  # of the span: from how far an end is followed to where it slips off another
-_BACK = 2.0  # times as far as it has come past it, if it has
-_AS_GOOD = 1e-6  # of the span: from where it is as good as there
-_FORESEEN = 1e-3  # of the span: from where an end is foreseen, if no step leads nearer
-_DIFFERENCE = 1e-7  # of the span: what rates are seen by
-_RIGID = 1e4  # times as stiff
-_HELD = 1e-2  # of the curvature at the beginning: that of what is held
-_NOTHING, _LITTLE = 1e-2, 0.1  # of a contact's force at the beginning: enough, or enough where it holds as ever
-_SOON = 1e-4  # of the span: from where a contact's force is on its last way to zero
-_AS_HELD = 0.5  # of what a rigid contact held at the beginning: it holds as ever
+_FINE = 1e-8  # times the span
+_SHORT = 1e-4  # times a step
+_WIDE = 1e-4  # times the span: a critical point with a larger uncertainty may vanish with shorter steps
+_KEPT = 20  # path segments
+_FARTHER = 30.0  # arc lengths between two points: a larger distance means different branches
+_BETWEEN = 1.0  # elements: gap between contact points that separates zones
+_ALONG = 0.5  # cosine between tangent and φ at a fold
+_TURNING = 0.1  # times the initial dλ/ds: largest value at a fold
+_CLEAR, _NEAR = 1e-5, 1e-2  # times the initial μ: above round-off, and near enough for dλ/ds at the critical point
+_APPROACHED = 1e-8  # times the span: distance at which a contact force counts as zero
+_SHARE = 0.9  # share of the remaining distance per step
+_SLIPPING = 0.1  # times the span: distance from which an end is followed until it slips off
+_BACK = 2.0  # times the distance passed, if the slip has been passed already
+_AS_GOOD = 1e-6  # times the span: distance at which the slip counts as reached
+_FORESEEN = 1e-3  # times the span: largest distance over which the slip is extrapolated, if no step leads nearer
+_DIFFERENCE = 1e-7  # times the span: increment of finite differences
+_RIGID = 1e4  # stiffness factor that stands for a rigid contact
+_HELD = 1e-2  # times the initial curvature: a contact with a larger one is stable
+# times the initial contact force: negligible, or small while the rigid contact is unchanged
+_NOTHING, _LITTLE = 1e-2, 0.1
+_SOON = 1e-4  # times the span: distance from which a contact force is on its final decrease
+_AS_HELD = 0.5  # times the initial curvature with a rigid contact: the contact is unchanged
 
 
 @dataclass(frozen=True, slots=True)
 class Lost:
-    """The end of a branch at ``value``: the ``system`` there, and φ as ``direction`` (size,) to leave it in.
+    """Critical point of a branch at ``value``: the ``system`` and the unit mode φ as ``direction`` (size,).
 
-    All without units; ``curvature``, ``left`` and ``what`` are :class:`cprbm_scene.answer.Critical`'s.
+    All values are dimensionless. ``loss``, ``what``, ``curvature`` and ``left`` as in
+    :class:`cprbm_scene.answer.Critical`.
     """
 
     value: float
@@ -96,19 +99,19 @@ class Lost:
 
 @dataclass(frozen=True, slots=True)
 class CutShort:
-    """That a zone beside an end is cut short by that."""
+    """Marker: an end of a beam cuts a zone short."""
 
 
 def followed(march: March, load: int, target: float, span: float) -> Lost | None:
-    """Follow the branch towards ``target``; how it is lost, or None where it is not before that.
+    """Follow the branch towards ``target``; returns the critical point before ``target``, or None.
 
-    Then the march has gone some way along it, or none.  Where it turns back, and is one of minima still, the march has
-    gone on to what begins there, or none.
+    Without a critical point the state has moved along the branch, possibly not at all. If the branch turns back and
+    stays a branch of minima, the state moves on to the branch that starts beyond, if any.
     """
     saved = march.saved()
     end = _along(march, load, target, span, tight=False)
     if isinstance(end, CutShort):
-        # what sinks into the penalties of a way slips elsewhere
+        # penetration under the penalties of load stepping shifts the slip
         march.restore(saved)
         march.tighten()
         end = _along(march, load, target, span, tight=True)
@@ -118,17 +121,14 @@ def followed(march: March, load: int, target: float, span: float) -> Lost | None
 
 
 def _along(march: March, load: int, target: float, span: float, *, tight: bool) -> Lost | Turn | CutShort | None:
-    """The same, or where the branch turned back without being lost.
-
-    Where a zone is cut short that penalties that are not ``tight`` make wider, it goes no farther.
-    """
+    """Critical point, turning point, or None; stops where a zone is cut short that loose penalties widen."""
     march.look()
     if march.loose:
         march.tighten()
     lost = _letting_go(march, load, target, span) or _slipping_off(march, load, target, span)
     if lost is not None:
         return lost
-    # a contact that has sunk into its penalty since may be held where a rigid one is not, on another branch
+    # under a loose penalty a contact may hold a state, on another branch, that a rigid contact does not
     if march.soft():
         march.tighten()
     onward = float(np.sign(target - march.values[load]))
@@ -145,7 +145,7 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
     wide: tuple[Lost, March] | None = None
     for tried in range(_STEPS):
         if tried % _LOOK == 0 and tried > 0:
-            # at this pace it is not lost in all steps
+            # at this rate of decrease no critical point comes within the limit of steps
             if here.curvature > (1.0 - _LOOK / _STEPS) * known[0] and length <= known[1]:
                 return turn
             known = here.curvature, length
@@ -185,11 +185,11 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
             known_well = lost is not None and lost.uncertainty <= _WIDE * span
             if slipped is not None or (lost is not None and known_well and (lost.value - target) * onward <= 0.0):
                 return slipped or lost
-            # a step that long leads to another branch, or past where two nearly meet
+            # such a long step leads to another branch, or past a near miss of two branches
             wide = wide if lost is None else (lost, march.saved())
             march.values, march.system = branch.at(here.value), here.system
             if known_well:
-                return turn  # the target comes before the end
+                return turn  # the target comes before the critical point
             length *= 0.25
             if length < _LEAST:
                 return _back_at(march, wide) or turn
@@ -202,7 +202,7 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
             return turn
         march.values, march.system = branch.at(there.value), there.system
         if there.curvature < WEAKER * firm and march.soft():
-            # what stands less firmly goes another way where contacts have sunk into their penalties
+            # a state of low curvature is sensitive to the penetration of contacts
             march.tighten()
             branch, firm = _branch(march, load, span), there.curvature
             again = place(branch, float(march.values[load]), march.system, (there.way, there.rate))
@@ -222,7 +222,9 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
 
 
 def _back_at(march: March, wide: tuple[Lost, March] | None) -> Lost | None:
-    """An end that is not known well, where no shorter step leads on; the march stands there again."""
+    """The critical point with a large uncertainty, and the saved state there, if no shorter step continues; else
+    None.
+    """
     if wide is None:
         return None
     march.restore(wide[1])
@@ -230,8 +232,9 @@ def _back_at(march: March, wide: tuple[Lost, March] | None) -> Lost | None:
 
 
 def _slipped(march: March, load: int, gone: list[Stretch], end: Lost | Place) -> Lost | None:
-    """An end that slips off a corner, where a branch that has ``gone`` so far is lost to the penalty before that, or
-    leads on no more.
+    """Critical point where an end slips off a corner, after the segments ``gone``; None if no end does.
+
+    Called where the branch is lost to the penalty before the slip, or cannot be continued.
     """
     slip = slips(march.model, gone, end.system)
     if slip is None:
@@ -251,23 +254,23 @@ def _cosine(branch: Branch, here: Place, there: Place) -> float:
 
 
 def _goes_on_to(branch: Branch, here: Place, there: Place, length: float) -> bool:
-    """Whether the branch goes from one place to another, and that by a ``length`` of arc."""
+    """True if both points are on the same branch, a ``length`` of arc apart."""
     return _cosine(branch, here, there) >= _STRAIGHT and _apart(branch, here, there) <= _LONGER * length
 
 
 def _apart(branch: Branch, one: Place, other: Place) -> float:
-    """How far two places are from each other as the arc length has it."""
+    """Distance of two points in the metric of the arc length."""
     way = (other.system.z.values - one.system.z.values) + (other.system.z.rest - one.system.z.rest)
     return float(np.sqrt(way @ (branch.weights * way) + branch.weight * (other.value - one.value) ** 2))
 
 
 def _event(march: March, branch: Branch, here: Place, length: float) -> Place | None:
-    """The place, before ``length``, at which a contact or stop changes: just behind it."""
+    """Point just behind the first change of a contact or stop within ``length``."""
     return sought(branch, here, length, lambda there: march.least_gap(there.system))
 
 
 def _changed(march: March, load: int, event: Place) -> Lost | None:
-    """Let contacts and stops change where they do; what is lost if one lets go of what cannot stand."""
+    """Close contacts and switch stops at ``event``; the critical point if an opening stop leaves an unstable state."""
     changing = [stop for stop in march.model.stops if march.room(stop, event.system) < 0.0]
     march.values[load], march.system = event.value, event.system
     march.watch_what_touches(load)
@@ -276,7 +279,7 @@ def _changed(march: March, load: int, event: Place) -> Lost | None:
 
 
 def stop_lost(march: March, load: int, held: float, system: System) -> Lost | None:
-    """What is lost by stops that have just let go of a ``system`` of curvature ``held``; None if it stands."""
+    """Critical point of stops just opened in a ``system`` of curvature ``held``; None if the state is stable."""
     gone = [
         stop.known_as
         for stop in march.model.stops
@@ -292,7 +295,7 @@ def stop_lost(march: March, load: int, held: float, system: System) -> Lost | No
 
 
 def about_to_go(march: March, load: int, value: float) -> bool:
-    """Whether the force of a contact will vanish before ``value``, at the rate of now, that nothing stands without."""
+    """True if a contact force, extrapolated linearly, vanishes before ``value`` and leaves an unstable state."""
     way = value - float(march.values[load])
     going = _next_to_go(march, load, float(np.sign(way)))
     return (
@@ -303,7 +306,7 @@ def about_to_go(march: March, load: int, value: float) -> bool:
 
 
 def _letting_go(march: March, load: int, target: float, span: float) -> Lost | None:
-    """A contact that lets go of what cannot stand without it, if one is about to."""
+    """Critical point where a contact loses its force and leaves an unstable state; None if none is near."""
     onward = float(np.sign(target - march.values[load]))
     saved = march.saved()
     while True:
@@ -333,7 +336,10 @@ def _letting_go(march: March, load: int, target: float, span: float) -> Lost | N
 
 
 def _let_go(march: March, load: int, one: Touch, way: float, left: Mode) -> Lost | None:
-    """The end where one contact lets go, a ``way`` ahead, and what is ``left`` then; None if it does not hold now."""
+    """Critical point at the zero of a contact force, at distance ``way``, with ``left`` the mode without contact.
+
+    None if the state is unstable with a rigid contact, too.
+    """
     held = softest(march.model, stiffened(march.model, march.system, one, _RIGID))
     if not held.curvature > 0.0:
         return None
@@ -341,7 +347,7 @@ def _let_go(march: March, load: int, one: Touch, way: float, left: Mode) -> Lost
 
 
 def _ahead(march: March, load: int, way: float, loss: Loss, one: Touch, held: float, left: Mode) -> Lost:
-    """The end a ``way`` ahead of now at which one contact, with which the curvature is what is ``held``, is lost."""
+    """Critical point at distance ``way`` in λ, where a contact ends; ``held`` is the curvature with the contact."""
     return Lost(
         float(march.values[load] + way),
         abs(way),
@@ -356,17 +362,17 @@ def _ahead(march: March, load: int, way: float, loss: Loss, one: Touch, held: fl
 
 
 def _slipping_off(march: March, load: int, target: float, span: float) -> Lost | None:
-    """An end that comes past the end of the beam on which it presses, if one is about to.
+    """Critical point where a pressing end passes the end of the other beam; None if none is near.
 
-    Its zone has a width, the less the tighter its penalty, and some of that is past before: from there on the way that
-    is left is foreseen, and is what is uncertain.
+    The zone has a finite width, smaller for tighter penalties, and part of it passes earlier. From there on the
+    remaining distance is extrapolated, and is the uncertainty.
     """
     onward, saved = float(np.sign(target - march.values[load])), march.saved()
     tight = behind = False
     while (going := _next_to_slip(march, load, onward * span)) is not None:
         one, way = going
         if tight and not behind and -_SLIPPING * span <= way * onward < 0.0:
-            # where tight penalties have it, the march has come past
+            # under tight penalties the slip lies behind the current state
             march.restore(saved)
             if not _nearer(march, load, _BACK * way):
                 break
@@ -376,7 +382,7 @@ def _slipping_off(march: March, load: int, target: float, span: float) -> Lost |
         if not 0.0 <= way * onward <= min(_SLIPPING * span, (target - march.values[load]) * onward):
             break
         if not tight:
-            # what sinks into the penalties of a way slips elsewhere, and that may lie behind
+            # penetration shifts the slip, possibly to a point behind the current state
             march.tighten()
             tight = True
             continue
@@ -390,7 +396,7 @@ def _slipping_off(march: March, load: int, target: float, span: float) -> Lost |
 
 
 def _nearer(march: March, load: int, way: float) -> bool:
-    """Whether a step leads on for most of a ``way``, or for as much of it as one may; if not, the march stays."""
+    """Step over most of the distance ``way``, within the limit of motion; True on success, else the state stays."""
     before, rate = march.saved(), march.rate(load)
     size = min(_SHARE * abs(way), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
     value = float(march.values[load] + np.copysign(size, way))
@@ -401,7 +407,7 @@ def _nearer(march: March, load: int, way: float) -> bool:
 
 
 def _next_to_slip(march: March, load: int, ahead: float) -> tuple[Touch, float] | None:
-    """The contact in which an end is first to come past another, and how far it is there at the rate of now."""
+    """The contact with the first end to slip off, and the distance in λ at the current rate."""
     step = _DIFFERENCE * ahead
     moved = advance(march.model, march.system.z, step * march.rate(load))
     found: tuple[Touch, float] | None = None
@@ -417,9 +423,7 @@ def _next_to_slip(march: March, load: int, ahead: float) -> tuple[Touch, float] 
 
 
 def _holding(first: System, now: System) -> Iterator[tuple[Touch, Touch]]:
-    """What may have let go: of each contact that presses ``now`` all of it at ``first`` and now, then each of its zones
-    that are as many as then.
-    """
+    """Pairs (contact at ``first``, contact ``now``) of all closed contacts, then of their zones if the counts agree."""
     begun = {old.pair: old for old in first.touches if old.closed}
     both = [(begun[one.pair], one) for one in now.touches if one.closed and one.pair in begun]
     for old, one in both:
@@ -430,13 +434,13 @@ def _holding(first: System, now: System) -> Iterator[tuple[Touch, Touch]]:
 
 
 def _parts(one: Touch) -> list[Touch]:
-    """What of a contact may let go: its zones, where it has several, and all of it."""
+    """Parts of a contact that may lose their force: the contact, and its zones if there are several."""
     zones = _zones(one)
     return [one, *zones] if len(zones) > 1 else [one]
 
 
 def _zones(one: Touch) -> list[Touch]:
-    """A contact as that of each of its zones alone, along the first beam."""
+    """The contact restricted to every zone along the first beam."""
     order = np.argsort(one.zeta, kind="stable")
     number = np.empty(len(order), dtype=int)
     number[order] = np.concatenate(([0], np.cumsum(np.diff(one.zeta[order]) > _BETWEEN)))
@@ -444,7 +448,7 @@ def _zones(one: Touch) -> list[Touch]:
 
 
 def _gone(march: March, branch: Branch, first: Place, begun: Touch, one: Touch, held: float) -> bool:
-    """Whether the force of what a rigid contact would hold with a curvature ``held`` has come to nothing."""
+    """True if the force of a contact has vanished, where the rigid contact would give the curvature ``held``."""
     if one.push < _NOTHING * begun.push:
         return True
     change = float(begun.foreseen(first.way).sum()) - begun.push
@@ -455,7 +459,7 @@ def _gone(march: March, branch: Branch, first: Place, begun: Touch, one: Touch, 
 
 
 def _next_to_go(march: March, load: int, onward: float) -> tuple[Touch, float] | None:
-    """The contact, or the zone of several, whose force is first to vanish at the rate of now, and how far that is."""
+    """The contact or zone whose force vanishes first at the current rate, and the distance in λ."""
     rate = march.rate(load)
     found: tuple[Touch, float] | None = None
     for one in (part for each in march.system.touches if each.closed for part in _parts(each)):
@@ -469,7 +473,7 @@ def _next_to_go(march: March, load: int, onward: float) -> tuple[Touch, float] |
 
 
 def _without(march: March, one: Touch) -> System:
-    """The state of now without one contact, or without one of its zones."""
+    """The current state without a contact, or without a zone of a contact."""
     if all(one is not each for each in march.system.touches):
         return stiffened(march.model, march.system, one, 0.0)
     others = {pair: penalty for pair, penalty in march.penalties.items() if pair != one.pair}
@@ -477,9 +481,9 @@ def _without(march: March, one: Touch) -> System:
 
 
 def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place, length: float) -> Lost | None:
-    """What happens between two places, the one with a positive curvature and the other without.
+    """Critical point between two points with positive and non-positive curvature.
 
-    None where no places are found between them at which it goes to zero: they are on no one branch.
+    None if no point with a vanishing curvature is found between: the points are on different branches.
     """
     low, high, weights, clear = (0.0, here), (length, there), [1.0, 1.0], None
     for _ in range(_ROOTS):
@@ -488,10 +492,10 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
             break
         if length > _SHARP and _apart(branch, before, behind) > _FARTHER * (t - s):
             return None
-        # regula falsi, with the weight halved of the end that stays (the Illinois variant)
+        # regula falsi, with the weight of the unchanged end halved (Illinois variant)
         above, below = weights[0] * before.curvature, weights[1] * behind.curvature
         share = min(max(above / (above - below), 0.02), 0.98)
-        # where the tangent is as good as singular there may be no place to be found
+        # near a singular tangent there may be no solution
         tried = ((part, onwards(branch, here, s + part * (t - s))) for part in (share, 0.5 * share, 0.5 + 0.5 * share))
         share, middle = next(((part, found) for part, found in tried if found is not None), (share, None))
         if middle is None:
@@ -512,13 +516,13 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
     for begun, one in _holding(first.system, before.system):
         held = softest(march.model, stiffened(march.model, before.system, one, _RIGID)).curvature
         if held > _HELD * first.curvature and _gone(march, branch, first, begun, one, held):
-            # a zone of several leaves the others
+            # the other zones stay in contact
             left = softest(march.model, stiffened(march.model, before.system, one, 0.0))
             lets_go = Loss.CONTACT, one.pair.name, held, left.curvature
             return Lost(value, uncertainty, *lets_go, energy, before.system, left.direction)
     mass = lumped_mass(march.model)
     along, size = float(before.mode.direction @ (mass * before.way)), float(np.sqrt(before.way @ (mass * before.way)))
-    # τ goes to zero with μ, or not at all; round-off over the last μ makes τ small at a bifurcation too
+    # τ vanishes with μ at a fold only; round-off over the last μ makes τ small at a bifurcation too
     fold = abs((clear or before).rate) < _TURNING * abs(first.rate) and abs(along) > _ALONG * size
     loss, side = Loss.FOLD if fold else Loss.BIFURCATION, -1.0 if fold and along < 0.0 else 1.0
     zero = before.curvature if before.curvature < -behind.curvature else behind.curvature

@@ -1,23 +1,24 @@
-"""The neutral line leans from its sections by the angle of shear: its tangents, and their derivatives.
+"""Tangents of the neutral line with shear, and their derivatives.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
 θ       rotation of the section at a node
-γ       angle of shear, one per element: γ = −c·Δ, see :mod:`fea_reference.element`
+γ       shear angle, one per element: γ = −c·Δ, see :mod:`fea_reference.element`
 ψ       tangent angle of the neutral line at a node, θ + γ̄
-γ̄       mean of the γ beside a node; at a free or pinned end the one of the element there, at a welded end zero
-u       what an element's line goes by: (x₁, y₁, ψ₁, x₂, y₂, ψ₂, N)
+γ̄       mean γ of the elements at a node; at a free or pinned end γ of the end element, at a welded end zero
+u       unknowns of an element's line: (x₁, y₁, ψ₁, x₂, y₂, ψ₂, N)
 ======  =====================================================================================
 
-A line with the sections' rotations for tangents would wind about the nodes' chords by 0.1 γ L in every element.  Its
-slope would be wrong by γ at the nodes, and by γ/2 the other way between them: a place of contact would be wrong by γ
-over the curvature, up and down along every element and however short that is.  One tangent at a node, between the two
-that its elements have, keeps the line smooth; they differ as the shear force does from one element to the next.
+A line tangent to the sections' normals would oscillate about the chords by 0.1 γ L in every element. Its slope would
+deviate by γ at the nodes and by γ/2, of opposite sign, between them. A place of contact would then be wrong by γ over
+the curvature, alternately along every element, on any mesh. A single tangent per node, between those of the two
+elements, keeps the line smooth. The elements' tangents differ by the change of shear force.
 
-At a welded end the section's rotation is given, and with it the line's: a pressure beside a clamp turns the line there
-with a moment that is the clamp's, and handed on to the shear of one element it would be a force between clamp and
-contact, of first order in the element.  The same holds of an end that is pinned to what it may lie on.
+At a welded end the section's rotation is prescribed, and so is the line's tangent. The moment of a pressure beside
+the clamp then acts on the clamp. If the tangent followed the end element's shear, the moment would become a force
+between clamp and contact, with an error of first order in the element. The same holds for an end pinned to its
+contact surface.
 """
 
 from dataclasses import dataclass
@@ -30,12 +31,12 @@ from fea_reference.hermite import Index
 from fea_reference.state import State
 
 _LINE = 7  # unknowns of an element's line
-_TANGENTS = (2, 5)  # of which these are tangent angles
+_TANGENTS = (2, 5)  # positions of the tangent angles among these
 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """One beam: its ``part`` of all elements, their unknowns ``dofs`` (7, n), which of its two ends are ``welded``."""
+    """A beam: the slice ``part`` of all elements, their unknowns ``dofs`` (7, n), and True for ``welded`` ends (2)."""
 
     part: slice
     dofs: Index
@@ -57,13 +58,13 @@ def tangent_angles(elements: Elements, span: Span, z: State) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """From what lines go by, and a body's unknowns if there is one, to all unknowns, at k places.
+    """Chain rule from the unknowns of element lines, and of a body, to all unknowns, at k places.
 
     Attributes:
-        dofs: unknowns (M, k), the first m of them those of the lines' own elements and of the body, θ for ψ.
+        dofs: unknowns (M, k); the first m belong to the lines' own elements and the body, with θ in place of ψ.
         rows: which of the m are tangent angles ψ.
-        by: ∂γ̄ of each of the rows by the unknowns (rows, M, k); twice: second derivatives (rows, M, M, k).
-        shares: line, first of the six rows of M that an element's nodes have, and the element at every place (k,).
+        by: derivatives (rows, M, k) of γ̄ for every such row; twice: second derivatives (rows, M, M, k).
+        shares: line, first of the six rows of M for an element's nodes, and the element (k,) at every place.
     """
 
     dofs: Index
@@ -73,7 +74,7 @@ class Chain:
     shares: tuple[tuple[int, int, Index], ...]
 
     def gradient(self, local: Array) -> Array:
-        """By all unknowns (M, k) what is ``local`` (m, k) by the lines' own."""
+        """Derivatives (M, k) by all unknowns from derivatives ``local`` (m, k) by the lines' unknowns."""
         every = np.zeros(self.dofs.shape)
         every[: len(local)] = local
         for row, by in zip(self.rows, self.by, strict=True):
@@ -81,7 +82,9 @@ class Chain:
         return every
 
     def hessian(self, local: Array, gradient: Array) -> Array:
-        """The same of second derivatives ``local`` (m, m, k), where the first are ``gradient`` (m, k)."""
+        """Second derivatives (M, M, k) by all unknowns, from ``local`` (m, m, k) and first derivatives ``gradient``
+        (m, k).
+        """
         m, size = len(gradient), self.dofs.shape
         half = np.zeros((m, *size))
         half[:, :m] = local
@@ -94,7 +97,9 @@ class Chain:
         return every
 
     def local(self, step: Array, m: int) -> Array:
-        """What a ``step`` (size,) of all unknowns is of the first m, tangent angles for rotations, (m, k)."""
+        """Step (m, k) of the lines' unknowns, with tangent angles for rotations, for a ``step`` (size,) of all
+        unknowns.
+        """
         every = step[self.dofs]
         own = every[:m].copy()
         for row, by in zip(self.rows, self.by, strict=True):
@@ -103,11 +108,11 @@ class Chain:
 
 
 def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index, z: State) -> Chain:
-    """Of k places on one or two lines and of a body's unknowns ``body`` (0 or 3, k), in this order.
+    """Chain rule of k places on one or two lines and a body's unknowns ``body`` (0 or 3, k), in this order.
 
     Args:
         elements: of all beams.
-        lines: for each its beam, and the element of each place (k,) counted in the beam.
+        lines: beam, and element (k,) of every place counted in the beam, per line.
         body: may be empty.
         z: the state.
     """
@@ -141,12 +146,12 @@ def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index
 
 
 def own_chain(span: Span, e: Index) -> Chain:
-    """Of elements (k,) of a beam whose line has the sections' rotations for tangents: to their own unknowns."""
+    """Chain rule of elements (k,) of a beam with the sections' rotations as tangents."""
     return _upright(span.dofs[:, e], ((0, 0, e),))
 
 
 def sheared_chain(elements: Elements, span: Span, e: Index, z: State) -> Chain:
-    """Of elements (k,) of a beam whose lines lean from both of their sections by their own angle of shear."""
+    """Chain rule of separate elements (k,) of a beam, tangent at both ends by their own shear angle."""
     own = span.dofs[:, e]
     if not elements.slip[:, span.part].any():
         return _upright(own, ((0, 0, e),))

@@ -1,18 +1,18 @@
-"""Newton's method for one equilibrium.
+"""Newton's method for a single equilibrium.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-g       gap at a point of a contact, to where its pressure begins; δz is a step
-k       stiffness of the point, the penalty times the length that it stands for
-λ       push of the point, an unknown of its own
+g       gap minus lead at a point of a contact; δz is a step
+k       stiffness of the point, the penalty times the length of the point
+λ       contact force of the point, an unknown
 ======  =====================================================================================
 
-A step overlaps by its square, and a stiff penalty makes of that a force thousands of times the contact's own, and of
-the force a geometric stiffness in which the next step gets lost.  Taken for an unknown with the equation λ = −k g, the
-push after a step is −k (g + ∂g δz), with the step's overlap left out.  Eliminated point by point, it leaves the
-residual as it is, with −k g, and the tangent k ∂g ∂gᵀ − λ ∂²g: the equilibria are the same, and so is the order of
-convergence (Magisano, Leonetti and Garcea, Comput. Methods Appl. Mech. Engrg. 313 (2017) 986).
+The overlap after a step has an error of second order. A stiff penalty turns this error into a force thousands of
+times the contact force, with a geometric stiffness that misleads the next step. With the force as an unknown, λ = −k
+g, the force after a step is −k (g + ∂g δz), without the second-order overlap. Eliminated point by point, λ leaves the
+residual with −k g unchanged, and the tangent becomes k ∂g ∂gᵀ − λ ∂²g. The equilibria and the order of convergence
+remain the same (Magisano, Leonetti and Garcea, Comput. Methods Appl. Mech. Engrg. 313 (2017) 986).
 """
 
 from collections.abc import Callable, Mapping
@@ -32,21 +32,21 @@ from fea_reference.state import State
 from fea_reference.system import Drag, System, assemble
 from fea_reference.touch import Contact, Penalty, Touch
 
-_TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that one iteration may move anything
-_LOST = 3  # corrections longer than that: an equilibrium so far off would belong to another branch
-_NEAR = 3.0  # factor between penetrations that Newton's method bridges by itself
-_NOTHING = 1e-2  # of the correction and the unbalanced force asked: what need not be corrected any more
-_SETTLED = 1e-4  # correction after which holding has done what it can
-_SMALL = 1e-4  # of the longest correction, or of a length: loads of any size begin their search alike
-_FALLING = 0.1  # of the unbalanced force before: who has come so far needs a few iterations more
-_TOUCHING = 1e-9  # of the thickness: an overlap that is none
-_STALLED = 6  # corrections in a row, each small beside the longest of the search, none of them half the first
-_HELD = 6  # iterations for which a contact is held at most
+_TURN = 0.4  # rad, and lengths of the longest beam: largest motion per iteration
+_LOST = 3  # longer corrections before the search is given up: a distant equilibrium is on another branch
+_NEAR = 3.0  # ratio of penetrations within the reach of Newton's method
+_NOTHING = 1e-2  # times the accepted correction and residual: no further step needed
+_SETTLED = 1e-4  # correction below which held contacts are released
+_SMALL = 1e-4  # times the longest correction, or a length: scale of small corrections, the same for loads of any size
+_FALLING = 0.1  # times the previous residual: this decrease allows a few more iterations
+_TOUCHING = 1e-9  # thicknesses: negligible overlap
+_STALLED = 6  # consecutive small corrections without one below half of the first: no convergence
+_HELD = 6  # largest number of iterations with held contacts
 
 
 @dataclass(frozen=True, slots=True)
 class Solved:
-    """What came of it: the last system, whether it is in equilibrium, and the iterations spent."""
+    """Result of the search: the last system, True for an equilibrium, and the number of iterations."""
 
     system: System
     converged: bool
@@ -64,13 +64,12 @@ def equilibrium(
     before: Mapping[Contact, Array],
     drag: Drag | None = None,
 ) -> Solved:
-    """Seek the equilibrium near ``z`` under load ``values``, with those stops ``acting`` that do, whatever their sign.
+    """Equilibrium near ``z`` under the ``values``, with fixed active constraints ``acting`` of any sign.
 
-    ``depths`` are the penetrations of the contacts that were closed in the equilibrium before: where they are not near
-    that, or open before they pull, these are held until they are again, or until they pull.  ``before`` is what the
-    points of the contacts pushed with there, (k,) each.  A ``drag`` resists the motions.  A search whose corrections
-    stay as small as they are without arriving is given up: small beside what it began with, for a contact's zone may be
-    sought by steps as small as the load.
+    ``depths`` are penetrations of contacts closed in the previous equilibrium. A contact far from its depth, or open
+    before it pulls, is held there until it is near or pulls. ``before`` are the previous point forces (k,) of the
+    contacts. A ``drag`` resists the motions. The search stops if small corrections do not decrease: small against the
+    first ones, because the search for a zone may take steps as small as the load.
     """
     moving = model.moving
     correction, last, iteration, far = np.inf, np.inf, 0, 0
@@ -99,7 +98,7 @@ def equilibrium(
             return Solved(system, converged=False, iterations=iteration + 1)
         correction = float(np.abs(step[moving]).max())
         if not held and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING * accepted:
-            return Solved(system, converged=True, iterations=iteration)  # this step need not be made
+            return Solved(system, converged=True, iterations=iteration)  # this step is not needed
         far += correction > _TURN
         longest = max(longest, correction)
         small = [*small[1 - _STALLED :], correction] if correction < _SMALL * min(1.0, longest) else []
@@ -132,7 +131,7 @@ def equilibrium(
 
 
 def _to_hold(one: Touch, depths: Mapping[Contact, float], before: Mapping[Contact, Array]) -> bool:
-    """Whether a contact is to be held: one that did not press and does not overlap is as it was."""
+    """True if a contact has to be held; a contact without force or overlap stays as it was."""
     if one.pair not in depths or _near(one, depths[one.pair]):
         return False
     pressed = one.pair in before and float(before[one.pair].sum()) > 0.0
@@ -140,12 +139,12 @@ def _to_hold(one: Touch, depths: Mapping[Contact, float], before: Mapping[Contac
 
 
 def _lost(one: Touch, depths: Mapping[Contact, float], foreseen: Mapping[Contact, Array]) -> bool:
-    """Whether a contact that was closed has opened, though it was foreseen to press."""
+    """True if a contact opened although its predicted force is positive."""
     return one.pair in depths and not one.closed and float(foreseen[one.pair].sum()) > 0.0
 
 
 def _near(one: Touch, depth: float) -> bool:
-    """Whether Newton's method bridges by itself what a penetration is from a depth."""
+    """True if the penetration is within reach of Newton's method from ``depth``."""
     return depth / _NEAR < one.penetration < _NEAR * depth
 
 
@@ -161,7 +160,7 @@ def _along(
     drag: Drag | None,
     settled_at: Callable[[System, State], State],
 ) -> System:
-    """The system after as much of ``step`` as lowers the energy; forces take all of theirs."""
+    """System after a line search along the motions of ``step``; forces take the full step."""
     forces = step.copy()
     forces[moving] = 0.0
     motions = step - forces

@@ -1,18 +1,18 @@
-"""Where a beam's end slips off the corner of something rigid, as far as a penalty tells.
+"""Slip of a beam's end off a rigid corner, extrapolated to infinite penalty.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-P       corner that presses on the beam's side, beside an end
-ℓ       arc length from P's foot on the neutral line to that end, negative beyond
-λ, s    value of what is stepped, and arc length of the branch
+P       corner that presses on the beam's side, near an end
+ℓ       arc length from P's closest point of the neutral line to that end, negative beyond
+λ, s    value of the stepped parameter, and arc length of the branch
 ======  =====================================================================================
 
-Beyond a beam's end a corner presses on its round face, by a force that turns away, or on nothing: what it held, it
-pushes off, and the branch ends with the beam's side, at ℓ = 0.  A penalty acts along a zone.  Once that reaches the end
-it bears less on the one side of the foot than on the other, and the branch folds back at some ℓ of the zone's width,
-which goes to zero as the penalty grows.  As long as the zone is whole it knows nothing of the end: from the last place
-at which it is, the branch is continued to ℓ = 0.
+Beyond the beam's end the corner presses on the round end face, with a force that turns away, or on nothing. The
+branch therefore ends with the beam's side, at ℓ = 0. A penalty acts along a zone. A zone that reaches the end is cut
+short on one side, and the branch folds at an ℓ of the zone's width, which vanishes for an infinite penalty. A
+complete zone is not affected by the end. The branch is extrapolated to ℓ = 0 from the last point with a complete
+zone.
 """
 
 from collections.abc import Sequence
@@ -29,17 +29,17 @@ from fea_reference.state import State
 from fea_reference.system import System
 from fea_reference.touch import Face, Touch
 
-_NEAR = 1.0  # elements: a zone that is no farther from an end is that end's
-_AT = 10.0  # times how deep a corner is: as far from it a beam may lie on its sides
-_ROUNDED = 1e-9  # lengths: the same for the corner itself
-_BESIDE = 0.1  # of a zone's width: as near an end it is about to be cut short
+_NEAR = 1.0  # elements: largest distance of a zone from its end
+_AT = 10.0  # times the penetration of a corner: distance beyond which the contact is on the corner's sides
+_ROUNDED = 1e-9  # lengths: additional tolerance for the corner
+_BESIDE = 0.1  # zone widths: distance from an end at which the zone counts as cut short
 _HALVINGS = 14
-_DIFFERENCE = 1e-7  # arc length by which a rate is seen
+_DIFFERENCE = 1e-7  # arc length increment of finite differences
 
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A stretch of a branch from a place on, of a ``length`` of arc."""
+    """A segment of a branch: its first point and its arc ``length``."""
 
     branch: Branch
     begin: Place
@@ -48,7 +48,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class Slip:
-    """That an end slips off at a ``value``, foreseen from a ``place`` where ``one`` presses with a whole zone."""
+    """Slip of an end at ``value``, extrapolated from ``place``, where the contact ``one`` has a complete zone."""
 
     value: float
     one: Touch
@@ -56,7 +56,7 @@ class Slip:
 
 
 def left_of_side(model: Model, one: Touch, z: State) -> float | None:
-    """ℓ in state ``z``; None where a contact is not that of one corner with a side within an element of an end."""
+    """ℓ in state ``z``; None unless a single corner presses on the side within an element of an end."""
     seen = _corner(model, one, z)
     if seen is None or np.abs(one.zeta - seen[1]).max() > _NEAR:
         return None
@@ -64,13 +64,13 @@ def left_of_side(model: Model, one: Touch, z: State) -> float | None:
 
 
 def slipped_off(model: Model, one: Touch, before: State, after: State) -> bool:
-    """Whether a corner that presses on a beam's side in the state ``before`` has come past an end ``after``."""
+    """True if a corner that presses on a side in state ``before`` lies beyond the end in ``after``."""
     seen = _corner(model, one, before)
     return seen is not None and _left(model, one, before, *seen) > 0.0 > _left(model, one, after, *seen)
 
 
 def left_a_corner(model: Model, before: System, after: System) -> bool:
-    """Whether one of the corners that press on sides ``before`` has come past an end, and does not press on that."""
+    """True if a pressing corner came past an end of the side, and the end is not in contact with it."""
     for one in before.touches:
         if slipped_off(model, one, before.z, after.z):
             now, seen = _named(after, one.pair.name), _corner(model, one, before.z)
@@ -81,13 +81,15 @@ def left_a_corner(model: Model, before: System, after: System) -> bool:
 
 
 def cut_short(model: Model, system: System) -> bool:
-    """Whether the zone of a corner beside an end reaches that, so that its penalty ends the branch elsewhere."""
+    """True if a corner's zone beside an end is cut short, so that the penalty shifts the end of the branch."""
     pressing = (one for one in system.touches if left_of_side(model, one, system.z) is not None)
     return any(_cut_short(model, one, _BESIDE) for one in pressing)
 
 
 def slips(model: Model, gone: Sequence[Stretch], end: System) -> Slip | None:
-    """Which end, if any, slips off beyond what has ``gone`` of a branch, whose penalties have it ``end`` before."""
+    """The slip beyond the segments ``gone`` of a branch that ends early, at ``end``, because of penalties; None
+    without any.
+    """
     for last in end.touches:
         if left_of_side(model, last, end.z) is None or not _cut_short(model, last, _BESIDE):
             continue
@@ -105,7 +107,7 @@ def slips(model: Model, gone: Sequence[Stretch], end: System) -> Slip | None:
 
 
 def _foreseen(model: Model, name: str, place: Place) -> Slip | None:
-    """The same from the ``place`` on at which a contact of that name is whole."""
+    """The slip extrapolated from a ``place`` with a complete zone of the named contact; None if ℓ does not decrease."""
     one, z = _named(place.system, name), place.system.z
     seen = None if one is None else _corner(model, one, z)
     if one is None or seen is None:
@@ -118,7 +120,7 @@ def _foreseen(model: Model, name: str, place: Place) -> Slip | None:
 
 
 def _whole(model: Model, name: str, stretch: Stretch) -> Place:
-    """The last place on a stretch, at whose beginning it is, at which a contact's zone is whole."""
+    """The last point of a segment with a complete zone; the zone is complete at its beginning."""
     found, low, high = stretch.begin, 0.0, stretch.length
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
@@ -132,19 +134,19 @@ def _whole(model: Model, name: str, stretch: Stretch) -> Place:
 
 
 def _named(system: System, name: str) -> Touch | None:
-    """What a closed contact of that name is in a system."""
+    """The closed contact with this name; None if there is none."""
     return next((one for one in system.touches if one.pair.name == name and one.closed), None)
 
 
 def _cut_short(model: Model, one: Touch, within: float = 0.0) -> bool:
-    """Whether a contact's zone reaches an end of the beam, or would if it were longer by a share ``within``."""
+    """True if a zone reaches an end of the beam, or comes as near as a share ``within`` of its length."""
     elements = model.beams[one.pair.first].elements
     first, last = float(one.zones.intervals.min()), float(one.zones.intervals.max())
     return bool(min(first, elements.stop - elements.start - last) <= within * (last - first))
 
 
 def _corner(model: Model, one: Touch, z: State) -> tuple[int, int] | None:
-    """The number of the corner that presses alone on the beam in a contact, and the nearer end ζ; None if none does."""
+    """Number of the only corner that presses on the beam, and the nearer end ζ; None without such a corner."""
     face = one.pair
     if not isinstance(face, Face) or not one.closed:
         return None
@@ -161,7 +163,7 @@ def _corner(model: Model, one: Touch, z: State) -> tuple[int, int] | None:
 
 
 def _left(model: Model, one: Touch, z: State, number: int, end: int) -> float:
-    """ℓ of that corner and end in state ``z``."""
+    """ℓ of the given corner and end in state ``z``."""
     face = one.pair
     assert isinstance(face, Face)
     P, line = corners_of(model, face, z)[number], model.line(model.beams[face.first], z)

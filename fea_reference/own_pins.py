@@ -1,21 +1,21 @@
-"""A beam that a joint holds on what it may lie on: if it is pinned there, it cannot turn into the edge.
+"""Angle stop at a beam's pinned end on its own contact edge: the beam cannot turn into the edge.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-P       the joint, on the edge (half of the thickness from it, for a beam that touches by its own edge)
+P       the joint, on the edge (half of the thickness from the edge for a thick beam)
 τ       along the edge at P, the free side to the left: τ₋ before, τ₊ behind
-β       angle from τ₊ to the direction in which the beam leaves the pin, counter-clockwise
+β       angle from τ₊ to the beam's direction out of the pin, counter-clockwise
 ======  =====================================================================================
 
-The free side is 0 ≤ β ≤ ∠(τ₊, −τ₋).  Where the edge ends at P only one of the two holds, and if that is the second, β
-is counted from −τ₋ and is not positive.  A stop holds these limits: the tangent at the pin is what the gap beside it
-goes by, on however fine a mesh, and the moment of the pressure that would be there is the stop's.  With shear it is
-the section that is held, as by any stop; what the line beside it leans is seen to in :mod:`fea_reference.face`.
+The free side is 0 ≤ β ≤ ∠(τ₊, −τ₋). Where the edge ends at P, only one of both limits holds; for the second limit β
+starts at −τ₋ and is not positive. A stop enforces the limits: the gap beside the pin depends on the tangent at the
+pin, on any mesh, and the stop's moment replaces the moment of the pressure there. With shear the stop holds the
+section, as any stop; :mod:`fea_reference.face` treats the lean of the line.
 
-What is drawn from rounded numbers leaves the pin beyond a limit by their rounding, and may stand there until the edge
-presses.  Then it lies along the edge: a flat part that is held at an angle δ to it would ask for a force of 6 EI δ/h²
-beside the pin, which is of no size as drawn and of any on short elements.
+Rounded numbers in a scene may place the beam beyond a limit. The stop permits this excess until the edge presses. The
+beam then lies along the edge: at an angle δ to it, a straight part would need a force 6 EI δ/h² beside the pin, zero
+in the reference configuration and unbounded on short elements.
 """
 
 import math
@@ -31,18 +31,18 @@ from fea_reference.staying import frame_of
 from fea_reference.stops import StopPart
 
 Which = Literal["start", "end"]
-_OPEN = 1.5 * np.pi  # what is free beside an edge that ends at the pin
-_SAME = 1e-6  # of the beam's length or of the unit: as near as a scene's places have to be
+_OPEN = 1.5 * np.pi  # free angle beside an edge that ends at the pin
+_SAME = 1e-6  # beam lengths or units: tolerance of coinciding points in a scene
 
 
 def held_on(scene: Scene, contact: EdgeContact, origin: Array, unit: float) -> tuple[Outline, dict[Which, Array]]:
-    """The outline of what a beam may touch, and which of its ends are held on it, and where (2,).
+    """Outline of an edge, and the beam's ends held on it with their places (2,).
 
     Args:
         scene: the scene.
-        contact: one of its contacts.
+        contact: a contact of the scene.
         origin: of the frame, (2,) m.
-        unit: of its lengths, m.
+        unit: unit of length, m.
     """
     beam = scene.beams[contact.beam]
     outline, held = outline_of(contact, origin, unit), dict[Which, Array]()
@@ -61,7 +61,7 @@ def held_on(scene: Scene, contact: EdgeContact, origin: Array, unit: float) -> t
 def own_pins(
     scene: Scene, bodies: dict[str, tuple[int, Index | None]], ends: dict[tuple[str, str], tuple[int, float]], row: int
 ) -> tuple[StopPart, ...]:
-    """The stops by which contacts hold pinned ends; arguments as of :func:`fea_reference.stops.stops_of`."""
+    """Stops of pinned ends at contact edges; arguments as for :func:`fea_reference.stops.stops_of`."""
     found: list[StopPart] = []
     for name, contact in scene.contacts.items():
         if not isinstance(contact, EdgeContact):
@@ -108,13 +108,13 @@ def own_pins(
 
 
 def own_frame(beam: Beam) -> tuple[Array, float]:
-    """Origin (2,) and unit, m, by which places of a beam are known in whatever units a scene is drawn: its own."""
+    """Origin (2,) and unit (m) of a beam's own frame, independent of the scene's units."""
     start = np.array(beam.curve.start)
     return start, float(max(np.hypot(*(np.array(beam.curve.end) - start)), beam.thickest))
 
 
 def _moves_with(scene: Scene, point: str, body: str) -> bool:
-    """Whether a point is the body's, or pinned to one of its own; bodies that stay are one."""
+    """True if the point belongs to the body or is pinned to a point of it; all fixed bodies count as one."""
     points = {point}
     for pin in scene.pins.values():
         if point in pin.points:
@@ -128,5 +128,5 @@ def _angle(vector: Array) -> float:
 
 
 def _about(angle: float, middle: float) -> float:
-    """An angle, in the turn about ``middle``."""
+    """The angle within π of ``middle``."""
     return middle + math.remainder(angle - middle, 2.0 * np.pi)

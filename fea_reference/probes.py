@@ -1,4 +1,4 @@
-"""What is asked at a station, in SI units, as :mod:`cprbm_scene.answer` defines it."""
+"""Probed quantities at a station, in SI units, as :mod:`cprbm_scene.answer` defines them."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ _NOTHING = 1e-9  # of the largest force
 
 
 def probed(scene: Scene, march: March, probe: Probe) -> Array:
-    """One probe's value; the potential energy leaves out what the contact's penalty stores."""
+    """Value of a probe; the potential energy excludes the energy of contact penalties."""
     model, z = march.model, march.system.z
     units = model.units
     match probe.quantity:
@@ -35,7 +35,7 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
         case "bending_stress":
             u, beam = np.linspace(0.0, 1.0, probe.points), scene.beams[probe.of]
             moment = bending_moment(model, march.system, model.beam(probe.of), u)
-            # M t/(2I), with I of the rectangle that is there
+            # M t/(2I), with I of the local rectangle
             return frozen_array(moment * units.moment * 6.0 / (beam.width_at(u) * beam.thickness_at(u) ** 2))
         case "combined_stress":
             u, beam = np.linspace(0.0, 1.0, probe.points), scene.beams[probe.of]
@@ -65,7 +65,7 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
 
 
 def shapes(march: March) -> dict[str, Shape]:
-    """The beams' nodes as they lie, SI."""
+    """Nodes of the deformed beams, SI."""
     model, drawn = march.model, {}
     for beam in model.beams:
         line = model.line(beam, march.system.z)
@@ -76,18 +76,18 @@ def shapes(march: March) -> dict[str, Shape]:
 
 
 def touching(march: March) -> dict[str, Array]:
-    """The middle between the surfaces at the Gauss points of the closed contacts' zones, (k, 2) in metres."""
+    """Midpoints between the surfaces at the Gauss points of closed contacts, (k, 2) in metres."""
     model, places = march.model, {}
     for one in march.system.touches:
         if one.closed:
             if isinstance(one.pair, Pair):
-                # From each neutral line to its own surface; lines have none.
+                # from a neutral line to its own surface; lines have none
                 own, other = (model.beams[i].thickness for i in (one.pair.first, one.pair.second))
                 to_surfaces = np.asarray(one.pair.distance / (own + other) * (other - own))
                 if one.pair.tapers is not None:
                     to_surfaces = one.pair.tapers.second.at(one.zeta_m) - one.pair.tapers.first.at(one.zeta)
             else:
-                # Points of what is rigid are on its surface already.
+                # points of a rigid body are on its surface already
                 to_surfaces = -one.pair.edge.at(one.zeta)
             middle = 0.5 * (one.x + one.x_m + to_surfaces * one.normal)
             places[one.pair.name] = frozen_array((middle * model.units.length + model.units.origin[:, None]).T)
@@ -99,7 +99,7 @@ def _stop(model: Model, name: str) -> StopPart:
 
 
 def _moment(march: March, name: str) -> float:
-    """Moment of a stop, or of all that a contact exerts on a beam about the first of its pins on what it touches."""
+    """Moment of a stop, or of a contact on a beam about the first of its pins on the contact edge."""
     model, z = march.model, march.system.z
     stops = [stop for stop in model.stops if stop.known_as == name]
     moment = sum(stop.moment(z) for stop in stops)
@@ -112,7 +112,7 @@ def _moment(march: March, name: str) -> float:
 
 
 def _holding_ends(march: March, name: str) -> list[float]:
-    """Arc lengths of the pinned ends that a contact of that name holds by a moment."""
+    """Arc lengths of the pinned ends that the named contact holds by a moment."""
     model, found = march.model, []
     for stop, _ in acting_stops(model.stops, march.acting):
         if stop.owner == name:
@@ -121,7 +121,9 @@ def _holding_ends(march: March, name: str) -> list[float]:
 
 
 def _holding(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]:
-    """Forces and moments of the ground at a point, with pivots and stops, or of slide and drives of a point or body."""
+    """Reaction forces and moments at a fixed point, with pivots and stops, or of guides and drives of a point or
+    body.
+    """
     model, z = march.model, march.system.z
     turning = {key for key, body in scene.bodies.items() if isinstance(body, TurningBody) and body.about == name}
     joints = [joint for joint in model.joints if model.bodies[joint.body].dofs is None]
@@ -136,13 +138,13 @@ def _holding(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]
 
 
 def _driven(scene: Scene, drive: str) -> str:
-    """Name of the point or body that a drive drives."""
+    """Name of the point or body that a drive moves."""
     part = scene.drives[drive]
     return part.point if isinstance(part, DisplacementDrive) else part.body
 
 
 def _touch(march: March, name: str) -> Touch | None:
-    """A contact's state, None while it is open, or where it overlaps by round-off and presses by no more."""
+    """The closed contact of this name; None if open, or if its force is round-off."""
     for one in march.system.touches:
         if one.pair.name == name and one.closed and np.hypot(*one.force).sum() > _NOTHING * march.system.scale:
             return one
@@ -157,7 +159,7 @@ def _centre(march: March, touch: Touch) -> float:
 
 
 def _ends(march: March, touch: Touch) -> Array:
-    """Arc lengths (2,) on the beam that the scene names first where the zone of contact begins and ends."""
+    """Arc lengths (2,) of the ends of the contact zone, on the beam that the scene names first."""
     zeta = ends(march.model, march.system, touch)
     pair, model, z = touch.pair, march.model, march.system.z
     if isinstance(pair, Pair) and pair.turned:
@@ -168,7 +170,7 @@ def _ends(march: March, touch: Touch) -> Array:
 
 
 def _turned(touch: Touch) -> bool:
-    """Whether the beam that the scene names first is the pair's second."""
+    """True if the beam that the scene names first is the pair's second."""
     return isinstance(touch.pair, Pair) and touch.pair.turned
 
 

@@ -1,16 +1,16 @@
-"""Which points a beam goes over on its way: tips that are too sharp for its samples, centres of small circles.
+"""Points that a beam sweeps over: tips too sharp for its samples, centres of small circles.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
 c       the point, in either of two states
-x, n    the place of the neutral line that is closest to it, and the line's normal there, to the left
+x, n    the closest place of the neutral line, and the line's normal there, to the left
 d       n·(x − c)
 ======  =====================================================================================
 
-Where a closest place is found in both states, the one beginning from the other, a beam that has gone over the point has
-it on its other side: d has changed its sign.  That is exact however narrow what stands there is.  One that has gone
-round an end has none on its way, if that was short enough; one of which another part is closer has gone farther.
+If both states have a closest place, the second found from the first, a beam that swept over the point has it on the
+other side: d changes sign. This test is exact for any small obstacle. A beam that went around the point with its end
+has no closest place in a short step; a beam with a closer part elsewhere moved farther than a step.
 """
 
 from dataclasses import dataclass
@@ -23,13 +23,13 @@ from fea_reference.neighbours import nearest
 from fea_reference.projection import closest
 from fea_reference.state import Complex
 
-_WAY = 1.5  # times the way of either place: what is passed has come no farther than that across
-_PLACES = 4  # per element, from which the closest one is sought
+_WAY = 1.5  # times the motion of either place: largest change of d for a sweep
+_PLACES = 4  # per element: samples for the initial guess of the closest place
 
 
 @dataclass(frozen=True, slots=True)
 class Beside:
-    """Of k points: ζ (k,) of the closest place and whether it was ``found``, d (k,) and n (k,) as complex numbers."""
+    """Closest places of k points: ζ (k,), ``found`` (k,), d (k,) and n (k,) as complex numbers."""
 
     zeta: Array
     found: Flags
@@ -37,16 +37,16 @@ class Beside:
     n: Complex
 
     def along(self, out: Complex) -> Complex:
-        """Of n and −n that which goes with ``out`` (k,): a beam on a tip has its normal between those of the sides."""
+        """±n in the direction of ``out`` (k,): the normal of a beam on a tip lies between those of the tip's sides."""
         return np.asarray(self.n * np.where((self.n.conj() * out).real < 0.0, -1.0, 1.0))
 
     def seen_along(self, out: Complex) -> Array:
-        """d (k,) by that."""
+        """±d (k,) with the same sign."""
         return np.asarray(self.d * np.where((self.n.conj() * out).real < 0.0, -1.0, 1.0))
 
 
 def beside(line: NeutralLine, points: Complex, guess: Array | None = None) -> Beside:
-    """On which side of a line points x + i y (k,) are; sought from a ``guess`` (k,), else from what is nearest."""
+    """Closest places of a line to points x + i y (k,), from ``guess`` (k,) or from the nearest sample."""
     if guess is None:
         even = np.arange(_PLACES * line.n + 1) / _PLACES
         there = line.around(even)
@@ -57,7 +57,7 @@ def beside(line: NeutralLine, points: Complex, guess: Array | None = None) -> Be
 
 
 def gone_over(before: tuple[NeutralLine, Complex], after: tuple[NeutralLine, Complex]) -> tuple[Beside, Beside, Flags]:
-    """Where points (k,) are beside a line in two states, and which of them it may have gone over between, (k,)."""
+    """Closest places of points (k,) in two states, and True (k,) for points that may have been swept over."""
     (old, c_0), (new, c_1) = before, after
     first = beside(old, c_0)
     last = beside(new, c_1, first.zeta)

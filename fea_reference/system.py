@@ -1,7 +1,7 @@
-"""The whole mechanism's unbalanced forces and their tangent: elements, joints, drives, stops, loads, contacts summed.
+"""Residual and tangent of the whole mechanism: elements, joints, drives, stops, loads and contacts.
 
-The residual is the derivative of the Lagrangian Π(z) − Σ loads + λᵀ c(z) by all unknowns, the multipliers
-included, and the tangent its second derivative: symmetric and indefinite.
+The residual is the derivative of the Lagrangian Π(z) − Σ loads + λᵀ c(z) by all unknowns, multipliers included. The
+tangent is the second derivative, symmetric and indefinite.
 """
 
 from collections.abc import Mapping
@@ -26,27 +26,27 @@ from fea_reference.stops import acting_stops
 from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
 
 NOTHING = 10.0
-"""Floors: forces below this are round-off themselves."""
+"""Floors: smaller forces are round-off."""
 
-_ROUND_OFF = 3.0  # measured: up to two from 20 to 1280 elements, of both of its parts
+_ROUND_OFF = 3.0  # measured: up to two for 20 to 1280 elements, in both parts of the floor
 _NONE_HELD: Mapping[Contact, float] = frozendict()
 _NOTHING_FORESEEN: Mapping[Contact, Array] = frozendict()
 
 
 @dataclass(frozen=True)
 class System:
-    """A state ``z`` and what follows from it.
+    """Residual and tangent in a state ``z``.
 
     Attributes:
-        loads: those on beams that have a value.
-        residual: unbalanced generalised forces and violations of rows, (size,).
-        tangent: its derivative, sparse (size, size).
-        scale: the largest generalised force that balances; where there is none but round-off, EI/length².
-        floor: round-off of the residual.  An element's end force is 12 EI/h² times the angle between its
-            tangents and its chord; the chord's own angle is rounded, and so the force is to 12 EI/h² times the
-            spacing of machine numbers there.  A penalty ε adds ε times an element's share of the zone,
-            times what the gap is rounded to.
-        told: whether what balances is more than round-off.
+        loads: loads on beams with a nonzero value.
+        residual: unbalanced generalised forces and constraint violations, (size,).
+        tangent: derivative of the residual, sparse (size, size).
+        scale: the largest generalised force in equilibrium; EI/length² if all forces are round-off.
+        floor: round-off of the residual. An element's end force is 12 EI/h² times the angle between tangent and
+            chord, so
+            that its round-off is 12 EI/h² times the spacing of machine numbers at the chord's angle. A penalty ε adds
+            ε times an element's share of the zone times the round-off of the gap.
+        told: True if the forces in equilibrium exceed round-off.
     """
 
     z: State
@@ -61,7 +61,7 @@ class System:
     told: bool
 
     def solve(self, right: Array) -> Array | None:
-        """What the tangent makes ``right`` (size,) of; None where it is exactly singular or as good as that."""
+        """Solution (size,) of the tangent's equations for ``right`` (size,); None for a singular tangent."""
         solution = None if self._factors is None else self._factors.solve(right)
         return None if solution is None or not np.isfinite(solution).all() else solution
 
@@ -74,24 +74,24 @@ class System:
 
 
 def factors(matrix: csc_matrix) -> SuperLU:
-    """Factors of a matrix (m, m), its columns one by one: those of beams are too few alike to be taken together.
+    """LU factors of a matrix (m, m), without supernodes: beam matrices have too few similar columns.
 
     Raises:
-        RuntimeError: it is exactly singular.
+        RuntimeError: the matrix is exactly singular.
     """
     return splu(matrix, relax=1, panel_size=1)
 
 
 @dataclass(frozen=True, slots=True)
 class Drag:
-    """Springs of stiffness ``weights`` (size,) from every motion to where it was in the state ``anchor``."""
+    """Springs of stiffness ``weights`` (size,) on all motions, relaxed in the state ``anchor``."""
 
     anchor: State
     weights: Array
 
 
 def stiffened(model: Model, system: System, one: Touch, factor: float) -> System:
-    """The same state, one of its contacts ``factor`` times as stiff and pushing as before; the tangent only."""
+    """The system with a contact ``factor`` times as stiff at unchanged force; only the tangent changes."""
     more = replace(one, stiffness=factor * one.stiffness).hessian(one.pushes) - one.hessian(one.pushes)
     return replace(system, tangent=system.tangent + model.patterns.matrix([Block(one.dofs, more)]))
 
@@ -107,19 +107,18 @@ def assemble(
     foreseen: Mapping[Contact, Array] = _NOTHING_FORESEEN,
     drag: Drag | None = None,
 ) -> System:
-    """Sum everything up in state ``z``.
+    """Residual and tangent in state ``z``.
 
     Args:
         model: the mechanism.
-        penalties: the contacts that are watched, with what presses them apart.
+        penalties: penalty of every closed contact.
         quadrature: Gauss points per interval of a contact zone.
-        values: of all that is stepped, in the model's order, without units.
+        values: dimensionless values of all stepped parameters, in the model's order.
         z: the unknowns.
-        acting: the rows that act of those that come and go.
-        held: the contacts that are held at a depth, see :func:`~fea_reference.contact.touch`.
-        foreseen: what the points of contacts (k,) were foreseen to push with; the tangent takes it for what they do
-            push with, see :mod:`fea_reference.newton`.
-        drag: what resists motions besides.
+        acting: the active constraints.
+        held: depths of contacts forced active, see :func:`~fea_reference.contact.touch`.
+        foreseen: predicted point forces (k,) of contacts, used in the tangent, see :mod:`fea_reference.newton`.
+        drag: additional springs.
     """
     touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
     rounded = sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
@@ -127,9 +126,9 @@ def assemble(
 
 
 def pushed(model: Model, system: System, values: Array, z: State, pushes: Mapping[Contact, Array]) -> System:
-    """A system's contacts with ``pushes`` (k,) that are given, in a state ``z`` so near that they see no difference.
+    """The system with given contact point forces ``pushes`` (k,), in a state ``z`` with nearly the same contacts.
 
-    What their gaps are rounded to is in none of the forces then.
+    The forces then are free of the round-off of gaps.
     """
     touches = tuple(
         replace(one, gap=-pushes[one.pair] / np.where(one.stiffness > 0.0, one.stiffness, 1.0)) if one.closed else one
@@ -148,7 +147,7 @@ def _summed(
     foreseen: Mapping[Contact, Array],
     drag: Drag | None,
 ) -> System:
-    """The sum of what contacts do, whose forces are ``rounded`` to so much, and of all else."""
+    """The system with contacts of a given round-off."""
     elements = model.bend(z)
     residual, rigid = _rigid(model, values, z, acting)
     parts = [(model.element_dofs, elements.gradient)]
@@ -160,7 +159,7 @@ def _summed(
     loads = tuple(
         beam_load(model, part, float(value), z)
         for part, value in zip(model.loads, values[: len(model.loads)], strict=True)
-        if isinstance(part, OnBeam) and value != 0.0  # those of later stages do not act yet
+        if isinstance(part, OnBeam) and value != 0.0  # loads of later stages do not act yet
     )
     for load in loads:
         parts.append((load.dofs, -load.gradient))
@@ -184,9 +183,9 @@ def _summed(
 
 
 def _pushes(one: Touch, foreseen: Array | None) -> Array:
-    """What a contact's points push with for the tangent, (k,): as foreseen.
+    """Predicted point forces (k,) of a contact for the tangent.
 
-    Where the points are others by now, it is less than they do if their sum was foreseen to be less.
+    If the points have changed, the current forces are scaled down to the predicted sum.
     """
     if foreseen is None:
         return one.pushes
@@ -197,10 +196,10 @@ def _pushes(one: Touch, foreseen: Array | None) -> Array:
 
 
 def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
-    """Of a contact's force on a node: ε times what lies in an element of the zone, times what the gap is rounded to.
+    """Round-off of a contact's nodal force: ε times the zone's length in an element times the round-off of the gap.
 
-    Within an element that is a share of the element's length, across a pair and to an edge also of the distance at
-    which they touch; where what is rigid moves with its body, or is the graph of a function, of the longest beam.
+    The gap is rounded relative to the element's length, for a pair or an edge also to the distance in contact. On a
+    moving body or on the graph of a function the round-off is relative to the longest beam.
     """
     pair = touch.pair
     h = float(model.elements.length[model.beams[pair.first].elements.start])
@@ -217,9 +216,9 @@ def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
 
 
 def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
-    """What one load, drive or share of unit value adds to the right-hand side, (size,).
+    """Right-hand side (size,) of a unit load, drive or share.
 
-    Of a load or moments their generalised forces, of a drive one in its row, of a way what it is less in its rows.
+    A load or moment gives its generalised forces, a drive a unit in its row, a way the shortening in its rows.
     """
     part = model.stepped[load]
     f = np.zeros(model.size)
@@ -247,7 +246,7 @@ def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
 
 
 def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, Single]:
-    """Joints, hinges, guides, drives, stops and loads: few, so one after the other."""
+    """Residual and tangent of joints, hinges, guides, drives, stops and loads on bodies, assembled one at a time."""
     residual = np.zeros(model.size)
     ways: dict[int, Array] = {}
     if acting.ways is not None:

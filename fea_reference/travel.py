@@ -1,21 +1,21 @@
-"""From station to station along a branch: load steps that are cut and grow, and a look at the smallest curvature.
+"""Load stepping from station to station along a branch: step control and supervision of the smallest curvature.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
 μ       smallest curvature of the potential energy on the feasible directions
-λ       value of the stepped load or drive
+λ       value of the stepped parameter
 r       dz/dλ along the branch
 ======  =====================================================================================
 
-A branch of minima ends where μ is zero.  Towards a fold μ² goes evenly with λ, towards a bifurcation μ does; the zero
-of μ² by the last two steps is the nearer one, and no step goes more than half of the way to it.  Close to it, and
-wherever an equilibrium that was found is no minimum, no step can be made or a contact is about to lose its force, the
-branch is followed by :mod:`fea_reference.following`.
+A branch of minima ends where μ is zero. Towards a fold μ² is linear in λ, towards a bifurcation μ is. The zero of μ²,
+extrapolated from the last two steps, is the nearer estimate; no step exceeds half of the distance to the zero.
+:mod:`fea_reference.following` follows the branch by arc length near the zero. The same happens where a step fails,
+where an equilibrium is no minimum, or where a contact is about to lose its force.
 
-A step that stays on its branch moves by the mean of r at both ends, but for its third power, or where a contact
-changes in between by something between both; one that does not is on another branch, however near.  Nor does it release
-energy (:mod:`fea_reference.released`).
+Branch jump test: along a branch a step equals the mean of r at both ends up to third order. With a change of contact
+in between, the step lies between both. A larger deviation means another branch, however near. A step on its branch
+does not release energy either (:mod:`fea_reference.released`).
 """
 
 from dataclasses import dataclass, replace
@@ -32,33 +32,33 @@ from fea_reference.model import SharePart
 from fea_reference.released import released
 from fea_reference.touch import Circle, Face, Pair
 
-_PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
-_CUTS = 10  # in a row, each to a quarter
-_SHORTEST = 0.25**_CUTS  # of the span: as short as a step all along it that is cut so often
-_PACE = 1e-3  # of the span: who has not come so far
-_PATIENCE = 250  # in so many iterations, and fails, may creep up to where the branch ends, and looks for that
-_EASY = 6  # iterations: a step that took more is not followed by a longer one
-_FAR = 4.0  # elements: a zone that goes farther from station to station is sought with loose penalties, if it had to
-_ASIDE = 0.15  # of a step's own way: by which it may end aside of the mean of its rates
-_UNEVEN = 0.6  # of the way by which its rates differ
-_NOWHERE = 1e-6  # rad (and lengths): a way that is none
-_RISES = 10.0  # times what had sunk in: the way of something else
-_BESIDE = 0.3  # rad: a state in which sections and bodies are turned by no more is beside another
-_AGAIN = 1e-5  # of the span: an end that is met again, not another
-_MANY, _CROWDED = 4, 0.01  # ends that follow each other within such a part of the span: they lead on to nothing
-_HALF = 0.5  # of the way to where the curvature is foreseen to vanish
-_NEAR = 1e-2  # of the span: a step shorter than this is left to following the branch
-_FOLLOWINGS = 8  # one after the other, where penalties are to stay tight
-_TIRED = 3  # cuts in a row after which that is tried
-_WARY = 3  # cuts in all after which the curvature is looked at where steps look for no end
+_PREDICTED = 0.3  # rad (and lengths): largest predicted motion of a load step
+_CUTS = 10  # consecutive cuts of a step, to a quarter
+_SHORTEST = 0.25**_CUTS  # times the span: length of a step over the whole span after all cuts
+_PACE = 1e-3  # times the span: progress
+_PATIENCE = 250  # iterations without this progress: a failing step then starts the search for a critical point
+_EASY = 6  # iterations: a step with more is not followed by a longer step
+_FAR = 4.0  # elements: larger motion of a zone between stations, which calls for loose penalties again
+_ASIDE = 0.15  # times the motion of a step: accepted deviation from the mean of the tangents
+_UNEVEN = 0.6  # times the difference of the tangents: further accepted deviation
+_NOWHERE = 1e-6  # rad (and lengths): negligible motion
+_RISES = 10.0  # times the earlier penetration: further accepted deviation after a change of penalty
+_BESIDE = 0.3  # rad: largest rotation of sections and bodies to a neighbouring state
+_AGAIN = 1e-5  # times the span: distance of two values for the same critical point
+_MANY, _CROWDED = 4, 0.01  # this many critical points within this share of the span lead to no stable branch
+_HALF = 0.5  # times the distance to the extrapolated zero of the curvature
+_NEAR = 1e-2  # times the span: a shorter step is left to path following
+_FOLLOWINGS = 8  # consecutive runs of path following with tight penalties
+_TIRED = 3  # consecutive cuts before path following starts
+_WARY = 3  # cuts in total before the curvature is computed although no critical point is sought
 
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """What is stepped: number ``load``, over a ``span`` without units, in a ``stage``; what to do ``beyond`` its end.
+    """Load stepping of parameter number ``load`` over a dimensionless ``span`` in a ``stage``.
 
-    The assembly is no stage, and has no name.  Where nothing is asked of the end of the branch, steps go on over it to
-    a state ``beside`` it.
+    ``beyond`` says how to continue at a critical point: stop, jump to the next minimum, or step to a neighbouring
+    state. Without a request (None) the latter is tried. The assembly is not a stage and has an empty name.
     """
 
     load: int
@@ -68,14 +68,14 @@ class Course:
 
 
 def reach(march: March, course: Course, target: float) -> None:
-    """March to the value ``target`` and land on it exactly.
+    """Step the parameter to ``target`` exactly.
 
-    Where nothing is asked of the end of the branch, steps look for ends first, and go on over an end with another
-    branch beside.  Where this does not lead to the target, the march ends with the first end that was met.  Where no
-    end was met, steps go again from their begin, and look for none.
+    Without a request for critical points, the steps first watch for them and continue to a neighbouring branch. If
+    the target is not reached, stepping ends at the first critical point. Without any critical point the steps are
+    repeated without supervision.
 
     Raises:
-        StoppedError: it cannot be reached.
+        StoppedError: the target cannot be reached.
     """
     if course.beyond is not None:
         _reach(march, course, target)
@@ -98,14 +98,14 @@ def reach(march: March, course: Course, target: float) -> None:
 
 
 def _first_met(march: March, origin: March, met: list[Left]) -> StoppedError:
-    """The first of the ends that were gone on over in vain, as what the march ends with."""
+    """Ending at the first critical point passed, after a continuation without success."""
     first = replace(met[0].record.end, after=None)
     march.critical, march.left = [*origin.critical, first], list(origin.left)
     return StoppedError(Ending.BRANCH_ENDS, met[0].sentence)
 
 
 def _reach(march: March, course: Course, target: float) -> bool:
-    """The same, and whether steps look for ends is the course's; whether one has released energy on the way."""
+    """Step to ``target`` with supervision as the course says; True if a step released energy."""
     load = course.load
     march.iterations = 0
     march.switched, march.firm = {}, {}
@@ -117,12 +117,13 @@ def _reach(march: March, course: Course, target: float) -> bool:
     march.settle(load)
     same = len(march.critical) == len(origin.critical) and march.values[load] != origin.values[load]
     if same and not (march.minimum and march.held):
-        # with the penalties of the way it was a minimum: the branch ends before, with those of its beginning
+        # a minimum under the penalties of load stepping only: the critical point lies before, under the initial
+        # penalties
         there, held = march.saved(), march.held
         march.restore(origin)
         lost = followed(march, load, target, course.span) if held else _held_on(march, course, target)
         if lost is None:
-            # no end: a long step has left the branch for another, on which short ones may stay
+            # no critical point: a long step jumped to another branch, shorter steps may not
             march.restore(origin)
             try:
                 _arrive(march, course, target, watched=True)
@@ -141,7 +142,7 @@ def _reach(march: March, course: Course, target: float) -> bool:
 
 
 def _held_on(march: March, course: Course, target: float) -> Lost | None:
-    """How the branch is lost that is followed with tight penalties for as long as it leads on; None if it is not."""
+    """Critical point found by path following with tight penalties as long as it makes progress; None without any."""
     for _ in range(_FOLLOWINGS):
         before = march.values[course.load]
         lost = followed(march, course.load, target, course.span)
@@ -151,12 +152,12 @@ def _held_on(march: March, course: Course, target: float) -> Lost | None:
 
 
 def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bool:
-    """March to the value ``target``, with penalties as they are; ``watched``, from minimum to minimum.
+    """Step to ``target`` with the current penalties; if ``watched``, along minima only.
 
-    Whether a step on the way has released energy, which a watched one may not.
+    Returns True if a step released energy, which a watched step may not.
 
     Raises:
-        StoppedError: it cannot be reached.
+        StoppedError: the target cannot be reached.
     """
     load = course.load
     stride, cuts, searching, follow = np.inf, 0, False, True
@@ -165,13 +166,13 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
     limit = march.settings.iteration_limit
     rate: Array | None = None
     tight: March | None = None
-    firm: float | None = None  # where penalties were tightened lest a step should lead through something
+    firm: float | None = None  # value of λ at a tightening against passing through
     paced, looked = (march.values[load], march.iterations), False
     leapt, failed = False, 0
     pulls: list[tuple[float, float]] = []
     while march.values[load] != target:
         if not pulls or march.values[load] != pulls[-1][0]:
-            # none of what was gone back over
+            # drop values that a restored state went back over
             pulls = [one for one in pulls if (march.values[load] - one[0]) * (target - one[0]) > 0.0]
             pulls.append((float(march.values[load]), march.pull))
         looking = watched or failed >= _WARY
@@ -218,10 +219,10 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
                     leapt = leapt or jumped
                     unstable = watched and minimum and march.curvature <= 0.0
         if unstable and not follow:
-            # the branch has no end near by, and this is another one
+            # the branch has no critical point nearby: this state is on another branch
             trouble = Ending.NOT_A_MINIMUM, f"beyond {saved.shown(load, saved.values[load])} no minimum is found"
         crept = trouble is not None and march.iterations - paced[1] > _PATIENCE
-        # some of ever shorter steps may succeed, and lead nowhere together: what has no other end ends there
+        # tiny steps may succeed without progress: without a critical point the branch ends here
         tiny = trouble is not None and size < _SHORTEST * course.span and size * speed < _NOWHERE
         if tiny and looked and trouble is not None:
             raise _drawn_taut(march, load, pulls) or StoppedError(*trouble)
@@ -232,7 +233,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
         if minimum and follow and (close or unstable or tired):
             lost, over, again = None, False, True
             if tight is not None:
-                # with loose penalties the march may have come past where the branch ends with tight ones
+                # under loose penalties the state may lie beyond the critical point under tight ones
                 again = saved.values[load] != tight.values[load]
                 march.restore(tight)
                 tight, lost = None, followed(march, load, target, course.span)
@@ -257,7 +258,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
             known, rate, march.behind = [], None, None
         elif trouble is None:
             if looking and 0.0 < march.curvature < WEAKER * known[-1][1] and march.soft():
-                # what stands less firmly is as if drawn otherwise where contacts have sunk into their penalties
+                # a state of low curvature is sensitive to the penetration of contacts
                 march.tighten()
                 ahead = march.rate(load)
             same = len(march.penalties) == len(saved.penalties) and march.acting is saved.acting
@@ -274,13 +275,14 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
             crossed = trouble[0] is Ending.BEAMS_CROSSED
             firmly = firm == march.values[load]
             if not firmly and (march.cut() or (crossed and march.sunk())):
-                # what presses is not to go through what gives way
+                # raise the penalties of contacts that may pass through
                 march.tighten()
                 known, march.behind, firm = [], None, march.values[load]
                 stride, cuts, reason = size if crossed else 0.25 * size, cuts + 1, trouble
             elif not (firmly or searching) and march.loosen(Circle, Face, Pair):
                 if watched and minimum and not march.curvature > 0.0:
-                    # what stands by a contact alone does not stand by a loose one, and whatever follows would pass
+                    # a state held by a contact alone is unstable under a loose penalty, and path following would miss
+                    # its end
                     march.restore(saved)
                     searching, stride, cuts, reason = True, 0.25 * size, cuts + 1, trouble
                 else:
@@ -292,7 +294,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
 
 
 def _drawn_taut(march: March, load: int, pulls: list[tuple[float, float]]) -> StoppedError | None:
-    """What the march ends with where what bends alone has been drawn taut, by its ``pulls`` on the way; None if not."""
+    """Ending for inextensible beams drawn taut, from the axial forces ``pulls`` of the steps; None otherwise."""
     value = taut_at(pulls) if march.settings.kinematics == "bending" and march.held else None
     if value is None:
         return None
@@ -301,7 +303,7 @@ def _drawn_taut(march: March, load: int, pulls: list[tuple[float, float]]) -> St
 
 
 def _vanishing(known: list[tuple[float, float]]) -> float:
-    """How far from the last of two values the square of the curvature is zero, on a straight line through both."""
+    """Distance from the last value to the zero of the squared curvature, extrapolated linearly from two values."""
     if len(known) < 2:
         return np.inf
     (one, before), (other, now) = known
@@ -311,7 +313,7 @@ def _vanishing(known: list[tuple[float, float]]) -> float:
 
 
 def _jumped(saved: March, march: March, load: int, rate: Array, ahead: Array) -> bool:
-    """Whether a step has released energy, where that can be told: by a load or drive, while what acts stays."""
+    """True if a step released energy; only decidable under a load or drive with unchanged constraints and penalties."""
     if isinstance(march.model.stepped[load], SharePart) or march.acting is not saved.acting:
         return False
     if any(march.penalties.get(one) != penalty for one, penalty in saved.penalties.items()):
@@ -321,15 +323,15 @@ def _jumped(saved: March, march: March, load: int, rate: Array, ahead: Array) ->
 
 
 def _aside(saved: March, march: March, load: int, rate: Array, ahead: Array) -> bool:
-    """Whether a step has not ended where the rates at its beginning and its end lead."""
+    """True if a step deviates from the mean of its path tangents: another branch."""
     moving = march.model.moving
     step = march.values[load] - saved.values[load]
     first, last = step * rate[moving], step * ahead[moving]
     if not (first.any() and last.any()):
-        return False  # one of the tangents is singular, and says nothing
+        return False  # a singular stiffness matrix gives no tangent
     gone = (march.system.z.values - saved.system.z.values)[moving]
     aside = float(np.abs(gone - 0.5 * (first + last)).max())
-    # what had sunk into loose penalties has come out of tight ones
+    # after tightening, contacts lose their previous penetration
     now = {pair.name: penalty for pair, penalty in march.penalties.items()}
     other = [one for one in saved.system.touches if now.get(one.pair.name) != saved.penalties[one.pair]]
     aside -= _RISES * max((one.penetration for one in other), default=0.0)
@@ -338,7 +340,7 @@ def _aside(saved: March, march: March, load: int, rate: Array, ahead: Array) -> 
 
 
 def _record(march: March, course: Course, lost: Lost, after: float | None) -> Critical:
-    """An end in SI, and the energy ``after`` it, without units."""
+    """Critical point in SI units, with the dimensionless energy ``after`` the jump."""
     unit, moment = march.model.stepped[course.load].unit, march.model.units.moment
     return Critical(
         stage=course.stage,
@@ -354,10 +356,10 @@ def _record(march: March, course: Course, lost: Lost, after: float | None) -> Cr
 
 
 def _leads_on(march: March, load: int, target: float, lost: Lost) -> bool:
-    """Whether a way down may lead on from an end at which the march stands.
+    """True if an energy descent may continue from the critical point at the current state.
 
-    What has slipped off another beam's end lies between where it was and where its gap is seen.  A corner is seen from
-    all sides; but where it is slipped off behind the ``target``, the penalty alone ends the branch before.
+    After a slip off another beam's end the gap is undefined at first. A corner has a gap on all sides; but a slip
+    beyond ``target`` at a corner is only due to the penalty.
     """
     if lost.loss is not Loss.SLIP:
         return True
@@ -366,14 +368,16 @@ def _leads_on(march: March, load: int, target: float, lost: Lost) -> bool:
 
 
 def _held_firmer(march: March, load: int, target: float, lost: Lost) -> bool:
-    """Whether an end that is lost only behind the ``target``, but for a penalty, is now held as far as that."""
+    """True if a slip beyond ``target`` is due to the penalty and a firmer penalty now holds up to the target."""
     behind = (lost.value - target) * np.sign(target - march.values[load]) > 0.0
     return lost.loss is Loss.SLIP and bool(behind) and march.firmer(lost.what)
 
 
 def _goes_on(march: March, course: Course, lost: Lost) -> bool:
-    """Whether the march may go on over an end: not where another branch goes off, either of whose sides is as good as
-    the other, nor where it has been before, nor from one end to the next of many.
+    """True if stepping may continue beyond a critical point without request.
+
+    Bifurcations are excluded, because both sides are equivalent. Repeated points and many points in close sequence
+    are excluded, too.
     """
     unit = march.model.stepped[course.load].unit
     ends = [left.record.end for left in march.left]
@@ -384,10 +388,10 @@ def _goes_on(march: March, course: Course, lost: Lost) -> bool:
 
 
 def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
-    """Record where a branch ends, and go on from there or not.
+    """Record a critical point and continue beyond it as the course says.
 
     Raises:
-        StoppedError: not.
+        StoppedError: there is no continuation.
     """
     load = course.load
     why = {

@@ -1,18 +1,18 @@
-"""What it changes elsewhere that contacts in a point sink in.
+"""Effect of the penetration of point contacts on other forces and motions.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
 K, z    tangent and unknowns of an equilibrium
-ε, F    penalty and push of a contact;  c = ∂g, the mean of its points by their stiffness
-d       its depth, which goes with ε to the power −1/m while its push stays
+ε, F    penalty and force of a contact;  c = ∂g, stiffness-weighted mean of its points
+d       penetration, proportional to ε to the power −1/m at a constant force
 ======  =====================================================================================
 
-With ε the equilibrium goes by K dz/d ln ε = F c, as the push is F if nothing moves.  All that is left until the penalty
-is without end, where the contact is not deep at all, is m times that: the depth goes by −d/m, and what follows from it
-goes evenly with the depth.  Where what may move is little, depths that are nothing beside the thickness are much
-beside that motion, and pushes of contacts near each other say so first.  What is open and is pushed into by that has a
-push to be foreseen, too: its overlap over the compliance cᵀ K⁻¹ c.
+For a change of ε the equilibrium changes by K dz/d ln ε = F c, since without motion the force is F. The total change
+up to an infinite penalty, with zero penetration, is m times this rate: the penetration changes by −d/m, and its
+effects are linear in the penetration. In a nearly rigid mechanism a penetration small against the thickness may be
+large against the motion; the forces of neighbouring contacts are the first to show this. An open contact that would
+overlap gets a predicted force, its overlap over the compliance cᵀ K⁻¹ c.
 """
 
 from collections.abc import Iterable, Mapping
@@ -26,25 +26,25 @@ from fea_reference.system import System
 from fea_reference.touch import Contact, Face, Penalty, Touch
 
 FELT = 0.01
-"""Of pushes and of the motion: by how much what sinks in may change them."""
+"""Relative change of forces and motions by a penetration that is significant."""
 
 ROUNDED = 2e-12
-"""Of the longest beam: less deep, what places are rounded to is felt."""
+"""Lengths of the longest beam: smaller penetrations are affected by round-off of positions."""
 
 POINT = 1.0
-"""Elements: a zone no wider is a point."""
+"""Elements: largest width of a point contact's zone."""
 
 _FALLS = (1.5, 2.0)  # m between sides, and at a tip
-_FAINT = 0.1  # of the largest push: a smaller one is measured by that
-_STILL = 1e-4  # of what the largest push does to a beam at its length: motions below are measured by that
-_BESIDE = 1e-6  # of the measure: how near a place is to the least gap that stands for it
-_NEAR = 0.1  # lengths of the longest beam: what is farther nothing sinks into by loose penalties
+_FAINT = 0.1  # times the largest force: reference for smaller forces
+_STILL = 1e-4  # times the deflection of a beam by the largest force at its length: reference for smaller motions
+_BESIDE = 1e-6  # times the measure: distance from the least gap within which places represent it
+_NEAR = 0.1  # lengths of the longest beam: larger gaps do not close under loose penalties
 
 
 def in_points(one: Touch) -> bool:
-    """Whether a contact presses in points only: in zones that are no wider than an element each.
+    """True if a contact presses in points only, in zones no wider than an element.
 
-    What presses beside a joint that lies on it has no point: its push grows without end towards the joint.
+    A contact beside a joint on its surface does not count: its force grows without bound towards the joint.
     """
     if not one.closed or _beside_joint(one):
         return False
@@ -54,16 +54,16 @@ def in_points(one: Touch) -> bool:
 
 
 def _beside_joint(one: Touch) -> bool:
-    """Whether something rigid presses within an element of a joint that lies on it, and nowhere else."""
+    """True if an edge presses only within an element of a joint on the edge."""
     return isinstance(one.pair, Face) and any(np.abs(one.zeta - end).max() < POINT for end in one.pair.own)
 
 
 def felt(
     model: Model, system: System, penalties: Mapping[Contact, Penalty], waiting: Iterable[Contact], quadrature: int
 ) -> dict[Contact, float]:
-    """By how much what each contact in points sinks in is felt, as a share of pushes and of the motion.
+    """Relative effect of every point contact's penetration on forces and motions, by contact.
 
-    Of an equilibrium; ``waiting`` are the contacts that are open in it, whose pushes are foreseen.
+    ``waiting`` are the open contacts, whose forces are predicted.
     """
     sinking = [one for one in system.touches if one.push > 0.0 and one.penetration > ROUNDED and in_points(one)]
     if not sinking:
@@ -101,9 +101,10 @@ def felt(
 
 
 def _told(pressing: Iterable[Touch]) -> list[list[Touch]]:
-    """Contacts whose pushes are known: those that press one beam at one place by their sum alone.
+    """Groups of contacts with determinate sums of forces: contacts of a beam at the same place form a group.
 
-    Of what presses beside a joint that lies on it only the moment about the joint is, which the motion tells.
+    Contacts beside a joint on their surface are left out: only their moment about the joint is determinate, which the
+    motion reflects.
     """
     groups: list[list[Touch]] = []
     for one in pressing:
@@ -119,7 +120,7 @@ def _told(pressing: Iterable[Touch]) -> list[list[Touch]]:
 
 
 def _at_one_place(one: Touch, other: Touch) -> bool:
-    """Whether two contacts push the same beam to the same side at places that no element parts."""
+    """True if two contacts push the same beam to the same side within an element."""
     if one.pair.first != other.pair.first:
         return False
     apart = max(one.zeta.min(), other.zeta.min()) - min(one.zeta.max(), other.zeta.max())
@@ -133,9 +134,9 @@ def _beside(
     penalties: Mapping[Contact, Penalty],
     quadrature: int,
 ) -> list[tuple[float, Array, float]]:
-    """Of each contact that is open: its least gap, what that goes by (size,), and its compliance.
+    """Least gap, its derivative (size,) and its compliance for every open contact.
 
-    Not of what is least open beside a joint that lies on it, where gaps are rounded to nought.
+    Contacts nearest to a joint on their surface are left out, because the gap there is zero up to round-off.
     """
     found = []
     for pair in open_ones:
