@@ -1,7 +1,7 @@
-"""Statics of a state for the answer sheet: internal forces of beams, point forces, contact states, body motions; SI.
+"""Statics of a state for the answer sheet: internal forces, point forces, contact states, body motions; SI.
 
-Contacts act at the Gauss points of their zones; internal forces are those of the elements.  The equilibrium search
-uses nothing from here.
+Contacts act at the Gauss points of their zones; internal forces follow from the elements. The equilibrium search does
+not use this module.
 """
 
 from collections.abc import Iterator, Mapping
@@ -41,7 +41,7 @@ def beam_states(march: March) -> dict[str, BeamState]:
 
 
 def point_forces(scene: Scene, march: March) -> PointForces:
-    """All forces but the loads."""
+    """All forces except the loads."""
     rows = [*_at_joints(march), *_on_bodies(scene, march), *_at_stops(march)]
     rows += [row for touch in march.system.touches for row in _at_contact(march, touch)]
     units = march.model.units

@@ -47,8 +47,8 @@ rotation. The difference depends on the place within the element, so that no ref
 
     dα = n·d(x₂ − x₁)/l,    d²α = −2 (n·d(x₂ − x₁)) (t·d(x₂ − x₁))/l²
 
-A moment, too, has a compliance within an element with fixed ends, c' = (u v/L)(1 − 3 σ u v/L²)/EI, with the constant
-energy ½ c' M². Two unit moments in an element, at u ≤ u', rotate each other's places by (u v'/L)(1 − 3 σ v u'/L²)/EI.
+A moment, too, has a compliance within an element with fixed ends, c' = (u v/L)(1 − 3 σ u v/L²)/EI. The energy ½ c' M²
+is constant. Two unit moments in an element, at u ≤ u', rotate each other's places by (u v'/L)(1 − 3 σ v u'/L²)/EI.
 """
 
 from dataclasses import dataclass

@@ -20,13 +20,13 @@ and by ζ alone g' = n·x' − T', g'' = n·x'' + (τ·x')²/r. The integral run
 :mod:`fea_reference.contact`: the pressure vanishes at their ends.
 
 Resting pressure: a prismatic beam on a circle has the constant curvature κ = 1/(R + T), hence no shear force and a
-constant tension, whose pressure is N κ (Landau and Lifshitz, Theory of Elasticity, §19). With varying EI the shear
+constant tension. The pressure is N κ (Landau and Lifshitz, Theory of Elasticity, §19). With varying EI the shear
 force is −κ EI'. Then N + κ² EI is constant and the pressure is κ (N − EI'').
 
-Lead: without a lead the beam penetrates by the pressure over ε. A clamp does not penetrate. Beside a clamp a layer of
-width (4 EI/ε)^¼ therefore transfers its pressure to the clamp, an error of the contact force of first order in the
-layer's width. With δ = κ (N − EI'')/ε at the clamp this layer vanishes; the remaining error, at the end of the zone,
-is of second order.
+Lead: without a lead the beam penetrates by the pressure over ε. A clamp does not penetrate. Beside a clamp the
+pressure in a layer of width (4 EI/ε)^¼ therefore goes to the clamp. The error of the contact force is of first order
+in the layer's width. With δ = κ (N − EI'')/ε at the clamp this layer vanishes; the remaining error, at the end of the
+zone, is of second order.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ and the integrand is smooth in between. The pressure does not vanish where the s
 the first; the missing force is measured all the same, and a significant one exchanges the beams. If both beams have
 such ends, every zone is integrated along the beam of its end (:mod:`fea_reference.carrying`).
 
-With varying thickness g is the minimum of |x − x_m| − T − T_m over x_m, where T and T_m are the half thicknesses
+With varying half thicknesses T and T_m, g is the minimum of |x − x_m| − T − T_m over x_m
 (:mod:`fea_reference.facing`). At the middle of a zone g is minimal over x, too: n·x' = T' and, away from corners,
 −n·x_m' = T_m'. n and τ lean from the second beam's normal, and J is τ·x_m'; the other formulas stay. At a convex
 corner ζ_m is fixed and δ²g = side { n·δ²r + p_τ²/d }. At a concave corner n jumps. As in :mod:`fea_reference.face`
@@ -117,8 +117,8 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
 def looked_at(model: Model, pair: Pair, z: State) -> Pair:
     """The pair with order and sides of the beams as they lie apart in state ``z``.
 
-    Beams next to each other's ends have no side at rest, and an end of the second may approach the first. The side is
-    that of the last state in which the beams lay opposite to each other.
+    Beams next to each other's ends have no side at rest, and an end of the second may approach the first. The side
+    comes from the last state with the beams opposite to each other.
     """
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
     away = end_apart(second, first)
@@ -193,7 +193,7 @@ def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
 
 
 def _grounded(scene: Scene, beam: str, which: Literal["start", "end"]) -> bool:
-    """True if the end is on a fixed body, so that it cannot come to lie on the beam's side."""
+    """True if the end is on a fixed body and cannot come to lie on the beam's side."""
     end = getattr(scene.beams[beam], which)
     return not isinstance(end, FreeEnd) and not frame_of(scene, scene.body_of(end.point))
 

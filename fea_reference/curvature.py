@@ -16,9 +16,9 @@ An inextensible beam has c = 0 and is given a small c, which does not lower the 
 feasible directions, so that a positive definite A proves a positive definite H there.
 
 A is symmetric and, ordered along the beams, banded. By Sylvester's law of inertia A − σ T^T M T has as many negative
-pivots as there are μ below σ, and Cholesky's method stops at the first. This brackets the least μ. An upper bound is
-a Ritz value of Lanczos' method with (A − σ T^T M T)⁻¹, from any start vector; a lower bound is a σ without negative
-pivot. Round-off moves a pivot by the unit round-off times the diagonal of A, hence μ by u 12 EI/h⁴.
+pivots as there are μ below σ. Cholesky's method stops at the first negative pivot. This brackets the least μ. An
+upper bound is a Ritz value of Lanczos' method with (A − σ T^T M T)⁻¹, from any start vector; a lower bound is a σ
+without negative pivot. Round-off moves a pivot by the unit round-off times the diagonal of A, hence μ by u 12 EI/h⁴.
 """
 
 from collections.abc import Callable

@@ -1,19 +1,19 @@
-"""Where what bends, and does not stretch, is drawn taut.
+"""Inextensibility limit: a beam in pure bending kinematics drawn taut.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-F, v    the largest axial force, and the value that is stepped
-v_t     that at which beams are taut
-p       F grows like (v_t − v)^−p: a bend that a pull leaves is the shorter, the greater that is
+F, v    the largest axial force, and the value of the stepped parameter
+v_t     value at which the beams are taut
+p       F grows like (v_t − v)^−p: larger tension leaves shorter bends
 ======  =====================================================================================
 
-Farther than v_t no equilibrium without stretch leads, and before it there are some under any force.  Three values tell
-v_t and p:
+Without stretch no equilibrium exists beyond v_t, and before v_t forces of any size occur. Three values determine v_t
+and p:
 
     ln(F₂/F₁) / ln(F₃/F₂) = ln((v_t − v₁)/(v_t − v₂)) / ln((v_t − v₂)/(v_t − v₃)),
 
-of which the right side grows with v_t from zero at v₃ to (v₂ − v₁)/(v₃ − v₂) far away.
+where the right side increases with v_t from zero at v₃ to (v₂ − v₁)/(v₃ − v₂) at infinity.
 """
 
 from collections.abc import Sequence
@@ -21,14 +21,14 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import brentq
 
-_GROWN = 2.0  # times: by how much F grows from one of three to the next at least
-_MOST = 1e12  # EI/length²: what is more is round-off of what lies straight
-_NEAR, _AFAR = 1e-15, 1.0  # of the last step: where v_t is beyond it
+_GROWN = 2.0  # least growth of F between consecutive values
+_MOST = 1e12  # EI/length²: larger forces are round-off of a straight beam
+_NEAR, _AFAR = 1e-15, 1.0  # times the last step: range of v_t beyond the last value
 _POWERS = (0.25, 4.0)
 
 
 def taut_at(pulls: Sequence[tuple[float, float]]) -> float | None:
-    """v_t by the last of pairs (v, F), in order, and two before; None where they do not tell that there is one."""
+    """v_t from the last of pairs (v, F), in order, and two earlier pairs; None if the pairs do not determine v_t."""
     told: list[tuple[float, float]] = []
     for pull in reversed(pulls):
         if pull[1] < (_MOST if not told else told[-1][1] / _GROWN):

@@ -11,10 +11,10 @@ P       force of a contact
 The branch is followed by arc length until μ(s) changes sign; the zero is then bracketed. The critical point is a fold
 if λ turns back there and the path tangent is along φ, else a bifurcation.
 
-A frictionless contact may lose its force P while μ with the contact is still positive, and the mechanism without the
-contact may have a negative curvature. The stiffness of a penalty contact vanishes with P. The penalised equilibria
-therefore have a fold at P of order penetration³, and return without contact after a sharp turn. Hence P(λ) is
-extrapolated to its zero instead. In a contact with several zones every zone may lose its force.
+A frictionless contact may lose its force P while μ with the contact is still positive. The mechanism without the
+contact may then have a negative curvature. The stiffness of a penalty contact vanishes with P. The penalised
+equilibria therefore have a fold at P of order penetration³, and return without contact after a sharp turn. Hence P(λ)
+is extrapolated to its zero instead. In a contact with several zones every zone may lose its force.
 
 A fold is also attributed to the penalty if two conditions hold. With a much stiffer penalty μ would be positive, and
 P is negligible against its value at the start of the following. If the start was too close for this test, the

@@ -12,7 +12,7 @@ t, n    unit tangent (cos θ, sin θ) at a node, and its normal (−sin θ, cos 
 
 With this speed an element between nodes of an arc deviates from the arc by a share of h⁶ only. An arc of angle 2α
 needs m = 4 R tan(α/2) = 2 R α (1 + α²/12 + ...), the handles of a Bézier arc. A speed of L would bulge the element by
-h² κ c N/8 and h⁴ κ³/384, and a stiff contact beside a clamp would load the clamp instead.
+h² κ c N/8 and h⁴ κ³/384. A stiff contact beside a clamp would then load the clamp instead.
 """
 
 from __future__ import annotations

@@ -53,7 +53,8 @@ class Roles:
     """Choice of the place that carries the contact integral, and known sides.
 
     The integral runs along the ``later`` place of a pair, if the beam's end may lie over its own side, else along the
-    earlier. The partner is then never nearer to that end than to the other end, by which it is ``ended`` if thick.
+    earlier. The partner is then never nearer to this end than to the other end, which limits the partner (``ended``)
+    if thick.
 
     ``across`` (k, 2) are pairs of places ζ and ζ_m of the last accepted state, and ``side`` (k,) are their sides.
     """

@@ -17,7 +17,7 @@ elements, keeps the line smooth. The elements' tangents differ by the change of 
 
 At a welded end the section's rotation is prescribed, and so is the line's tangent. The moment of a pressure beside
 the clamp then acts on the clamp. If the tangent followed the end element's shear, the moment would become a force
-between clamp and contact, with an error of first order in the element. The same holds for an end pinned to its
+between clamp and contact. The error would be of first order in the element. The same holds for an end pinned to its
 contact surface.
 """
 

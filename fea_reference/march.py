@@ -62,9 +62,9 @@ _SETTLINGS = 8
 _LED = 1e-5  # relative change of the resting pressure above which the lead is computed again
 _NEARBY = (1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0)  # steps: distances at which a closing under tight penalties is sought
 _SINKING = 0.1  # thicknesses: penetration above which tight penalties have to push the beams apart first
-_DEEPER = 1e-3  # shortest elements: additional penetration that shows a contact on its way through
+_DEEPER = 1e-3  # shortest elements: additional penetration of a contact about to be passed through
 _THROUGH = 0.5  # thicknesses: longest motion within which no beam passes through another unnoticed
-_AT_LIMIT = 1e-10  # rad: overrun of an angle limit at which its stop closes
+_AT_LIMIT = 1e-10  # rad: overrun of an angle limit at the closing of the stop
 _SHARP = 1e-3  # times the accepted residual: aim at a station, where this is above round-off
 _SHARPENINGS = 3
 _SOFT = 0.1  # times the stiffest penalty that the elements resolve
@@ -103,9 +103,9 @@ class StoppedError(Exception):
 class Behind:
     """The last step: parameter number ``load``, increment ``by``, higher-order terms of the path.
 
-    With u from −1 at the beginning of the step to 0 at its end, the path is u times the tangent at the end plus
-    ``second`` u² plus ``third`` u³, (size,) both. ``acting`` and ``contacts`` are the active constraints and the
-    closed contacts at the beginning.
+    With u from −1 at the beginning of the step to 0 at the end, the path is u times the last tangent + ``second`` u²
+    + ``third`` u³, (size,) both. ``acting`` and ``contacts`` are the active constraints and the closed contacts at
+    the beginning.
     """
 
     load: int
@@ -723,9 +723,8 @@ class March:
     def tighten(self) -> None:
         """Penalty continuation: change penalties until every contact has its intended penetration.
 
-        A contact in a point starts at the depth that keeps its force, so that a large change needs few iterations.
-        Such pairs of beams are held active meanwhile: a motion above their depth would open them or multiply their
-        force.
+        A contact in a point starts at a depth with the same force, which saves iterations of a large change. Such
+        pairs of beams are held active meanwhile: a motion above their depth would open them or multiply their force.
         """
         self.loose = False
         most = _TIGHTEN
@@ -963,7 +962,7 @@ class March:
 
 
 def _too_deep(model: Model, system: System) -> list[Contact]:
-    """Contacts so deep that the next step may count them as passed through.
+    """Contacts too deep for the next step, which might count the bodies as passed through.
 
     Where neutral lines cross, the first beam is on no side of the second, and no penalty separates them.
     """

@@ -1,13 +1,12 @@
 """Discretisation of a scene: nodes, elements, bodies, joints, guides, drives and loads, all dimensionless.
 
 Lengths are relative to the longest beam and bending stiffnesses to the largest. The unit of force is therefore
-EI/length² and of moment EI/length, and a change of the scene's units leaves the problem unchanged to round-off.
+EI/length², the unit of moment EI/length. A change of the scene's units leaves the problem unchanged to round-off.
 
 The unknowns z are, in this order: the nodes' (x, y, θ) and the elements' axial forces N, numbered by scikit-fem; (X,
-Y, φ) of every moving body, its displacement and rotation; the multipliers of all rows. A joint has two or three
-rows, a hinge between bodies two, a drive and a stop a single row. The guide of a sliding body has two rows, against
-motion across and rotation; with a pin in a slot the first row alone. The guide of a turning body has two rows for its
-pivot.
+Y, φ) of every moving body, its displacement and rotation; the multipliers of all rows. A joint has two or three rows,
+a hinge between bodies two, a drive and a stop a single row. The guide of a sliding body has two rows, against motion
+across and rotation; with a pin in a slot the first row alone. The guide of a turning body has two rows for its pivot.
 """
 
 from collections.abc import Sequence

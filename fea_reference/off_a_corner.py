@@ -10,9 +10,8 @@ P       corner that presses on the beam's side, near an end
 
 Beyond the beam's end the corner presses on the round end face, with a force that turns away, or on nothing. The
 branch therefore ends with the beam's side, at ℓ = 0. A penalty acts along a zone. A zone that reaches the end is cut
-short on one side, and the branch folds at an ℓ of the zone's width, which vanishes for an infinite penalty. A
-complete zone is not affected by the end. The branch is extrapolated to ℓ = 0 from the last point with a complete
-zone.
+short on a side. The branch then folds at an ℓ of the zone's width, which vanishes for an infinite penalty. A complete
+zone is not affected by the end. The branch is extrapolated to ℓ = 0 from the last point with a complete zone.
 """
 
 from collections.abc import Sequence

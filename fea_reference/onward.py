@@ -1,15 +1,15 @@
-"""Where a branch goes on from when something has just come to touch: what touches holds it back from there on.
+"""Path tangent at a closing: the new contacts resist from there on.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-K, r    tangent, and the rate dz/dλ along the branch, of the system that only touches
-C       gradients of the gaps by the unknowns, one column for each contact
-p       rates of the pushes
+K, r    tangent, and path tangent dz/dλ, without the new contacts
+C       derivatives of their gaps by the unknowns, one column per contact
+p       rates of the contact forces
 ======  =====================================================================================
 
-At the end of a gap the contact has neither a zone nor a force, and the rate r leads straight through it.  With the gaps
-held it is r + K⁻¹ C p, with Cᵀ K⁻¹ C p = −Cᵀ r, where every p presses; what would pull is free to go.
+At zero gap a contact has neither a zone nor a force, and r leads straight through. With gaps held at zero the path
+tangent is r + K⁻¹ C p, with Cᵀ K⁻¹ C p = −Cᵀ r, where every p presses; a contact in tension is released.
 """
 
 from collections.abc import Mapping
@@ -23,13 +23,13 @@ from fea_reference.model import Model
 from fea_reference.system import System
 from fea_reference.touch import Contact, Face, Penalty
 
-_LEAD = 1e-6  # of the thickness: how near a place is to what it touches that is taken to touch, too
-_NOTHING = 1e-12  # of the largest: an opening that nothing moves by
+_LEAD = 1e-6  # thicknesses: largest gap of places that count as touching
+_NOTHING = 1e-12  # times the largest compliance: contacts below are linearly dependent
 
 
 @dataclass(frozen=True, slots=True)
 class Onward:
-    """The ``rate`` (size,) with what touches held, rates of its ``pushes``, and the ``system`` with where it does."""
+    """Path tangent ``rate`` (size,), rates of the contact forces ``pushes``, and the ``system`` with these contacts."""
 
     rate: Array
     pushes: Mapping[Contact, float]
@@ -39,13 +39,13 @@ class Onward:
 def onward(
     model: Model, system: System, penalties: Mapping[Contact, Penalty], quadrature: int, rate: Array, sense: float
 ) -> Onward:
-    """How the branch goes on in a ``sense`` (±1) of the value, whose ``rate`` (size,) without what touches is known."""
+    """Path tangent in ``sense`` (±1) of λ with the new contacts; ``rate`` (size,) is the tangent without them."""
     found = []
     for one in system.touches:
         if one.push > 0.0 or zones_of(model, one.pair, system.z).least > CLOSED * one.pair.scale:
             continue
         if isinstance(one.pair, Face) and one.pair.own:
-            continue  # beside an end that a joint holds on it all is near
+            continue  # beside an end jointed to the edge every place is near
         near = Penalty(penalties[one.pair].stiffness, _LEAD * one.pair.scale)
         there = touch(model, one.pair, near, quadrature, system.z)
         gradient = np.zeros(model.size)

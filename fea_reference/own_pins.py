@@ -9,13 +9,13 @@ P       the joint, on the edge (half of the thickness from the edge for a thick 
 ======  =====================================================================================
 
 The free side is 0 ≤ β ≤ ∠(τ₊, −τ₋). Where the edge ends at P, only one of both limits holds; for the second limit β
-starts at −τ₋ and is not positive. A stop enforces the limits: the gap beside the pin depends on the tangent at the
-pin, on any mesh, and the stop's moment replaces the moment of the pressure there. With shear the stop holds the
+starts at −τ₋ and is not positive. A stop enforces the limits. On any mesh the gap beside the pin depends on the
+tangent at the pin. The stop's moment replaces the moment of the pressure there. With shear the stop holds the
 section, as any stop; :mod:`fea_reference.face` treats the lean of the line.
 
 Rounded numbers in a scene may place the beam beyond a limit. The stop permits this excess until the edge presses. The
-beam then lies along the edge: at an angle δ to it, a straight part would need a force 6 EI δ/h² beside the pin, zero
-in the reference configuration and unbounded on short elements.
+beam then lies along the edge. At an angle δ a straight part would need a force 6 EI δ/h² beside the pin, zero in the
+reference configuration and unbounded on short elements.
 """
 
 import math

@@ -12,11 +12,11 @@ Along a branch Π changes by the integral of F, by Hermite's rule exact up to th
 
     ΔΠ = h (F_a + F_b)/2 + h² (F′_a − F′_b)/12.
 
-After a jump less energy is left. In ever shorter steps the missing energy is constant, while the error bound of the
-rule, the change of F, vanishes with h except for the jump of F. In a long step the missing energy may hide in the
-error bound. Then F has dropped against F_a + h (F′_a + F′_b)/2, or F rises at the beginning of the step and falls at
-its end. Before a fold F falls ever faster, and F may also fall on the branch beyond. An opening contact or a smooth
-maximum of F has a similar effect, which vanishes with the step length.
+After a jump less energy is left. In ever shorter steps the missing energy is constant. The error bound of the rule,
+the change of F, vanishes with h except for the jump of F. In a long step the missing energy may hide in the error
+bound. Then F has dropped against F_a + h (F′_a + F′_b)/2, or F rises first and falls at the end of the step. Before a
+fold F falls ever faster, and F may also fall on the branch beyond. An opening contact or a smooth maximum of F has a
+similar effect, which vanishes with the step length.
 """
 
 import numpy as np

@@ -8,9 +8,9 @@ x, n    the closest place of the neutral line, and the line's normal there, to t
 d       n·(x − c)
 ======  =====================================================================================
 
-If both states have a closest place, the second found from the first, a beam that swept over the point has it on the
-other side: d changes sign. This test is exact for any small obstacle. A beam that went around the point with its end
-has no closest place in a short step; a beam with a closer part elsewhere moved farther than a step.
+Both states have a closest place, the second found from the first. If the beam swept over the point, d changes sign.
+This test is exact for any small obstacle. A beam that went around the point with its end has no closest place in a
+short step; a beam with a closer part elsewhere moved farther than a step.
 """
 
 from dataclasses import dataclass

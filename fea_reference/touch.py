@@ -223,12 +223,12 @@ class Touch:
 
     ``stiffness`` (k,) is the penalty times the length of a point, and ``gap`` (k,) the gap minus the lead. ``gap_by``
     (m, k) and ``gap_by_twice`` (m, m, k) are the gap's derivatives by the element unknowns of the first line, then of
-    the second line or of a moving rigid body. ``chain`` continues to all unknowns, at c = k/alike places, as
-    ``alike`` consecutive points lie in the same elements.
+    the second or a moving body. ``chain`` continues to all unknowns, at c = k/alike places, as ``alike`` consecutive
+    points lie in the same elements.
 
     ``zeta`` (k,) and ``zeta_m`` (k,) are places on the first and second beam, the latter empty for a rigid body.
-    ``x`` and ``x_m`` (2, k) are points of the first neutral line and of the second or the edge, and ``normal`` (2, k)
-    points from the edge or second beam to the first.
+    ``x`` and ``x_m`` (2, k) are points of the first neutral line and of the second or the edge. ``normal`` (2, k)
+    points to the first beam.
 
     ``missing`` is the force left out at ends of the second beam, and ``lacks`` its largest share of a zone's force.
     ``bent`` (m, m, k) are further second derivatives of the energy at some points. ``sharp`` is True for a contact at

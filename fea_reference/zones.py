@@ -39,7 +39,7 @@ from fea_reference.projection import project
 SAMPLES_PER_ELEMENT = 4
 _ITERATIONS = 60
 _END_ITERATIONS = 15
-_INSIDE = 1e-6  # elements: distance that separates the inside of an element from its node
+_INSIDE = 1e-6  # elements: distance between the inside of an element and a node
 _ON_RAY = 1e-6  # elements
 _ARRIVED = 1e-8  # elements: last step of a root search
 # least value under the root of a parabola's zero, below which the parabola gives no small correction of the step
