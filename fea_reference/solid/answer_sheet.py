@@ -1,4 +1,4 @@
-"""Point forces, contact states and body motions of a solid for the answer sheet, SI; a solid states no beams.
+"""Point forces, contact states and body motions of a solid for the answer sheet, SI; a solid has no beam states.
 
 Contacts act at the Gauss points of their zones, or in a corner.
 """
@@ -18,7 +18,7 @@ from fea_reference.solid.supports import place, support
 
 
 def point_forces(scene: Scene, march: March) -> PointForces:
-    """All forces but the loads."""
+    """All forces except the loads."""
     rows = [*_at_faces(scene, march), *_on_bodies(scene, march), *_at_stops(march)]
     rows += [row for touch in march.system.touches for row in _at_contact(scene, march, touch)]
     units = march.model.units

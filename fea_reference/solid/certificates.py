@@ -1,4 +1,4 @@
-"""What makes a station's answer believable."""
+"""Certificate of a station's answer."""
 
 import numpy as np
 
@@ -16,15 +16,15 @@ from fea_reference.solid.system import assemble
 _VIOLATION = 1e-9
 _BALANCE = 1e-8
 _YIELDING = 1e-4  # rad
-_OTHER_WAY = 5.0  # of the penetration asked: what the other edge's own points may find
+_OTHER_WAY = 5.0  # times the requested penetration: limit for the penetration seen from the other edge
 
 
 def certify(march: March) -> Certificate:
-    """Look at the state that the march has reached, summed up anew.
+    """Certificate of the current state, from a fresh assembly.
 
-    Between two beams the gap is held at places of the first one's edge; the certificate looks from the second one's
-    as well, where an end's corner would show that presses on the first one's side.  Of an end against what is rigid
-    both corners are held; it looks at the face between them.
+    Contact of two beams is integrated along the first edge. The certificate also evaluates the gap from the second
+    edge, where the corner of an end on the first's side would show. For an end against a rigid body both corners are
+    in contact; the certificate evaluates the face in between.
     """
     model, settings = march.model, march.settings
     march.system = assemble(model, march.penalties, settings.quadrature, march.values, march.system.z)
@@ -76,7 +76,7 @@ def certify(march: March) -> Certificate:
 
 
 def _other_way(march: March, pair: Pair) -> float:
-    """Penetration of two edges as found from the other one, over the mean thickness."""
+    """Penetration of two edges seen from the other edge, relative to the mean thickness."""
     if isinstance(pair.other, Butt):
         return _face(march, pair, pair.other)
     if not isinstance(pair.other, Skin):
@@ -87,7 +87,7 @@ def _other_way(march: March, pair: Pair) -> float:
 
 
 def _face(march: March, pair: Pair, butt: Butt) -> float:
-    """Penetration of an end's face into what is rigid, over the thickness."""
+    """Penetration of an end's face into a rigid body, relative to the thickness."""
     model, system = march.model, march.system
     nodes = model.mesh.face(pair.skin.beam, 1.0 if butt.last else 0.0)
     places = (model.mesh.places + system.q.reshape(-1, 2))[nodes]

@@ -1,21 +1,21 @@
-"""Contacts of a scene: which edges may touch what, and what they exert in a state.
+"""Evaluation of contacts in a state: gaps, forces and stiffness.
 
 ======  ===============================================================================
 symbol  meaning
 ======  ===============================================================================
-g       gap at a point of the edge that is integrated over
-ε       penalty, pressure per depth; ρ its factor on E/h of the softer of both sides
+g       gap at a point of the edge that carries the integral
+ε       penalty, pressure per depth; ρ its factor on E/h of the softer side
 p       pressure, ε max(−g, 0)
-w, ds   width, and length of the edge without stress
+w, ds   width, and undeformed length of the edge
 ======  ===============================================================================
 
-The energy is ½ ∫ ε w g² ds over the places with g < 0; force and tangent are its derivatives.  A rigid corner that
-juts out presses in a point of the edge, with ε over an element's length there, and so does the corner of a beam's end,
-held or free: without it the end would be held by a wedge of its edge alone, that grows and shrinks with the depth.
+The energy is ½ ∫ ε w g² ds over the places with g < 0; force and tangent are its derivatives. A convex rigid corner
+presses in a point of the edge, with ε over an element's length, and so does the corner of a beam's end, joined or
+free. Without the latter only a wedge of the edge would support the end, whose size varies with the depth.
 
-In the course of Newton's iterations the part ε w g ∂²g of the tangent takes the g that the last step foresaw: where an
-edge has gone too deep the pressure of that state, which is far too large, has no say in what is stable.  A corner that
-was foreseen to press is held on its edge for one iteration even where it is off it by then, or it would come and go.
+During Newton's iterations the part ε w g ∂²g of the tangent uses the g predicted by the last step. The excessive
+pressure of an edge that has gone too deep then does not affect the stability. A corner with a predicted force stays
+active for an iteration even without overlap, or the active set would cycle.
 """
 
 from collections.abc import Mapping
@@ -33,12 +33,12 @@ from fea_reference.solid.rigid import Shape
 from fea_reference.solid.skin import STENCIL, Skin
 from fea_reference.solid.zones import NOWHERE, Gap, Zones, least, zones
 
-_REACH = 1.0  # thicknesses that gaps are looked for in, and a few nodes
-_FLAT = -0.9  # cosine between a beam's normal and a side's: what leans more on an edge with corners is on a corner
+_REACH = 1.0  # thicknesses, plus a few nodes: range of the gap search
+_FLAT = -0.9  # cosine between normals of a beam and a rigid side: a larger angle belongs to a corner
 
 
 Foreseen = tuple[Array, Array]
-"""Places ζ (k,), ascending, and the g ≤ 0 that is foreseen there (k,)."""
+"""Places ζ (k,), ascending, and the predicted g ≤ 0 (k,) there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,16 +46,16 @@ class Touch:
     """A pair in a state.
 
     Attributes:
-        pair: which.
-        zones: where it overlaps.
+        pair: the pair.
+        zones: zones of overlap.
         zeta: ζ of the points (k,).
-        facing: ζ of the other edge's (k,); empty for what is rigid.
-        points: where they are (k, 2).
-        push: their forces on the first edge (k, 2).
-        dofs: numbers (k, 28 or 17) among the mesh's q and, behind them, the bodies' unknowns as if all moved.
-        gradient: forces on these, the energy's derivative (k, 28 or 17).
-        hessian: (k, 28 or 17, 28 or 17).
-        gap: g of the points (k,), and its ``slope`` by the numbers (k, 28 or 17).
+        facing: ζ of the opposite places on the other edge (k,); empty for a rigid body.
+        points: positions (k, 2).
+        push: contact forces on the first edge (k, 2).
+        dofs: numbers (k, 28 or 17) among the mesh's q, followed by three unknowns of every body.
+        gradient: derivative of the energy by these (k, 28 or 17).
+        hessian: second derivative (k, 28 or 17, 28 or 17).
+        gap: g of the points (k,), and the derivative ``slope`` (k, 28 or 17).
         energy: of the penalty.
     """
 
@@ -73,28 +73,28 @@ class Touch:
     energy: float
 
     def foreseen(self, step: Array) -> Foreseen:
-        """What the gap will be after a ``step`` of all that is numbered, to first order."""
+        """Gaps after a ``step`` of the numbered unknowns, to first order."""
         return self.zeta, np.minimum(self.gap + (self.slope * step[self.dofs]).sum(axis=1), 0.0)
 
     @property
     def penetration(self) -> float:
-        """The largest depth."""
+        """The largest penetration."""
         return max(0.0, -self.zones.least)
 
 
 def touch(
     model: Model, pair: Pair, factor: float, quadrature: int, q: Array, z: Array, foreseen: Foreseen | None = None
 ) -> Touch:
-    """A pair in a state.
+    """Evaluation of a pair in a state.
 
     Args:
         model: the mechanism.
-        pair: which.
+        pair: the pair.
         factor: ρ of the penalty.
-        quadrature: Gauss points on each part of a zone.
+        quadrature: Gauss points on every part of a zone.
         q: displacements (2N,).
         z: unknowns.
-        foreseen: the gap for the tangent's second part; without it the state's own.
+        foreseen: predicted gap for the second part of the tangent; None for the state's own.
     """
     places = model.mesh.places + q.reshape(-1, 2)
     skin, other = pair.skin, pair.other
@@ -217,19 +217,19 @@ def _butted(
 
 
 def _holds(g: float, foreseen: Foreseen | None) -> bool:
-    """Whether a corner is held in this iteration: where it is within, or was foreseen to press and is near."""
+    """True if a corner is active in this iteration: overlapping, or near with a predicted force."""
     return g < 0.0 or (np.isfinite(g) and foreseen is not None and bool((foreseen[1] < 0.0).any()))
 
 
 def _open(pair: Pair, found: Zones) -> Touch:
-    """A corner that presses nothing."""
+    """A corner without contact."""
     none, n = np.empty(0), 2 * STENCIL
     rows, points, dofs = np.empty((0, n)), np.empty((0, 2)), np.empty((0, n), dtype=np.intp)
     return Touch(pair, found, none, none, points, points, dofs, rows, np.empty((0, n, n)), none, rows, 0.0)
 
 
 def _in_a_point(skin: Skin, zeta: Array) -> Array:
-    """ε w over an element's length, (k,)."""
+    """ε w times an element's length, (k,)."""
     element = 2.0 * np.hypot(*skin.curve(skin.places, zeta)[1].T)
     return np.asarray(skin.at(skin.stiffness, zeta) * skin.at(skin.width, zeta) * element)
 
@@ -239,7 +239,7 @@ def _place_of(tip: Tip, pointed: Skin) -> float:
 
 
 def _comes_back(pair: Pair, other: Skin, x: Array, y: Array, reach: float) -> bool:
-    """Whether of two edges of one beam, with nodes ``x`` and ``y`` (N, 2), any node of one is near one of the other."""
+    """True if any node of one edge of a beam, at ``x`` (N, 2), is near the other edge, at ``y`` (N, 2)."""
     nodes = np.arange(float(pair.skin.nodes.size))
     outward = pair.skin.outward(pair.skin.curve(x, nodes)[1])
     return bool(facing.nearest(other, y, x, outward, reach, _beside(pair, nodes))[1].any())
@@ -250,19 +250,19 @@ def _in_one_place(g: float, at: float) -> Zones:
 
 
 def _beside(pair: Pair, zeta: Array) -> facing.Own | None:
-    """Of an edge whose beam touches itself, where along the beam the points at ζ (k,) are."""
+    """Places along the beam of points ζ (k,) of an edge in self-contact; None otherwise."""
     return None if pair.way == 0 else facing.Own(pair.skin.at(pair.skin.u, zeta), pair.way)
 
 
 def _butt_gap(model: Model, pair: Pair, butt: Butt, places: Array, z: Array) -> tuple[float, float]:
-    """g of the corner of an end, infinite where no side has it, and its ζ."""
+    """g of an end's corner, infinite if no side is opposite, and its ζ."""
     at = pair.skin.nodes.size - 1 if butt.last else 0
     there = rigid.seen(model.bodies[pair.body], places[pair.skin.nodes[[at]]], z)
     return float(butt.shape.measured(there)[0][0]), float(at)
 
 
 def _tip_gap(pair: Pair, tip: Tip, places: Array) -> tuple[float, float]:
-    """g of the corner of an end, infinite where nothing near faces it, and ζ of the other edge."""
+    """g of an end's corner, infinite if no place is opposite, and ζ of the other edge."""
     pointed, pressed = tip.roles(pair)
     at = np.array([_place_of(tip, pointed)])
     here, slope, _ = pointed.curve(places[pointed.nodes], at)
@@ -274,10 +274,10 @@ def _tip_gap(pair: Pair, tip: Tip, places: Array) -> tuple[float, float]:
 
 
 def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
-    """Where a pair overlaps, with the nodes at ``places`` (N, 2)."""
+    """Zones of overlap of a pair, with the nodes at ``places`` (N, 2)."""
     if isinstance(pair.other, Corner):
         return _in_one_place(*_corner_gap(model, pair, pair.other, places, z))
-    assert not isinstance(pair.other, Tip | Butt)  # which have no extent
+    assert not isinstance(pair.other, Tip | Butt)  # tips and butts have no extent
     gap = _gap(model, pair, pair.other, places, z)
     return NOWHERE if gap is None else zones(gap, pair.skin.nodes.size)
 
@@ -301,7 +301,7 @@ def _corner_gap(model: Model, pair: Pair, corner: Corner, places: Array, z: Arra
 
 
 def _gap(model: Model, pair: Pair, other: Skin | Shape, places: Array, z: Array) -> Gap | None:
-    """The gap along the first edge; None where the other is far from all of it."""
+    """The gap along the first edge; None where the other is far from the whole edge."""
     skin = pair.skin
     x = places[skin.nodes]
     if isinstance(other, Skin):
@@ -332,7 +332,7 @@ def _gap(model: Model, pair: Pair, other: Skin | Shape, places: Array, z: Array)
 
 
 def closed(touches: tuple[Touch, ...]) -> Mapping[str, tuple[Touch, ...]]:
-    """What presses, by the name of the contact."""
+    """Touching pairs by the name of their contact."""
     names = dict.fromkeys(one.pair.name for one in touches)
     return {
         name: pressing

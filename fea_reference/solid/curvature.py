@@ -1,16 +1,16 @@
-"""The smallest curvature of the potential energy on the feasible directions.
+"""Smallest curvature of the potential energy on the feasible directions.
 
 ======  =======================================================================================
 symbol  meaning
 ======  =======================================================================================
-K       tangent, with the rows' borders
+K       tangent, bordered by the rows
 M       share of a node in the beams' lengths, one for bodies and faces, zero for multipliers
 λ       curvature, K v = λ M v
 ======  =======================================================================================
 
-M has nothing for multipliers, so the finite λ of the bordered system are those on the directions that the rows allow.
-The λ nearest to zero are found, of which one is the first that changes its sign on a way that begins at a minimum; and
-the sign of K's determinant says whether, beside one per row, an odd number of negative ones has been missed.
+M is zero for multipliers, so that the finite λ of the bordered system belong to the directions permitted by the rows.
+The λ nearest to zero are computed; along a branch from a minimum the first sign change is among them. The sign of K's
+determinant, corrected for one negative pivot per row, shows whether an odd number of negative λ was missed.
 """
 
 import numpy as np
@@ -26,7 +26,7 @@ _MODES = 3
 
 
 def smallest_curvature(model: Model, system: System) -> float:
-    """λ nearest to zero, or the least of the few nearest where one is negative; NaN where one is missed."""
+    """λ nearest to zero, or the least of the nearest if any is negative; NaN if a negative λ was missed."""
     mass = masses(model)
     if system.factors is None:
         return 0.0
@@ -44,18 +44,18 @@ def smallest_curvature(model: Model, system: System) -> float:
 
 
 def beside_minima(model: Model, system: System) -> bool:
-    """Whether the tangent's determinant says that the number of negative curvatures is odd: no minimum."""
+    """True if the tangent's determinant shows an odd number of negative curvatures: no minimum."""
     return system.factors is not None and _odd(system.factors) != bool(len(model.rows) % 2)
 
 
 def _odd(factors: SuperLU) -> bool:
-    """Whether the determinant is negative."""
+    """True if the determinant is negative."""
     negative = int((factors.U.diagonal() < 0.0).sum())
     return bool((negative + _transpositions(factors.perm_r) + _transpositions(factors.perm_c)) % 2)
 
 
 def _transpositions(permutation: Ints) -> int:
-    """How many make up a permutation."""
+    """Number of transpositions in a permutation."""
     n = permutation.size
     cycles, _ = connected_components(coo_matrix((np.ones(n), (np.arange(n), permutation)), (n, n)))
     return n - int(cycles)

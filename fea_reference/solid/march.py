@@ -1,23 +1,23 @@
-"""From station to station by load steps that cut and grow.
+"""Load stepping from station to station, with step control and penalty continuation.
 
 ======  ==========================================
 symbol  meaning
 ======  ==========================================
-λ       value of the stepped load or drive, no unit
+λ       dimensionless value of the stepped parameter
 z(λ)    equilibrium
 ======  ==========================================
 
-A step begins at the last equilibrium, whose tangent is the first iteration's, and ends in another, or is cut; an
-easy one is doubled.  (The line through the last two equilibria is no better a beginning: along it what turns is
-stretched.)  Where a contact closes on the way, the λ at which its gap vanishes is looked for between open states.
+A step starts at the last equilibrium and ends in another or is cut; an easy step is doubled. The first Newton
+iteration is the tangent predictor. (Extrapolation from two equilibria is no better: rotating parts are stretched
+along the line.) Where a contact closes, the zero of its gap in λ is sought between open states.
 
-A step that is too long may end in an equilibrium that is no minimum, beside the branch: the sign of the tangent's
-determinant tells of an odd number of negative curvatures, and the step is cut.
+A long step may end in an equilibrium on another branch that is no minimum. The sign of the tangent's determinant
+reveals an odd number of negative curvatures, and the step is cut.
 
-Where beams are slender, a penalty by their Young's modulus holds an edge to a millionth of the depth that is asked, and
-Newton's iterations find no way along which such a contact travels, opens or goes from an end's corner to the edge
-beside it.  A step that fails therefore leaves the march with looser penalties, as long as what they leave is no deeper
-than asked; at a station they are brought back to what they were.
+For slender beams a penalty relative to Young's modulus leaves a millionth of the requested penetration. Newton's
+method then fails where a contact slides, opens or moves from an end's corner to the adjacent edge. A failed step
+therefore loosens the penalties, as long as the penetration stays within the request; at a station the penalties are
+restored.
 """
 
 from dataclasses import dataclass, field, replace
@@ -33,28 +33,28 @@ from fea_reference.solid.passing import passed
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.system import System, assemble
 
-_CUTS = 10  # in a row: from an equilibrium no step is found that is a millionth of the one by which it was reached
-_EASY = 9  # iterations in which a step that may be doubled arrives
-_CUT = 0.3  # of a step that was too long
-_WHOLE = 1.01  # of a step: what is left goes with it
+_CUTS = 10  # consecutive cuts: the last step is a millionth of the step that led to the equilibrium
+_EASY = 9  # iterations of a step that may be doubled
+_CUT = 0.3  # factor of a cut
+_WHOLE = 1.01  # steps: the remaining distance is joined to the last step
 _STIFFER = 4.0
-_STIFFEST = 1e4  # of the factor at first
+_STIFFEST = 1e4  # times the initial factor
 _LOOSER = 0.1
-_LOOSEST = 1e-4  # of the factors asked
+_LOOSEST = 1e-4  # times the requested factors
 _TIGHTER = 10.0
 _GENTLY = 1.2
-_CLOSING = 1e-9  # gap at which a contact is found closed, of the longest beam
-_SAME = 1e-12  # of a step: two values that are one
+_CLOSING = 1e-9  # lengths of the longest beam: gap of a closed contact
+_SAME = 1e-12  # steps: distance of equal values
 _LOOKS = 60
-_SECANTS = 25  # looks after which a gap that has not vanished is taken for one that leaps: the interval is halved
-_POLISHED = 1e-12  # residual, over the scale, if round-off allows that
+_SECANTS = 25  # evaluations before bisection: a gap without a zero so far is discontinuous
+_POLISHED = 1e-12  # times the scale: residual at a station, round-off permitting
 
 
 _NO_MINIMUM = "those that are, are no minima of the potential energy"
 
 
 class StoppedError(Exception):
-    """The march cannot go on: with an ending and a sentence."""
+    """Load stepping cannot continue; with an ending and a sentence."""
 
     def __init__(self, ending: Ending, sentence: str) -> None:
         super().__init__(sentence)
@@ -64,17 +64,17 @@ class StoppedError(Exception):
 
 @dataclass
 class March:
-    """The state of a solve.
+    """State of load stepping.
 
     Attributes:
         model: the mechanism.
-        settings: how.
-        penalties: ρ by pair, on the way; ``asked`` are those of a station.
-        values: of all that is stepped, no units.
-        system: the equilibrium reached.
-        closing: by contact, the value (SI) at which it first closed.
-        iterations: of this station.
-        step: how far the next step may go.
+        settings: numerical settings.
+        penalties: current ρ by pair; ``asked`` are the values at stations.
+        values: dimensionless values of all stepped parameters.
+        system: the last equilibrium.
+        closing: value (SI) at the first closing, by contact.
+        iterations: Newton iterations since the last station.
+        step: limit of the next step.
     """
 
     model: Model
@@ -88,10 +88,10 @@ class March:
     step: float = np.inf
 
     def look(self, values: Array, z: Array, penalties: dict[Pair, float]) -> Found:
-        """Look for an equilibrium; its iterations count.
+        """Equilibrium near ``z``, or the reason of a failure; counts the iterations.
 
         Raises:
-            StoppedError: the station's iterations are used up.
+            StoppedError: the station's iterations are exhausted.
         """
         found = equilibrium(self.model, penalties, self.settings, values, z)
         self.iterations += found.iterations
@@ -100,14 +100,14 @@ class March:
         return found
 
     def loosen(self) -> None:
-        """Make penalties looser, if they are not yet as loose as may be."""
+        """Lower all penalties, down to their least values."""
         self.penalties = {
             pair: max(_LOOSER * rho, min(rho, _LOOSEST * self.asked[pair])) for pair, rho in self.penalties.items()
         }
 
 
 def begin(model: Model, settings: Settings, pairs: tuple[Pair, ...]) -> March:
-    """At rest."""
+    """Initial state, undeformed and unloaded."""
     penalties = dict.fromkeys(pairs, settings.stiffness)
     values = np.zeros(len(model.stepped))
     return March(
@@ -121,10 +121,10 @@ def begin(model: Model, settings: Settings, pairs: tuple[Pair, ...]) -> March:
 
 
 def reach(march: March, part: int, target: float) -> None:
-    """Step the value of a number ``part`` to a ``target``, both without units.
+    """Step parameter number ``part`` to ``target``, dimensionless.
 
-    How short a step may be is no share of what a stage asks: that would end a solve by where its stations lie.  As with
-    the beams a step is cut so often in a row, and the station's iterations are counted.
+    The least step is not a share of the stage, as the end of a solution would then depend on its stations. As for
+    beams, consecutive cuts and the station's iterations are limited.
 
     Raises:
         StoppedError: no equilibrium is found.
@@ -168,12 +168,12 @@ def reach(march: March, part: int, target: float) -> None:
 
 
 def leave_stage(march: March) -> None:
-    """What is stepped is another thing from now on: nothing is known of its way."""
+    """Forget the step limit: the next stage steps another parameter."""
     march.step = np.inf
 
 
 def _polish(march: March) -> None:
-    """Iterate on to round-off: balances sum up what is left at many nodes.  Where that fails the state stays."""
+    """Iterate to round-off, because balances sum the residuals of many nodes. On failure the state is unchanged."""
     settings = replace(march.settings, residual=_POLISHED)
     found = equilibrium(march.model, march.penalties, settings, march.values, march.system.z)
     march.iterations += found.iterations
@@ -182,10 +182,10 @@ def _polish(march: March) -> None:
 
 
 def _tighten(march: March) -> None:
-    """Stiffen penalties until what they leave is no deeper than asked.
+    """Raise penalties until every penetration is within the request.
 
     Raises:
-        StoppedError: that leads to no equilibrium.
+        StoppedError: no equilibrium is found.
     """
     while True:
         deep = [
@@ -195,7 +195,7 @@ def _tighten(march: March) -> None:
             return
         penalties = march.penalties | {pair: _STIFFER * march.penalties[pair] for pair in deep}
         if max(penalties.values()) > _STIFFEST * march.settings.stiffness:
-            return  # the certificate will say so
+            return  # the certificate reports the penetration
         found = march.look(march.values, march.system.z, penalties)
         if found.system is None:
             raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact cannot be made as stiff as asked: {found.why}")
@@ -204,10 +204,10 @@ def _tighten(march: March) -> None:
 
 
 def _fasten(march: March) -> None:
-    """Bring penalties back to those that are asked.
+    """Restore the requested penalties.
 
     Raises:
-        StoppedError: that leads to no equilibrium.
+        StoppedError: no equilibrium is found.
     """
     if march.penalties != march.asked:
         found = _fastened(march, march.values, march.system.z, march.penalties, march.asked)
@@ -218,7 +218,7 @@ def _fasten(march: March) -> None:
 
 
 def _fastened(march: March, values: Array, z: Array, loose: dict[Pair, float], asked: dict[Pair, float]) -> Found:
-    """An equilibrium with the penalties asked, from a loose one's ``z``; by smaller factors where a large one fails."""
+    """Equilibrium with the penalties ``asked``, from ``z`` with loose ones, in smaller factors if needed."""
     factor, found = _TIGHTER, Found(None, 0)
     while loose != asked:
         penalties = {pair: min(factor * rho, asked[pair]) for pair, rho in loose.items()}
@@ -233,9 +233,9 @@ def _fastened(march: March, values: Array, z: Array, loose: dict[Pair, float], a
 
 
 def _note_closings(march: March, part: int, here: float, before: System) -> None:
-    """Find where the contacts have closed that are closed for the first time, since ``before``, at the value ``here``.
+    """Record the first closings in a step from the system ``before``, at the value ``here``.
 
-    The march's penalties leave nothing deeper than is asked, or are those of a station.
+    The penetrations under the current penalties are within the request.
     """
     unit = march.model.stepped[part].unit
     was = _least(before)
@@ -246,10 +246,10 @@ def _note_closings(march: March, part: int, here: float, before: System) -> None
 
 
 def _closing(march: March, part: int, name: str, here: float, before: System) -> float:
-    """λ at which a contact closes, with the penalties asked unless these lead nowhere there.
+    """λ at the closing of a contact, with the requested penalties if possible, else with the current ones.
 
     Raises:
-        StoppedError: it is not found.
+        StoppedError: no closing is found.
     """
     goal, gap = float(march.values[part]), _least(before)[name]
     loose, asked = (
@@ -280,23 +280,25 @@ def _vanishing(
     start: tuple[float, float],
     c: float,
 ) -> float | None:
-    """λ at which the gap of a contact vanishes: between a ``start`` (λ, gap) that is open and what overlaps.
+    """λ at the zero of a contact's gap, between an open ``start`` (λ, gap) and an overlapping state; None without
+    success.
 
-    What overlaps does so with the contact taken away, so that the gap is smooth there; such a state may lie far beyond
-    the open one, and is gone to from the nearest that is known, in shorter steps where one is too long.  What has gone
-    through overlaps too, by nobody knows how much.
+    The contact itself is removed, so that its gap is smooth. An overlapping state may be far from the open state: its
+    search starts from the nearest known state, in shorter steps if necessary. After passing through, the overlap has
+    no meaning and counts as infinite.
 
-    The false position alone would creep: taken away, a contact may leave an overlap that is hundreds of times the gap.
-    Where one end stays twice, its gap is therefore halved (Dowell and Jarratt, BIT 11 (1971) 168-174, "Illinois").
+    Plain false position would converge slowly, because the overlap without the contact may exceed the gap a
+    hundredfold. The gap of an end that stays twice is therefore halved (Dowell and Jarratt, BIT 11 (1971) 168-174,
+    "Illinois").
 
     Args:
         march: at the end of the step.
-        part: what is stepped.
-        name: the contact's.
-        without: the penalties of the others.
-        known: z by λ; what is found is added.
-        start: where the step began.
-        c: the first λ that is looked at.
+        part: number of the stepped parameter.
+        name: of the contact.
+        without: penalties of the other contacts.
+        known: z by λ, extended by all states found.
+        start: beginning of the step.
+        c: first λ to evaluate.
     """
     watched = dict.fromkeys((pair for pair in march.penalties if pair.name == name), 1.0)
     (a, fa), b, fb, last = start, float(march.values[part]), -np.inf, 0.0
@@ -307,7 +309,8 @@ def _vanishing(
         if found.system is None or beside_minima(march.model, found.system):
             c = 0.5 * (nearest + c)
             continue
-        # from so near no iteration may be called for, while what is left of the balance is felt in a gap all but closed
+        # so near the known state Newton's method may need no iteration, while the residual is significant for a nearly
+        # closed gap
         left = found.system.solve(-found.system.residual)
         z = found.system.z if left is None else found.system.z + left
         watching = assemble(march.model, watched, march.settings.quadrature, values, z)
@@ -333,7 +336,7 @@ def _vanishing(
 
 
 def _at(march: March, part: int, value: float) -> Array:
-    """The march's values with another one of what is stepped."""
+    """All values, with another value of the stepped parameter."""
     values = march.values.copy()
     values[part] = value
     return values

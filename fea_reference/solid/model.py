@@ -1,8 +1,8 @@
-"""A scene made discrete as a solid, without units.
+"""Discretisation of a scene as a dimensionless solid.
 
-Lengths are over the longest beam's L, forces over the largest E w t³/12 over L², so moments and energies over the same
-over L.  The mesh has displacements q (2N,), node by node.  The unknowns z are, in this order: the q of all nodes that
-no tie holds; ψ of every pinned face; (X, Y, φ) of every body that moves; a multiplier per row.
+Lengths are relative to the longest beam's L, forces to the largest E w t³/12 over L², moments and energies to the
+same over L. The mesh has displacements q (2N,), node by node. The unknowns z are, in this order: the q of all untied
+nodes; ψ of every pinned face; (X, Y, φ) of every moving body; a multiplier per row.
 """
 
 from collections.abc import Sequence
@@ -38,7 +38,7 @@ from fea_reference.solid.stops import StopPart, stops_of
 
 @dataclass(frozen=True, slots=True)
 class Units:
-    """The scene's own: ``length`` (m), ``bending`` stiffness (N·m²), ``origin`` (2,) (m), ``width`` (m)."""
+    """Dimensional units: ``length`` (m), ``bending`` stiffness (N·m²), ``origin`` (2,) (m), ``width`` (m)."""
 
     length: float
     bending: float
@@ -47,12 +47,12 @@ class Units:
 
     @property
     def force(self) -> float:
-        """N."""
+        """Unit of force, N."""
         return self.bending / self.length**2
 
     @property
     def moment(self) -> float:
-        """N·m, and J."""
+        """Unit of moment and energy, N·m or J."""
         return self.bending / self.length
 
 
@@ -69,7 +69,7 @@ class LoadPart:
 
 @dataclass(frozen=True, slots=True)
 class DrivePart:
-    """What steps a drive's row; ``unit`` is its value's (m or rad)."""
+    """Stepped parameter of a drive's row, in ``unit`` (m or rad)."""
 
     name: str
     unit: float
@@ -77,7 +77,7 @@ class DrivePart:
 
 @dataclass(frozen=True, slots=True)
 class SharePart:
-    """The share of the assembly's moments: ``moments`` (k,) of value one by the unknowns ``dofs`` (k,), rotations."""
+    """The share of the assembly's unit ``moments`` (k,) on the rotations ``dofs`` (k,)."""
 
     dofs: Ints
     moments: Array
@@ -86,14 +86,14 @@ class SharePart:
 
 
 WAY = DrivePart("share of the way of ends to their points", 1.0)
-"""What steps the rows of ends that are assembled."""
+"""Stepped parameter of the rows of assembled ends."""
 
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """Everything the mechanics needs to know of a scene.
+    """Discretised scene.
 
-    ``free`` are the q (f,) that are unknowns, in the order of these; ``lengths`` the beams' arc lengths.
+    ``free`` are the numbers (f,) of the unknown q, in order; ``lengths`` the beams' arc lengths.
     """
 
     units: Units
@@ -111,12 +111,12 @@ class Model:
 
     @property
     def apart(self) -> tuple[Row, ...]:
-        """The rows of ends that are drawn apart from their points, the last ones."""
+        """The rows of ends drawn apart from their points, the last rows."""
         return tuple(row for row in self.rows if row.point)
 
     @property
     def stepped(self) -> tuple[LoadPart | AreaLoad | CouplePart | SharePart | DrivePart, ...]:
-        """What has a value that is stepped, in the order of the values: loads, drives."""
+        """The stepped parameters in the order of the values: loads, then drives."""
         return (*self.loads, *self.drives)
 
     def displacements(self, z: Array) -> Array:
@@ -133,7 +133,7 @@ class Model:
         return q
 
     def chain(self, z: Array) -> csr_matrix:
-        """∂q/∂z (2N, size), by which forces and stiffnesses go from nodes to unknowns."""
+        """∂q/∂z (2N, size), the chain rule from nodes to unknowns."""
         rows, columns, values = [self.free], [np.arange(self.free.size)], [np.ones(self.free.size)]
 
         def enter(nodes: Ints, dof: int, slope: Array) -> None:
@@ -156,7 +156,7 @@ class Model:
         return csr_matrix(entries, (2 * len(self.mesh.places), self.size))
 
     def turning(self, forces: Array, z: Array) -> list[tuple[int, float]]:
-        """Unknowns and Σ f·∂²q for ``forces`` (2N,): what ties that turn add to the tangent, all on its diagonal."""
+        """Unknowns and Σ f·∂²q for ``forces`` (2N,): the diagonal terms of rotating ties in the tangent."""
         found = []
         f = forces.reshape(-1, 2)
         for tie in self.ties:
@@ -193,7 +193,7 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
     units = Units(length, stiffest, mesh.origin, widest)
     materials = [scene.materials[beam.material] for beam in beams]
     elasticity = np.stack([plane_stress(one.youngs_modulus, one.poisson_ratio) for one in materials])
-    # E w per length of the mesh, whose weights have w over the widest
+    # E w per length of the mesh, whose weights contain w over the largest
     elements = built(mesh, elasticity * widest * units.length / units.force)
 
     number = {name: i for i, name in enumerate(scene.bodies)}
@@ -224,7 +224,7 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
     for (i, which, end, nodes), psi in zip(joints, psis, strict=True):
         b = number[scene.body_of(end.point)]
         middle = 0.5 * (mesh.places[nodes[0]] + mesh.places[nodes[-1]])
-        if which == "end" and is_apart(scene, beams[i]):  # its face is a body of its own until it is where it belongs
+        if which == "end" and is_apart(scene, beams[i]):  # the end face is a separate body until the assembly
             b = len(bodies)
             bodies.append(BodyPart(f"end of {mesh.names[i]}", middle, {}, np.arange(size, size + 3)))
             size += 3

@@ -1,4 +1,4 @@
-"""Newton's iterations to an equilibrium at given loads and drives."""
+"""Newton's method for an equilibrium at given loads and drives."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,17 +11,17 @@ from fea_reference.solid.pairs import Pair
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.system import Outlook, System, assemble, deepest
 
-_LONGEST = 0.5  # rad, and of the longest beam: a step that goes farther is shortened to this
-_DEEP = 0.02  # of the thickness
-_PATIENCE = 12  # iterations after which a residual that is still so far, over the scale, will not come down
+_LONGEST = 0.5  # rad, and lengths of the longest beam: limit of a step's motion
+_DEEP = 0.02  # thicknesses
+_PATIENCE = 12  # iterations after which a residual above the next share of the scale ends the search
 _FAR = 0.3
 _SHORTER = 5  # halvings of a step
-_WILD = 1e12  # over the scale: what diverges
+_WILD = 1e12  # times the scale: divergence
 
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """Where the iterations ended: the ``system`` of an equilibrium or None, and how many there were."""
+    """Result of the search: the ``system`` of an equilibrium or None, the number of iterations, and the reason."""
 
     system: System | None
     iterations: int
@@ -29,9 +29,9 @@ class Found:
 
 
 def equilibrium(model: Model, penalties: Mapping[Pair, float], settings: Settings, values: Array, z: Array) -> Found:
-    """Iterate from ``z``; an equilibrium has no element that is turned inside out.
+    """Equilibrium near ``z``, without inverted elements.
 
-    The arguments are those of :func:`~fea_reference.solid.system.assemble`.
+    Arguments as for :func:`~fea_reference.solid.system.assemble`.
     """
     foreseen: Outlook | None = None
     for iteration in range(settings.newton_limit):
@@ -46,7 +46,7 @@ def equilibrium(model: Model, penalties: Mapping[Pair, float], settings: Setting
             arrived = residual <= max(settings.residual * system.scale, system.floor)
             if arrived and not float(system.strained.determinants.min()) > 0.0:
                 return Found(None, iteration, "an element is turned inside out")
-            if arrived:  # else a corner was held that does not press
+            if arrived:  # otherwise a corner without overlap was active
                 return Found(system, iteration)
         if iteration >= _PATIENCE and residual > _FAR * system.scale:
             return Found(None, iteration, "Newton's iterations do not arrive")
@@ -62,7 +62,7 @@ def equilibrium(model: Model, penalties: Mapping[Pair, float], settings: Setting
 
 
 def _not_too_deep(model: Model, penalties: Mapping[Pair, float], system: System, share: float, step: Array) -> float:
-    """So much of a step that no edge goes deeper than ``_DEEP``, or than it is: what passes through is not seen."""
+    """Share of a step without penetrations above ``_DEEP`` or the present one: passing through would go unnoticed."""
     if not penalties:
         return share
     allowed = max(_DEEP, max((one.penetration / one.pair.measure for one in system.touches), default=0.0))

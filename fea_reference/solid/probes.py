@@ -1,4 +1,4 @@
-"""What is asked at a station, in SI units, as :mod:`cprbm_scene.answer` defines it."""
+"""Probed quantities at a station, in SI units, as :mod:`cprbm_scene.answer` defines them."""
 
 import numpy as np
 
@@ -14,11 +14,11 @@ from fea_reference.solid.skin import Skin
 from fea_reference.solid.stress import bending_and_membrane
 from fea_reference.solid.supports import Wrench, cross, grounded, held, place, support
 
-_NOTHING = 1e-9  # of the largest force
+_NOTHING = 1e-9  # times the largest force
 
 
 def probed(scene: Scene, march: March, probe: Probe) -> Array:
-    """One probe's value; the potential energy leaves out what the contact's penalty stores."""
+    """Value of a probe; the potential energy excludes the energy of contact penalties."""
     model, system = march.model, march.system
     units, z = model.units, system.z
     match probe.quantity:
@@ -57,7 +57,7 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
 
 
 def shapes(march: March) -> dict[str, Shape]:
-    """The beams' neutral lines as they lie, SI."""
+    """Neutral lines of the deformed beams, SI."""
     model, drawn = march.model, {}
     places = model.mesh.places + march.system.q.reshape(-1, 2)
     for i, name in enumerate(model.mesh.names):
@@ -69,7 +69,7 @@ def shapes(march: March) -> dict[str, Shape]:
 
 
 def touching(march: March) -> dict[str, Array]:
-    """Places of the closed contacts' points on the first edge, (k, 2) in metres."""
+    """Positions of the closed contacts' points on the first edge, (k, 2) in metres."""
     units = march.model.units
     return {
         name: frozen_array(np.concatenate([one.points for one in found]) * units.length + units.origin)
@@ -79,15 +79,16 @@ def touching(march: March) -> dict[str, Array]:
 
 
 def _touches(march: March, name: str) -> tuple[Touch, ...]:
-    """What presses of a contact; nothing where it is open, or overlaps by round-off and presses by no more."""
+    """Touching pairs of a contact; empty if open, or if the force is round-off."""
     found = closed(march.system.touches).get(name, ())
     force = sum(float(np.hypot(*one.push.T).sum()) for one in found)
     return found if force > _NOTHING * march.system.scale else ()
 
 
 def _arc_lengths(march: March, one: Touch, zeta: Array, facing: Array) -> Array:
-    """Arc lengths (k,), m, on the neutral line of the edge that is integrated over; of a beam that touches itself those
-    of the earlier of both places, the other being at ``facing`` (k,).
+    """Arc lengths (k,), m, on the neutral line of the edge that carries the integral.
+
+    In self-contact the smaller arc length of both places counts, with the other place at ``facing`` (k,).
     """
     skin, other = one.pair.skin, one.pair.other
     u = skin.at(skin.u, zeta)
@@ -98,20 +99,20 @@ def _arc_lengths(march: March, one: Touch, zeta: Array, facing: Array) -> Array:
 
 
 def _ends_of(march: March, one: Touch) -> Array:
-    """Arc lengths of the ends of a pair's zones; of a beam that touches itself of the points next to them."""
+    """Arc lengths of the ends of a pair's zones; in self-contact of the outermost points."""
     if one.pair.way:
         return _arc_lengths(march, one, one.zeta, one.facing)
     return _arc_lengths(march, one, one.zones.zones.ravel(), np.empty(0))
 
 
 def _resultant(march: March, name: str) -> float:
-    """Magnitude of a contact's force on its first beam; of a beam that touches itself on the later of both places."""
+    """Magnitude of a contact's force on its first beam; in self-contact on the later of both places."""
     pushes = (-one.push if one.pair.way > 0 else one.push for one in _touches(march, name))
     return float(np.hypot(*sum((push.sum(axis=0) for push in pushes), np.zeros(2))))
 
 
 def _about_its_pin(scene: Scene, march: March, name: str) -> float:
-    """Moment of a contact's forces on the beam about the first of its pins on what it touches."""
+    """Moment of a contact's forces on the beam about the first of its pins on the opposite body."""
     model, moment = march.model, 0.0
     for one in _touches(march, name):
         body = model.bodies[one.pair.body].name
@@ -123,7 +124,7 @@ def _about_its_pin(scene: Scene, march: March, name: str) -> float:
 
 
 def _goes_with(scene: Scene, point: str, body: str) -> bool:
-    """Whether a point is the body's, or pinned to one of it; bodies that do not move are one."""
+    """True if a point belongs to the body or is pinned to a point of it; all fixed bodies count as one."""
     points = {point}.union(*(pin.points for pin in scene.pins.values() if point in pin.points))
     fixed = {name for name, one in scene.bodies.items() if one.motion == "fixed"}
     return any(scene.body_of(each) in (fixed if body in fixed else {body}) for each in points)
@@ -151,7 +152,7 @@ def _potential_energy(march: March) -> float:
     energy = system.strained.energy
     for part, value in zip(model.loads, march.values[: len(model.loads)], strict=True):
         if isinstance(part, SharePart):
-            continue  # which is at nothing wherever somebody asks
+            continue  # zero whenever a probe is evaluated
         if isinstance(part, CouplePart):
             moved = _turned(march, part)
         elif isinstance(part, AreaLoad):
@@ -165,17 +166,17 @@ def _potential_energy(march: March) -> float:
 
 
 def _turned(march: March, part: CouplePart) -> float:
-    """By how much the section of a moment has turned, with its full turns."""
+    """Rotation of a moment's section, full turns included."""
     model, z = march.model, march.system.z
     beam = int(model.mesh.beams[part.nodes[0]])
-    held = next(tie for tie in model.ties if tie.beam == beam)  # the start's comes first
+    held = next(tie for tie in model.ties if tie.beam == beam)  # the tie at the start comes first
     start = float(model.bodies[held.body].state(z)[2]) if held.psi is None else float(z[held.psi])
     drawn = model.mesh.places
     return part.turned(drawn, drawn + march.system.q.reshape(-1, 2), start)
 
 
 def _holding(scene: Scene, march: March, name: str) -> list[Wrench]:
-    """Forces and moments of the ground at a point, with pivots, or of slide and drives of a point or body."""
+    """Reaction forces and moments at a fixed point, with pivots, or of guides and drives of a point or body."""
     model, system = march.model, march.system
     turning = {key for key, body in scene.bodies.items() if isinstance(body, TurningBody) and body.about == name}
     found = [

@@ -1,4 +1,4 @@
-"""What a scene may ask of the solid: the rest is refused before anything is solved."""
+"""Features of a scene that the solid lacks; such a scene is refused before the solution."""
 
 from cprbm_scene.mistakes import Mistake, SceneError
 from cprbm_scene.solving import refuse as refuse_requirements
@@ -7,10 +7,10 @@ from fea_reference.solid.areas import too_curved
 
 
 def refuse(scene: Scene) -> None:
-    """See that the solid offers all that a scene asks.
+    """Check that the solid offers all features of a scene.
 
     Raises:
-        SceneError: it does not.
+        SceneError: a feature is missing.
     """
     refuse_requirements(scene, "the solid")
     mistakes = too_curved(scene)

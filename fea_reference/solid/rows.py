@@ -1,10 +1,10 @@
-"""What bodies must do beside: pins between them, slides, pivots and drives, each a row with a multiplier.
+"""Constraints of bodies: pins between bodies, slides, pivots and drives, all as rows with a multiplier.
 
 ======  ===================================================================
 symbol  meaning
 ======  ===================================================================
-d, r    direction and arm of a part on one body; without d it is φ
-c       Σ d·(X + (R(φ) − I) r) − value, or Σ φ − value; of an end that is assembled, + apart − value × way
+d, r    direction and arm of a share on one body; without d the share is φ
+c       Σ d·(X + (R(φ) − I) r) − value, or Σ φ − value; for an assembled end + apart − value × way
 μ       multiplier, added to the energy as μ c
 ======  ===================================================================
 """
@@ -21,7 +21,7 @@ from fea_reference.solid.bodies import BodyPart, Tie, across, is_own, turned
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """A body's part in a row: ``direction`` d (2,) or None, ``arm`` r (2,)."""
+    """A body's share in a row: ``direction`` d (2,) or None, ``arm`` r (2,)."""
 
     body: int
     direction: Array | None
@@ -30,10 +30,10 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One row: of what (``name``), its ``shares``, its multiplier's place, and the ``drive`` that steps it.
+    """A row: ``name`` of its origin, ``shares``, number of the multiplier, and the ``drive`` that steps the row.
 
-    Of an end that is assembled ``point`` is where it goes, ``apart`` how far it is drawn from there along the row, and
-    ``way`` what is left of that where it was caught.
+    For an assembled end ``point`` is the target, ``apart`` the initial distance from the target along the row, and
+    ``way`` the remaining distance at the start of the motion.
     """
 
     name: str
@@ -57,7 +57,7 @@ class Row:
         return found
 
     def gradient(self, bodies: tuple[BodyPart, ...], z: Array) -> tuple[Ints, Array]:
-        """Unknowns (k,) and ∂c by them (k,)."""
+        """Unknowns (k,) and the derivatives (k,) of c."""
         dofs, slopes = [np.empty(0, dtype=np.intp)], [np.empty(0)]
         for share in self.shares:
             body = bodies[share.body]
@@ -82,7 +82,7 @@ class Row:
 
 
 def rows_of(scene: Scene, bodies: tuple[BodyPart, ...], first: int) -> tuple[Row, ...]:
-    """A scene's rows, whose multipliers begin at the unknown ``first``."""
+    """A scene's rows, with multipliers from the unknown ``first`` on."""
     number = {body.name: i for i, body in enumerate(bodies)}
     found: list[tuple[str, tuple[Share, ...], str | None]] = []
     for name, both in scene.pins.items():
@@ -119,7 +119,7 @@ def _driven(drive: Drive, scene: Scene, bodies: tuple[BodyPart, ...], number: di
 def brought(
     scene: Scene, ties: Sequence[Tie], bodies: tuple[BodyPart, ...], number: Mapping[str, int], first: int, drive: str
 ) -> tuple[Row, ...]:
-    """Pins of ends that are drawn apart from their points, stepped by a ``drive``; multipliers begin at ``first``."""
+    """Pins of ends drawn apart from their points, stepped by ``drive``, with multipliers from ``first`` on."""
     found: list[Row] = []
     for tie in ties:
         if not is_own(tie, scene):

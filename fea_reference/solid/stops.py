@@ -1,16 +1,16 @@
-"""Stops: limits of the angle at which a pinned face stands to its body, held by a stiff moment.
+"""Stops: limits of the angle between a pinned face and its body, enforced by a stiff moment.
 
 ======  ==============================================================================
 symbol  meaning
 ======  ==============================================================================
 ψ, φ    rotation of the face, and of the body
-β       angle, β⁰ + ψ − φ, with β⁰ as drawn: from the body's line to the beam, in (−π, π]
+β       angle, β⁰ + ψ − φ, with the reference angle β⁰ from the body's line to the beam, in (−π, π]
 K       moment per angle beyond a limit
-m       moment on the face, K (limit − β) beyond it, else 0
+m       moment on the face, K (limit − β) beyond the limit, else 0
 ======  ==============================================================================
 
-The energy is m²/(2 K).  K is small beside what the mesh has for its nodes and large beside what a beam has for its
-end, so that a limit yields by a millionth of an angle.
+The energy is m²/(2 K). K is small against the nodal stiffness of the mesh and large against the stiffness of a beam's
+end: a limit yields by a millionth of an angle.
 """
 
 from collections.abc import Sequence
@@ -26,12 +26,12 @@ from fea_reference.solid.bodies import BodyPart, Tie, stands_on
 STIFFNESS = 1e6
 """K over the largest bending stiffness, per longest beam."""
 
-_ROUNDED = 1e-9  # rad: an angle that is π may be drawn a little beyond
+_ROUNDED = 1e-9  # rad: tolerance for a reference angle of π
 
 
 @dataclass(frozen=True, slots=True)
 class StopPart:
-    """A stop: ``psi`` is the unknown ψ, ``body`` the body's number and ``phi`` its unknown φ, None of the ground."""
+    """A stop: ``psi`` is the unknown ψ, ``body`` the body's number and ``phi`` its unknown φ, None for a fixed body."""
 
     name: str
     psi: int
@@ -46,13 +46,13 @@ class StopPart:
         return self.drawn + float(z[self.psi]) - (0.0 if self.phi is None else float(z[self.phi]))
 
     def moment(self, z: Array) -> float:
-        """m, without units."""
+        """m, dimensionless."""
         angle = self.angle(z)
         return STIFFNESS * (float(np.clip(angle, self.least, self.most)) - angle)
 
     @property
     def dofs(self) -> tuple[tuple[int, float], ...]:
-        """The unknowns of β, each with ∂β."""
+        """The unknowns of β with the derivatives ∂β."""
         return ((self.psi, 1.0),) if self.phi is None else ((self.psi, 1.0), (self.phi, -1.0))
 
 

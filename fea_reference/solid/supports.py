@@ -1,4 +1,4 @@
-"""What the ground, rows and loads do to what they hold."""
+"""Reactions of fixed bodies, rows and loads."""
 
 import numpy as np
 
@@ -11,11 +11,11 @@ from fea_reference.solid.rows import Row
 from fea_reference.solid.system import System
 
 Wrench = tuple[Array, float]
-"""A force (2,) and a moment, about a point that is said."""
+"""A force (2,) and a moment about a stated point."""
 
 
 def support(model: Model, system: System, tie: Tie) -> Wrench:
-    """Force and moment of a tie's body on the face, about the face's middle; of a pinned one no moment."""
+    """Force and moment of a tie's body on the face, about the face's middle; a pinned face has no moment."""
     forces = system.nodal.reshape(-1, 2)[tie.nodes]
     if tie.psi is not None:
         return forces.sum(axis=0), 0.0
@@ -24,25 +24,27 @@ def support(model: Model, system: System, tie: Tie) -> Wrench:
 
 
 def place(model: Model, system: System, tie: Tie) -> Array:
-    """Where a tied face's middle is (2,)."""
+    """Position of a tied face's middle (2,)."""
     return model.bodies[tie.body].carried(tie.pin, system.z)
 
 
 def held(row: Row, system: System) -> Wrench:
-    """Force and moment of a row on its first body, at the arm's point: the multiplier, turned round."""
+    """Force and moment of a row on its first body, at the arm's point: the negative multiplier."""
     pull = -float(system.z[row.multiplier])
     direction = row.shares[0].direction
     return (np.zeros(2), pull) if direction is None else (pull * direction, 0.0)
 
 
 def grounded(model: Model, row: Row) -> int | None:
-    """Which of a row's shares is on a body that moves, if the others are on the ground; None if no share is."""
+    """Number of a row's only share on a moving body, with the others on fixed bodies; None otherwise."""
     moving = [i for i, share in enumerate(row.shares) if model.bodies[share.body].dofs is not None]
     return moving[0] if len(moving) == 1 else None
 
 
 def balance(model: Model, system: System, values: Array) -> tuple[float, float]:
-    """|ΣF| and |ΣM| about the origin of loads, supports, rows and contacts with what is fixed, over the largest."""
+    """|ΣF| and |ΣM| about the origin of loads, supports, rows and contacts with fixed bodies, relative to the
+    largest.
+    """
     z = system.z
     forces: list[Array] = []
     moments: list[float] = []

@@ -1,7 +1,7 @@
-"""The whole mechanism's unbalanced forces and their tangent.
+"""Residual and tangent of the whole mechanism.
 
-The residual is the derivative by all unknowns of Π(z) + Σ μ c(z), elements, contacts and loads in Π, and the tangent
-its second derivative.  Forces are summed up over the mesh's displacements q, and go from these to the unknowns by
+The residual is the derivative of Π(z) + Σ μ c(z) by all unknowns, with elements, contacts and loads in Π; the tangent
+is the second derivative. Forces are assembled over the mesh's displacements q, and transformed to the unknowns by
 ∂q/∂z.
 """
 
@@ -24,12 +24,12 @@ from fea_reference.solid.pairs import Pair
 from fea_reference.solid.stops import STIFFNESS
 
 _ROUND_OFF = 8.0  # measured
-_NOTHING = 10.0  # floors: a force below this is round-off itself
+_NOTHING = 10.0  # floors: smaller forces are round-off
 
 
 @dataclass(frozen=True, slots=True)
 class Outlook:
-    """What a step foresees: ``stress`` (e, q, 3) of the elements and the ``gaps`` of the pairs."""
+    """Prediction of a step: ``stress`` (e, q, 3) of the elements and ``gaps`` of the pairs."""
 
     stress: Array
     gaps: Mapping[Pair, Foreseen]
@@ -37,19 +37,20 @@ class Outlook:
 
 @dataclass(frozen=True)
 class System:
-    """A state ``z`` and what follows from it.
+    """Residual and tangent in a state ``z``.
 
     Attributes:
         z: the unknowns.
         q: displacements of the nodes (2N,).
-        residual: unbalanced generalised forces and violations of rows (size,).
-        tangent: its derivative (size, size).
-        carried: ∂q/∂z, and behind it the bodies' (X, Y, φ) by the unknowns, as if all moved.
-        nodal: forces on the nodes that elements, contacts and loads leave (2N,): of held ones the tie's, turned round.
+        residual: unbalanced generalised forces and constraint violations (size,).
+        tangent: derivative of the residual (size, size).
+        carried: ∂q/∂z, extended by the three unknowns of every body.
+        nodal: unbalanced forces (2N,) of elements, contacts and loads on the nodes; on tied nodes the tie's negative
+            force.
         strained: the elements.
         touches: the pairs.
-        scale: the largest force that balances; where there is none but round-off, one.
-        floor: round-off of the residual: the largest stiffness of a node times the spacing of numbers at the largest
+        scale: the largest force in equilibrium; one if all forces are round-off.
+        floor: round-off of the residual: the largest nodal stiffness times the spacing of numbers at the largest
             displacement.
     """
 
@@ -65,19 +66,19 @@ class System:
     floor: float
 
     def solve(self, right: Array) -> Array | None:
-        """What the tangent makes ``right`` (size,) of; None where it is singular or as good as that."""
+        """Solution (size,) of the tangent's equations for ``right`` (size,); None for a singular tangent."""
         solution = None if self.factors is None else self.factors.solve(right)
         return None if solution is None or not np.isfinite(solution).all() else solution
 
     def outlook(self, step: Array) -> Outlook:
-        """What a ``step`` of the unknowns leads to, to first order."""
+        """Prediction for a ``step`` of the unknowns, to first order."""
         moved = self.carried @ step
         stress = self.strained.foreseen(moved)
         return Outlook(stress, {one.pair: one.foreseen(moved) for one in self.touches})
 
     @cached_property
     def factors(self) -> SuperLU | None:
-        """The tangent, factored."""
+        """LU factors of the tangent; None for a singular tangent."""
         try:
             return splu(
                 self.tangent, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01, options={"SymmetricMode": True}
@@ -94,15 +95,15 @@ def assemble(
     z: Array,
     foreseen: Outlook | None = None,
 ) -> System:
-    """Sum everything up.
+    """Residual and tangent in state ``z``.
 
     Args:
         model: the mechanism.
-        penalties: the pairs that may touch, and each one's factor ρ.
+        penalties: factor ρ of every pair.
         quadrature: Gauss points per part of a zone.
-        values: of all that is stepped, in the model's order, without units.
+        values: dimensionless values of all stepped parameters, in the model's order.
         z: the unknowns.
-        foreseen: by the last step, for the tangent's second part; without it the state's own.
+        foreseen: prediction of the last step for the second part of the tangent; None for the state's own.
     """
     q = model.displacements(z)
     elements = model.strained(q)
@@ -113,7 +114,7 @@ def assemble(
     local = elements.gradient
     m, nodes = len(model.bodies), q.size
     places = model.mesh.places + q.reshape(-1, 2)
-    # the mesh's q and behind them three of every body, as if all moved
+    # the mesh's q, followed by three unknowns of every body
     forces: Array = np.bincount(model.elements.dofs.ravel(), local.ravel(), nodes + 3 * m).astype(float)
     rows, columns, entries = [], [], []
     for one in touches:
@@ -189,13 +190,13 @@ def assemble(
 
 
 def deepest(model: Model, pairs: Iterable[Pair], z: Array) -> float:
-    """The largest depth of overlap in a state, over the mean thickness."""
+    """The largest penetration in a state, relative to the mean thickness."""
     places = model.mesh.places + model.displacements(z).reshape(-1, 2)
     return max((-least_gap(model, pair, places, z) / pair.measure for pair in pairs), default=0.0)
 
 
 def load_direction(model: Model, part: LoadPart | SharePart, z: Array) -> Array:
-    """What a load of value one that acts on bodies adds to the right-hand side (size,)."""
+    """Right-hand side (size,) of a unit load on bodies."""
     f = np.zeros(model.size)
     if isinstance(part, SharePart):
         f[part.dofs] = part.moments
@@ -211,7 +212,7 @@ def load_direction(model: Model, part: LoadPart | SharePart, z: Array) -> Array:
 
 
 def _moving(model: Model) -> csr_matrix:
-    """From bodies' three unknowns, as if all moved, to those that are unknowns (3m, size)."""
+    """Matrix (3m, size) from the unknowns to three unknowns of every body, zero for fixed bodies."""
     every = [np.full(3, -1) if body.dofs is None else body.dofs for body in model.bodies]
     columns = np.concatenate(every)
     rows = np.flatnonzero(columns >= 0)
