@@ -1,4 +1,4 @@
-"""Closed contacts that open, slide onto an end, or touch a circle along a length instead of at a place."""
+"""Changes of closed contacts: opening, sliding onto an end, wrapping around a circle."""
 
 from dataclasses import replace
 
@@ -10,19 +10,19 @@ from elastica_reference.state import State
 from elastica_reference.structure import Resting, Touch, Wrap
 from elastica_reference.way import Way, places_of, touches_of
 
-PULLS = -1e-10  # of a contact's force, no dimension
-_DRAWS = -1e-6  # of a wrap's force
-_CUTS = -1e-9  # curvature of the gap beside a place on a circle, no dimension
-_FIRST_LENGTH = 1e-3  # of a beam, on both sides of a place that becomes a wrap
-_ABOUT_TO_SLIDE = 0.05  # of a beam: a place of contact nearer to its end may come to it
-_LOOKED_AT = 101  # places along a wrap
+PULLS = -1e-10  # of a contact's force, dimensionless
+_DRAWS = -1e-6  # times a wrap's force
+_CUTS = -1e-9  # curvature of the gap beside a place on a circle, dimensionless
+_FIRST_LENGTH = 1e-3  # times a beam's length: half length of a new wrap
+_ABOUT_TO_SLIDE = 0.05  # times a beam's length: distance from which a place of contact may come to an end
+_LOOKED_AT = 101  # samples along a wrap
 
 
 def open_first(way: Way, trial: State) -> bool:
-    """If contacts of a trial pull, go to where the first of them opens; whether one did.
+    """Step to the first opening of a contact in tension; True if there is any.
 
     Raises:
-        LostError: that was not found.
+        LostError: the opening was not found.
     """
     shares = {}
     for name, force in trial.forces.items():
@@ -40,11 +40,11 @@ def open_first(way: Way, trial: State) -> bool:
 
 
 def reform(way: Way, trial: State) -> bool:
-    """Give contacts of a trial that have outgrown their form another; whether any had.
+    """Replace places by wraps or end contacts, and conversely, where needed; True if there was any change.
 
     Raises:
         LostError: no equilibrium in the new form.
-        NotCoveredError: there are no equations for what comes next.
+        NotCoveredError: there are no equations for the new form.
     """
     touches, places = dict(trial.structure.touches), dict(trial.places)
     for name, touch in trial.structure.touches.items():
@@ -72,7 +72,7 @@ def reform(way: Way, trial: State) -> bool:
 
 
 def slide_onto_end(way: Way, goal: float) -> bool:
-    """Go to where a place of contact comes to an end of its beam, if one is about to; whether it did."""
+    """Step to the arrival of a place of contact at an end of its beam, if near; True on success."""
     now = way.state
     for name, touch in now.structure.touches.items():
         if isinstance(touch, Wrap) or touch.at is not None:
@@ -93,7 +93,7 @@ def slide_onto_end(way: Way, goal: float) -> bool:
 
 
 def presses(state: State) -> bool:
-    """Whether every contact presses, and every wrap is one."""
+    """True if every contact presses and every wrap has a non-negative length within its beam."""
     if any(force < PULLS for force in state.forces.values()):
         return False
     for touch in state.structure.touches.values():
@@ -105,14 +105,14 @@ def presses(state: State) -> bool:
 
 
 def sense_of(state: State, touch: Resting | Wrap, s: float) -> float:
-    """+1 where a beam runs round its circle counter-clockwise."""
+    """+1 if a beam runs around its circle counter-clockwise, else −1."""
     x, y, theta = state.along(touch.beam, np.array([s]))[:3, 0]
     arm = np.array([x, y]) - state.found.centres[touch.contact][:, 0]
     return float(np.sign(arm[0] * np.sin(theta) - arm[1] * np.cos(theta)))
 
 
 def _look_over(trial: State, wrap: Wrap) -> None:
-    """See that a wrap presses everywhere, and does not begin or end beyond its beam."""
+    """Check that a wrap presses everywhere, and neither begins nor ends beyond its beam."""
     a, b = trial.wrapped(wrap)
     if wrap.held and b < a:
         raise NotCoveredError(f"{wrap.beam} leaves the circle of {wrap.contact} at its clamp")
@@ -130,7 +130,7 @@ def _draws(state: State, wrap: Wrap) -> bool:
 
 
 def _cuts(state: State, touch: Resting) -> bool:
-    """Whether a beam that touches a circle at one place cuts into it on both sides."""
+    """True if a beam in contact with a circle at a place cuts into the circle on both sides."""
     strip = state.equations.model.strips[touch.beam]
     s = np.array([state.places[touch.contact, touch.beam]])
     x, y, theta, m = state.along(touch.beam, s)[:4, 0]
@@ -142,5 +142,5 @@ def _cuts(state: State, touch: Resting) -> bool:
 
 
 def _out_of_order(state: State) -> bool:
-    """Whether a place of contact has passed a knot or another place."""
+    """True if a place of contact has passed a knot or another place."""
     return any(float(part.b[0]) < float(part.a[0]) for parts in state.found.parts.values() for part in parts)

@@ -1,4 +1,4 @@
-"""Contacts that close, where two lines are found to overlap."""
+"""Closing of contacts at overlaps."""
 
 import math
 from dataclasses import replace
@@ -15,23 +15,23 @@ from elastica_reference.state import State
 from elastica_reference.structure import Meeting, Resting, Touch, Wrap
 from elastica_reference.way import Way
 
-_NEAR_END = 0.2  # of a beam: a contact at its end that moves in appears within this
-_SHALLOW = 1e-4  # of the unit of length: a second place is met so
-_ON_CIRCLE = 1e-9  # of the unit of length and of a tangent, where an end is clamped on a circle
-_FIRST_PLACES = (0.02, 0.01, 0.005)  # of a beam, where a contact that leaves a clamp is first looked for
-_FIRST_WRAPS = (0.25, 0.1, 0.03)  # of the way to where a beam overlaps a circle on which it is clamped
-_PULLS = -1e-9  # of a pressure and of a force, no dimension
+_NEAR_END = 0.2  # times a beam's length: range in which a contact at an end moves inwards
+_SHALLOW = 1e-4  # units of length: depth at which a second place counts
+_ON_CIRCLE = 1e-9  # relative tolerance for an end clamped on a circle, tangent to it
+_FIRST_PLACES = (0.02, 0.01, 0.005)  # times a beam's length: first places of a contact that leaves a clamp
+_FIRST_WRAPS = (0.25, 0.1, 0.03)  # shares of the distance to an overlap: first wraps from a clamp
+_PULLS = -1e-9  # of a pressure and of a force, dimensionless
 
 
 def close_first(way: Way, trial: State, found: list[Overlap]) -> None:
-    """Go to where the first of the overlaps of a trial begins, with that contact closed.
+    """Step to the first closing among the overlaps of a trial.
 
     Raises:
-        LostError: that was not found.
-        NotCoveredError: there are no equations for it.
+        LostError: the closing was not found.
+        NotCoveredError: there are no equations for the closing.
     """
     reached: list[tuple[State, Overlap]] = []
-    # where an end that touches goes in, both beams overlap: the end's own comes first
+    # where an end in contact moves inwards, both beams overlap: the overlap of the end's own beam comes first
     ends = {
         touch.beam for touch in trial.structure.touches.values() if not isinstance(touch, Wrap) and touch.at is not None
     }
@@ -60,12 +60,12 @@ def close_first(way: Way, trial: State, found: list[Overlap]) -> None:
 
 
 def _move_in(way: Way, trial: State, present: Touch, overlap: Overlap) -> None:
-    """A contact at a beam's end goes on between its ends; anywhere else it would be a second place."""
+    """Continue a contact at a beam's end between the ends; elsewhere the overlap would be a second place."""
     length = way.model.strips[overlap.beam].length
     second = NotCoveredError(f"{overlap.contact} touches at a second place or along a length")
     if isinstance(present, Wrap) or present.at is None or overlap.beam != present.beam:
         raise second
-    # what goes in from the end begins there, so a smaller step tells it from a second place
+    # a contact that moves inwards starts at the end, so that a smaller step distinguishes it from a second place
     otherwise = second if overlap.gap > -_SHALLOW else LostError()
     if abs(overlap.s - present.at) > _NEAR_END * length:
         raise otherwise
@@ -83,7 +83,7 @@ def _move_in(way: Way, trial: State, present: Touch, overlap: Overlap) -> None:
 
 
 def _clamped_on(way: Way, overlap: Overlap) -> str | None:
-    """Which end of the beam is clamped on the circle, tangent to it, near an overlap."""
+    """End of the beam clamped on the circle, tangent to it, near an overlap; None without such an end."""
     scene, strip = way.model.scene, way.model.strips[overlap.beam]
     contact = scene.contacts[overlap.contact]
     if not isinstance(contact, CircleContact):
@@ -102,9 +102,9 @@ def _clamped_on(way: Way, overlap: Overlap) -> str | None:
 
 
 def _leave_clamp(way: Way, trial: State, overlap: Overlap, which: str) -> None:
-    """Go to where a clamped end bends like the circle, and on along it or away from it.
+    """Step to equal curvatures of a clamped end and its circle, then continue along the circle or away from it.
 
-    The contact then carries at once the whole shear force that the clamp carried before.
+    The contact at once carries the whole shear force of the clamp.
     """
     strip, name = way.model.strips[overlap.beam], overlap.contact
     s = 0.0 if which == "start" else strip.length
@@ -130,7 +130,7 @@ def _leave_clamp(way: Way, trial: State, overlap: Overlap, which: str) -> None:
 
 
 def _wrapped(way: Way, trial: State, overlap: Overlap, which: str, sense: float) -> State | None:
-    """A wrap from the clamp, if it presses."""
+    """State with a wrap from the clamp, if it presses; else None."""
     at, name, strip = way.state, overlap.contact, way.model.strips[overlap.beam]
     if strip.beam.tapered and way.model.scene.contacts[name].thick:
         return None
@@ -149,7 +149,7 @@ def _wrapped(way: Way, trial: State, overlap: Overlap, which: str, sense: float)
 
 
 def _at_a_place(way: Way, trial: State, overlap: Overlap, which: str) -> State | None:
-    """A place of contact that travels away from the clamp."""
+    """State with a place of contact that moves away from the clamp; None if there is none."""
     at, name, strip = way.state, overlap.contact, way.model.strips[overlap.beam]
     held = at.along(strip.name, np.array([0.0 if which == "start" else strip.length]))[:, 0]
     arm = held[:2] - at.found.centres[name][:, 0]

@@ -1,13 +1,13 @@
-"""The march from rest through a scene's stations, contact by contact.
+"""Load stepping from rest through a scene's stations, with changes of contact.
 
-From one state to the next the load or drive grows by steps that Newton's method can take.  After each the state is
-looked over: a contact that would pull opens, lines that overlap close a contact, a beam that would cut into a circle
-beside the place where it touches lies along it.  Where that happened is found as an equilibrium at which the new
-contact's force, or the old one's, is zero; from there it goes on.
+The load or drive grows by steps within reach of Newton's method. After every step the contacts are checked. A contact
+in tension opens, and overlapping lines close a contact. A beam about to cut into a circle beside the place of contact
+wraps around the circle. The change is located as the equilibrium with a zero force of the new or old contact, and
+stepping continues from there.
 
-Every state on the way must be a minimum of the energy (:mod:`elastica_reference.stability`), and nothing may have been
-passed since the one before (:mod:`elastica_reference.passing`).  The march ends at a fold or a bifurcation, and also
-where two beams would lie along each other or one contact be closed at two places at once.
+Every state has to be a minimum of the energy (:mod:`elastica_reference.stability`), and no beam may have passed
+through another or through a circle (:mod:`elastica_reference.passing`). Load stepping ends at a fold or a
+bifurcation. It also ends where two beams would lie along each other, or a contact would close at two places at once.
 """
 
 import logging
@@ -32,27 +32,27 @@ from elastica_reference.way import Way
 
 _SAYS = logging.getLogger(__name__)
 
-_OVERLAP = 1e-10  # of the unit of length
-_FIRST_STEP = 0.2  # of the way to the first station
-_CHANGES = 40  # of structure between two stations
+_OVERLAP = 1e-10  # units of length
+_FIRST_STEP = 0.2  # share of the distance to the first station
+_CHANGES = 40  # changes of structure between two stations
 
 
 def answer(scene: Scene, settings: Settings | None = None) -> Answer:
-    """The exact answer to a scene in the theory of bending without stretch and shear.
+    """Exact answer to a scene in the theory of bending without stretch and shear.
 
     Args:
-        scene: the question.
+        scene: the problem statement.
         settings: numerical choices.
 
     Returns:
-        The stations up to where the solution holds; its ending is NOT_COVERED where one is missing. Values are
+        The stations up to the last with a solution; the ending is NOT_COVERED if a station is missing. Values are
         read-only arrays in SI, of the shapes in :mod:`cprbm_scene.answer`.
 
     Raises:
         SceneError: the scene has a record without equations; the error names every key.
 
     Source:
-        Euler's elastica with contact, by Gauss's collocation; nothing is discretised but the integration.
+        Euler's elastica with contact, by Gauss collocation; only the integration is discretised.
 
     Example:
         >>> import elastica_reference
@@ -90,7 +90,7 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
 
 
 def refuse(scene: Scene) -> None:
-    """Refuse records for which there are no equations.
+    """Refuse records without equations.
 
     Raises:
         SceneError: the scene has such records; the error names every key.
@@ -139,10 +139,10 @@ def refuse(scene: Scene) -> None:
 
 
 def _certified(way: Way, station: float) -> StationAnswer:
-    """A station's answer, whose equations hold with more Gauss points too.
+    """A station's answer, whose equations also hold with more Gauss points.
 
     Raises:
-        NotCoveredError: they do not.
+        NotCoveredError: the residual with more Gauss points is too large.
     """
     try:
         finer = checked(way.state, way.settings.further)
@@ -154,10 +154,10 @@ def _certified(way: Way, station: float) -> StationAnswer:
 
 
 def _advance(way: Way, target: float, step: float) -> float:
-    """Go on to a value of what is stepped, no dimension; the size of step that served last.
+    """Step to a dimensionless ``target``; returns the last successful step size.
 
     Raises:
-        NotCoveredError: the path leads beyond what the equations cover.
+        NotCoveredError: the path leads beyond the equations.
     """
     whole, changes = target - way.lam, 0
     largest, smallest = way.settings.largest_step * abs(whole), way.settings.smallest_step * abs(whole)
@@ -187,11 +187,11 @@ def _advance(way: Way, target: float, step: float) -> float:
 
 
 def _examined(way: Way, trial: State) -> bool:
-    """Accept a trial if nothing is wrong with it, else go to where something changes and say False.
+    """Accept a trial without changes of contact and return True; else step to the first change and return False.
 
     Raises:
-        LostError: that was not found.
-        NotCoveredError: there are no equations for it.
+        LostError: the change was not found.
+        NotCoveredError: there are no equations for the change.
     """
     if open_first(way, trial) or reform(way, trial):
         return False
@@ -209,7 +209,9 @@ def _examined(way: Way, trial: State) -> bool:
 
 
 def _touched(state: State) -> dict[tuple[str, str], tuple[float, float]]:
-    """By contact and beam, from where to where it touches; ends that touch are looked at like any place."""
+    """First and last arc length of every closed place, by contact and beam; ends in contact are checked like other
+    places.
+    """
     found = {}
     for name, touch in state.structure.touches.items():
         if isinstance(touch, Wrap):

@@ -1,4 +1,4 @@
-"""The numbers a scene asks for, read off a state; meanings in :mod:`cprbm_scene.answer`."""
+"""Probed quantities of a state, as :mod:`cprbm_scene.answer` defines them."""
 
 import numpy as np
 
@@ -15,13 +15,13 @@ from elastica_reference.state import State
 from elastica_reference.structure import Meeting, Wrap
 from elastica_reference.way import Way
 
-_FLOOR = 1e-13  # of a residual, no dimension: some hundred roundings
+_FLOOR = 1e-13  # of a residual, dimensionless: about a hundred roundings
 
 
 def answered(way: Way, value: float, finer: float) -> StationAnswer:
     """A station's answer; ``finer`` is the largest row with more Gauss points."""
     model, state, scene = way.model, way.state, way.model.scene
-    # a guide holds a slide in all but one way; what is left of that is a row of the equations
+    # a guide constrains a slide; the remaining direction is a row of the equations
     free = [body for body, freedoms in model.moving.items() if freedoms == 3]
     left = max((float(np.max(np.abs(state.found.on_body[body]))) for body in free), default=0.0)
     certificate = Certificate(
@@ -108,7 +108,7 @@ def _displacement(model: Model, state: State, point: str) -> Array:
 
 
 def _centre(state: State, contact: str, beam: str) -> float:
-    """Arc length of a contact along its first beam, weighted by the magnitudes of its forces."""
+    """Centre of pressure of a contact, as arc length along its first beam."""
     touch = state.structure.touches[contact]
     begin, end = _ends(state, contact, beam)
     if not isinstance(touch, Wrap):
@@ -131,7 +131,7 @@ def _ends(state: State, contact: str, beam: str) -> tuple[float, float]:
 
 
 def _touching(model: Model, state: State) -> dict[str, Array]:
-    """Places (k, 2), m: between the neutral lines of two beams, on a circle on the line less half a thickness."""
+    """Places (k, 2), m: midway between the neutral lines of two beams, or on the circle."""
     found = {}
     for name, touch in state.structure.touches.items():
         contact = model.scene.contacts[name]
@@ -151,7 +151,7 @@ def _touching(model: Model, state: State) -> dict[str, Array]:
 
 
 def _reaction(scene: Scene, state: State, name: str) -> tuple[Array, float]:
-    """Force and moment of the ground at a point, or of the drives of that point or body."""
+    """Reaction force and moment at a fixed point, or of the drives of a point or body."""
     model, force, moment = state.equations.model, np.zeros(2), 0.0
     for (beam, which), held in state.found.ends.items():
         strip = model.strips[beam]
@@ -169,7 +169,7 @@ def _reaction(scene: Scene, state: State, name: str) -> tuple[Array, float]:
 
 
 def _energy(model: Model, state: State) -> float:
-    """∫ m² c/2 ds less the work of the dead loads."""
+    """∫ m² c/2 ds minus the work of dead loads."""
     energy, gauss = 0.0, rule(state.equations.nodes)
     for beam, parts in state.found.parts.items():
         spans = [(float(part.a[0]), float(part.b[0])) for part in parts]

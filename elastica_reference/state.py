@@ -1,4 +1,4 @@
-"""A solved state, and what it is along the beams."""
+"""Equilibrium states, and their quantities along the beams."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,11 +17,11 @@ from elastica_reference.spectral import rule
 from elastica_reference.structure import Structure, Wrap
 from elastica_reference.wrapping import bending
 
-_AT_START = 1e-16  # of a piece
+_AT_START = 1e-16  # times a piece's length
 
 
 class Known(Protocol):
-    """Something that knows (x, y, θ, m, Fx, Fy) (6, n) along beams, circles' centres (2,), and unknowns with names."""
+    """A state with (x, y, θ, m, Fx, Fy) (6, n) along beams, circles' centres (2,), and named unknowns."""
 
     def along(self, beam: str, s: Array) -> Array: ...  # noqa: D102
     def centre(self, contact: str) -> Array: ...  # noqa: D102
@@ -46,7 +46,7 @@ class Rest:
         return np.array(record.center) / self.model.unit_length
 
     def unknowns(self) -> Mapping[str, float | Array]:
-        """None: all are zero."""
+        """No unknowns: all are zero."""
         return {}
 
 
@@ -55,9 +55,9 @@ class State:
     """An equilibrium.
 
     Attributes:
-        equations: what it solves.
+        equations: equations of the structure and loads.
         z: unknowns (n,); lam: λ.
-        found: everything at z, one column each.
+        found: all quantities at z, with a single column.
         residual: largest row.
     """
 
@@ -69,12 +69,12 @@ class State:
 
     @property
     def structure(self) -> Structure:
-        """Which contacts are closed."""
+        """The closed contacts."""
         return self.equations.structure
 
     @property
     def forces(self) -> dict[str, float]:
-        """P by contact; wraps have none."""
+        """P by contact, except wraps."""
         return {name: float(self.z[index]) for name, index in self.equations.layout.forces.items()}
 
     @property
@@ -87,13 +87,13 @@ class State:
         return self.found.centres[contact][:, 0]
 
     def unknowns(self) -> Mapping[str, float | Array]:
-        """The bodies' and drives' unknowns and the contacts' forces, by name."""
+        """Unknowns of bodies and drives and forces of contacts, by name."""
         where = self.equations.layout
         bodies: dict[str, float | Array] = {name: self.z[index] for name, index in where.bodies.items()}
         return {**bodies, **{name: float(self.z[index]) for name, index in where.drives.items()}, **self.forces}
 
     def along(self, beam: str, s: Array) -> Array:
-        """(x, y, θ, m, Fx, Fy) (6, n) at arc lengths ``s`` (n,); at a contact what is beyond it."""
+        """(x, y, θ, m, Fx, Fy) (6, n) at arc lengths ``s`` (n,); at a contact the value beyond."""
         s = np.asarray(s, dtype=float)
         values = np.empty((6, len(s)))
         parts = self.found.parts[beam]
@@ -109,12 +109,12 @@ class State:
         return values
 
     def wrapped(self, wrap: Wrap) -> tuple[float, float]:
-        """Arc lengths at which a wrap begins and ends."""
+        """Arc lengths of the beginning and end of a wrap."""
         zone = self.found.zones[wrap.contact]
         return float(zone.a[0]), float(zone.b[0])
 
     def _wrapped(self, wrap: Wrap, s: Array) -> Array:
-        """As :meth:`along`, in a wrap; the formulas are those of :mod:`elastica_reference.wrapping`."""
+        """(x, y, θ, m, Fx, Fy) (6, n) within a wrap, by the formulas of :mod:`elastica_reference.wrapping`."""
         zone, g = self.found.zones[wrap.contact], wrap.sense
         strip = self.equations.model.strips[wrap.beam]
         centre = self.found.centres[wrap.contact][:, 0]
@@ -133,9 +133,10 @@ class State:
         return np.stack([x, y, theta, m, F[0], F[1]])[:, 1:]
 
     def pressures(self, wrap: Wrap, s: Array) -> tuple[Array, float, float]:
-        """Line pressure (n,) at places ``s`` (n,) in a wrap, and the forces at its two ends; positive where they press.
+        """Line pressure (n,) at places ``s`` (n,) in a wrap, and the point forces at both ends; positive in
+        compression.
 
-        An end that is held has no force of its own: what is there is the support's.
+        The force at a clamped end belongs to the support.
         """
         zone, g = self.found.zones[wrap.contact], wrap.sense
         strip = self.equations.model.strips[wrap.beam]
@@ -151,13 +152,13 @@ class State:
 
 @lru_cache(maxsize=8)
 def _through(p: int) -> tuple[Array, Array]:
-    """The ends and Gauss's points of (0, 1), and the weights of interpolation through them."""
+    """The ends and Gauss points of (0, 1), and the weights of barycentric interpolation."""
     points = np.concatenate(([0.0], rule(p).points, [1.0]))
     return points, BarycentricInterpolator(points).wi
 
 
 def _within(part: Part, s: Array) -> Array:
-    """(x, y, θ, m, Fx, Fy) (6, n) inside a piece; beyond its ends what is there, for a piece that grows."""
+    """(x, y, θ, m, Fx, Fy) (6, n) inside a piece, constant beyond its ends."""
     solved, start, end = part.solved, part.start[:, 0], part.end[:, 0]
     a, h = float(part.a[0]), float(part.b[0] - part.a[0])
     gauss = rule(len(solved.theta))
@@ -168,12 +169,12 @@ def _within(part: Part, s: Array) -> Array:
     points, weights = _through(len(solved.theta))
     through = BarycentricInterpolator(points, values.T, wi=weights)
     xi = np.clip((s - a) / h, 0.0, 1.0) if h != 0.0 else np.zeros_like(s)
-    xi = np.where(np.abs(xi) < _AT_START, 0.0, xi)  # the interpolation divides by its distance from its points
+    xi = np.where(np.abs(xi) < _AT_START, 0.0, xi)  # the interpolation divides by the distance from its points
     return np.concatenate([through(xi).T, start[4:, None] - part.spread[:, :1] * (h * xi)])
 
 
 def start_of(equations: Equations, known: Known, guesses: Mapping[Any, float]) -> Array:
-    """Unknowns (n,) of a structure, read off a state with perhaps another.
+    """Initial unknowns (n,) of a structure, interpolated from a state of possibly another structure.
 
     Args:
         equations: of the structure.

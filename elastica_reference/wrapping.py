@@ -1,21 +1,21 @@
-"""Contact along a circle: a beam that lies on it from a to b, between two knots of its section.
+"""Contact along a circle: a beam that lies on the circle from a to b, between two knots of its section.
 
 =======  ==================================================================================================
 symbol   meaning
 =======  ==================================================================================================
-o, ρ     the circle's centre; its radius and, of a thick beam, which has one thickness, half of that
-g        +1 where the beam runs round it counter-clockwise, else −1; κ_c = g/ρ
+o, ρ     the circle's centre; its radius plus half of the constant thickness of a thick beam
+g        +1 if the beam runs around the circle counter-clockwise, else −1; κ_c = g/ρ
 τ, n, e  unit tangent, left-hand normal, outward normal e = −g n
 m, F     internal moment and force; N = F·τ; ' is d/ds
 p        line pressure on the beam, along e
 =======  ==================================================================================================
 
-Its curvature is the circle's, so
+The beam has the circle's curvature, so
 
     m = EI (κ_c − κ0),   F·e = g m',   N + κ_c m = const,   p = N/ρ − g m''                                    (1)
 
-from m' = −F·n, F' = −p e.  At an end that is not held the beam goes on with the same m, which says where that is;
-F·e may jump there, by a force of the circle, and N not.
+from m' = −F·n, F' = −p e. At an end not held by a clamp m is continuous, which determines the place of the end. F·e
+may jump there, by a point force of the circle; N is continuous.
 """
 
 import numpy as np
@@ -29,7 +29,7 @@ from elastica_reference.structure import Wrap
 
 
 def lie_between(out: Evaluation, where: Layout, wrap: Wrap, before: Part, after: Part, z: Columns) -> None:
-    """A wrap between two pieces of a beam."""
+    """Rows of a wrap between two pieces of a beam."""
     name, g = wrap.contact, wrap.sense
     strip, centre, rho = out.model.strips[wrap.beam], out.centres[name], neutral_radius(out, wrap)
     a, b = z[where.places[name, "begin"]], z[where.places[name, "end"]]
@@ -47,7 +47,7 @@ def lie_between(out: Evaluation, where: Layout, wrap: Wrap, before: Part, after:
 
 
 def lie_from_clamp(out: Evaluation, where: Layout, wrap: Wrap, z: Columns) -> None:
-    """A wrap from a beam's clamped start, or to its clamped end."""
+    """Rows of a wrap from a beam's clamped start, or to its clamped end."""
     name, g = wrap.contact, wrap.sense
     strip, centre, rho = out.model.strips[wrap.beam], out.centres[name], neutral_radius(out, wrap)
     which, end = ("start", strip.start) if wrap.from_start else ("end", strip.end)
@@ -74,7 +74,7 @@ def lie_from_clamp(out: Evaluation, where: Layout, wrap: Wrap, z: Columns) -> No
 
 
 def neutral_radius(out: Evaluation, wrap: Wrap) -> float:
-    """ρ; the beam has one thickness."""
+    """ρ; the beam has a constant thickness."""
     contact = out.model.scene.contacts[wrap.contact]
     assert isinstance(contact, CircleContact)
     half = float(out.model.strips[wrap.beam].half_thickness(np.zeros(1))[0]) if contact.thick else 0.0
@@ -82,7 +82,7 @@ def neutral_radius(out: Evaluation, wrap: Wrap) -> float:
 
 
 def _note(out: Evaluation, wrap: Wrap, zone: Zone) -> None:
-    """Its force on the beam is F before less F after it."""
+    """Record the zone; its force on the beam is F before minus F after."""
     contact = out.model.scene.contacts[wrap.contact]
     assert isinstance(contact, CircleContact)
     force = zone.before - zone.after
@@ -94,12 +94,12 @@ def _moment(strip: Strip, wrap: Wrap, rho: float, s: Columns) -> tuple[Columns, 
     """m and m' (K,) at an arc length (K,)."""
     at = np.array([float(s[0].real)])
     m, dm, ddm = (float(value[0]) for value in bending(strip, wrap.sense / rho, at))
-    away = s - at[0]  # zero but for the complex step
+    away = s - at[0]  # zero except for the complex step
     return m + dm * away, dm + ddm * away
 
 
 def bending(strip: Strip, kappa: float, s: Array) -> tuple[Array, Array, Array]:
-    """m, m' and m'' (n,) of a beam that is bent to one curvature, at arc lengths (n,)."""
+    """m, m' and m'' (n,) of a beam with constant curvature ``kappa``, at arc lengths (n,)."""
     EI, dEI, ddEI = strip.rigidity(s), strip.rigidity_slope(s), strip.rigidity_second(s)
     change = kappa - strip.line.curvature(s)
     slope, second = strip.line.curvature_slope(s), strip.line.curvature_second(s)
@@ -107,7 +107,7 @@ def bending(strip: Strip, kappa: float, s: Array) -> tuple[Array, Array, Array]:
 
 
 def _round(place: Columns, centre: Columns, angle: Columns, by: Columns) -> tuple[Columns, Columns]:
-    """A place on a circle, and the tangent angle there, after going round by an angle."""
+    """Position and tangent angle after a rotation ``by`` around the centre."""
     x, y = place - centre
     cos, sin = np.cos(by), np.sin(by)
     return centre + np.stack([cos * x - sin * y, sin * x + cos * y]), angle + by

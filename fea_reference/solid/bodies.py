@@ -12,9 +12,10 @@ u       displacement of a node
 ======  =====================================================================
 
 The whole face of a welded end moves with the body, u = X + (R(φ) − I) r. The face of a pinned end is rigid and
-rotates about its middle, which moves with the body, u = X + (R(φ) − I) a + (R(ψ) − I) o, with a from the centre to
-the pin. The unknowns include both kinematically: nodes of a face have no unknowns, and a tie has no violation. The
-face of an end drawn apart from its point is a separate body, pinned to the point by rows after the assembly.
+rotates about its middle, and the middle moves with the body. Then u = X + (R(φ) − I) a + (R(ψ) − I) o, with a from
+the centre to the pin. The unknowns include both kinematically: nodes of a face have no unknowns, and a tie has no
+violation. The face of an end drawn apart from its point is a separate body, pinned to the point by rows after the
+assembly.
 """
 
 from collections.abc import Sequence

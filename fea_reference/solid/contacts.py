@@ -10,7 +10,7 @@ w, ds   width, and undeformed length of the edge
 ======  ===============================================================================
 
 The energy is ½ ∫ ε w g² ds over the places with g < 0; force and tangent are its derivatives. A convex rigid corner
-presses in a point of the edge, with ε over an element's length, and so does the corner of a beam's end, joined or
+presses in a point of the edge, with ε over an element's length. The corner of a beam's end does the same, joined or
 free. Without the latter only a wedge of the edge would support the end, whose size varies with the depth.
 
 During Newton's iterations the part ε w g ∂²g of the tangent uses the g predicted by the last step. The excessive
@@ -143,7 +143,7 @@ def touch(
 def _pricked(
     model: Model, pair: Pair, corner: Corner, factor: float, places: Array, z: Array, foreseen: Foreseen | None
 ) -> Touch:
-    """A corner and an edge, as of :func:`touch` with the nodes at ``places`` (N, 2)."""
+    """Evaluation of a rigid corner against an edge, with the nodes at ``places`` (N, 2)."""
     skin, body = pair.skin, model.bodies[pair.body]
     y = places[skin.nodes]
     found = overlap(model, pair, places, z)
@@ -166,7 +166,7 @@ def _pricked(
 
 
 def _prodded(model: Model, pair: Pair, tip: Tip, factor: float, places: Array, foreseen: Foreseen | None) -> Touch:
-    """The corner of an end and an edge, as of :func:`touch` with the nodes at ``places`` (N, 2)."""
+    """Evaluation of an end's corner against an edge, with the nodes at ``places`` (N, 2)."""
     pointed, pressed = tip.roles(pair)
     g_least, zeta = _tip_gap(pair, tip, places)
     own, y = _place_of(tip, pointed), places[pressed.nodes]
@@ -194,7 +194,7 @@ def _prodded(model: Model, pair: Pair, tip: Tip, factor: float, places: Array, f
 def _butted(
     model: Model, pair: Pair, butt: Butt, factor: float, places: Array, z: Array, foreseen: Foreseen | None
 ) -> Touch:
-    """The corner of an end and what is rigid, as of :func:`touch` with the nodes at ``places`` (N, 2)."""
+    """Evaluation of an end's corner against a rigid shape, with the nodes at ``places`` (N, 2)."""
     skin, body = pair.skin, model.bodies[pair.body]
     g_least, at = _butt_gap(model, pair, butt, places, z)
     found = _in_one_place(g_least, at)

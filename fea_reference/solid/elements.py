@@ -14,8 +14,8 @@ B       ∂E/∂u at a Gauss point
 
 The energy is ∫ ½ Eᵀ C E, the force ∫ Bᵀ S, the tangent ∫ Bᵀ C B + ∂N·σ·∂N. During Newton's iterations σ is the
 prediction of the last step, C (E + B δu). The residual stays exact, and spurious stresses of an intermediate state do
-not stiffen a rotating slender body (mixed integration points of Magisano, Leonetti, Garcea, Int. J. Numer. Meth.
-Engng 109 (2017) 1237).
+not stiffen a rotating slender body. Source: mixed integration points of Magisano, Leonetti, Garcea, Int. J. Numer.
+Meth. Engng 109 (2017) 1237.
 """
 
 from dataclasses import dataclass

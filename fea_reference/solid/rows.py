@@ -32,8 +32,8 @@ class Share:
 class Row:
     """A row: ``name`` of its origin, ``shares``, number of the multiplier, and the ``drive`` that steps the row.
 
-    For an assembled end ``point`` is the target, ``apart`` the initial distance from the target along the row, and
-    ``way`` the remaining distance at the start of the motion.
+    For an assembled end ``point`` is the target and ``apart`` the initial distance from the target along the row.
+    ``way`` is the distance at the start of the motion.
     """
 
     name: str
