@@ -125,7 +125,7 @@ def _leave_clamp(way: Way, trial: State, overlap: Overlap, which: str) -> None:
     way.accept(at)
     state = _wrapped(way, trial, overlap, which, sense) or _at_a_place(way, trial, overlap, which)
     if state is None:
-        raise NotCoveredError(f"how {name} begins beside the clamp of {strip.name} was not found")
+        raise NotCoveredError(f"the beginning of {name} beside the clamp of {strip.name} was not found")
     way.accept(state)
 
 

@@ -115,7 +115,7 @@ def refuse(scene: Scene) -> None:
             if isinstance(contact, EdgeContact | SelfContact)
         ),
         *(
-            (f"contacts.{name}.thick", "edges of a thickness that varies", "thick = false, or a constant thickness")
+            (f"contacts.{name}.thick", "edges of varying thickness", "thick = false, or a constant thickness")
             for name, contact in scene.contacts.items()
             if isinstance(contact, BeamContact)
             and contact.thick
@@ -149,7 +149,7 @@ def _certified(way: Way, station: float) -> StationAnswer:
     except LostError:
         finer = math.inf
     if not finer <= way.settings.tolerance:
-        raise NotCoveredError(f"at {station:g} more Gauss points are needed: a residual of {finer:.1e} is left")
+        raise NotCoveredError(f"at {station:g} more Gauss points are needed: their residual is {finer:.1e}")
     return answered(way, station, finer)
 
 

@@ -99,7 +99,7 @@ def _value(
         case "potential_energy":
             return _energy(model, state) * model.unit_moment
         case "angle" | "moment":
-            raise NotCoveredError("there are no equations for stops here")
+            raise NotCoveredError("the exact solution has no equations for stops")
 
 
 def _displacement(model: Model, state: State, point: str) -> Array:

@@ -35,7 +35,7 @@ def structured(model: Model, touches: Mapping[str, Touch], places: Places) -> St
                 begin = 0.0 if touch.from_start else places[name, "begin"]
                 end = strip.length if touch.to_end else places[name, "end"]
                 if strip.beam.tapered and model.scene.contacts[name].thick:
-                    raise NotCoveredError(f"{beam} lies along the circle of {name} with an edge that is not round")
+                    raise NotCoveredError(f"{beam} lies along the circle of {name} with a varying thickness")
                 if strip.spread:
                     raise NotCoveredError(f"{beam} lies along the circle of {name} under a distributed load")
                 if any(begin <= knot <= end for knot in strip.knots):

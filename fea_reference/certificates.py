@@ -49,56 +49,58 @@ def certify(march: March) -> Certificate:
 
     failures = []
     if not residual <= max(settings.residual, floor):
-        failures.append(f"the unbalanced force is {residual:.1e} of the largest")
+        failures.append(f"the unbalanced force is {residual:.1e} of the largest force")
     if not violation <= max(_VIOLATION, system.floor):
         failures.append(f"a joint, a stop or an element's length is violated by {violation:.1e} of the longest beam")
     for stop, limit in acting_stops(model.stops, march.acting):
         press = stop.press(system.z, limit)
         if not press >= -_PULLS * max(1.0, system.scale):
-            failures.append(f"{stop.known_as} holds with {press * model.units.moment:.1e} N·m on the wrong side")
+            failures.append(f"{stop.known_as} acts in tension, with a moment of {press * model.units.moment:.1e} N·m")
     if not system.told:
         left = system.floor * model.units.force
         if march.values[: len(model.loads)].any():
-            failures.append(
-                f"what is loaded is too little to be told from round-off, which leaves forces of {left:.1e} N"
-            )
+            failures.append(f"the loads cannot be distinguished from round-off, with forces of {left:.1e} N")
         elif _drowned(march):
             failures.append(
-                f"what is driven is too little to be told from round-off, which leaves forces of {left:.1e} N"
+                f"the reactions of drives cannot be distinguished from round-off, with forces of {left:.1e} N"
             )
     for pair in march.open:
         if (gap := least_gap(model, pair, system.z)) < -CLOSED * pair.scale:
-            failures.append(f"what is open in {pair.name} overlaps by {-gap * model.units.length:.1e} m")
+            failures.append(f"the open contact {pair.name} overlaps by {-gap * model.units.length:.1e} m")
     shares = felt(model, system, march.penalties, march.open, settings.quadrature)
     for one in system.touches:
         allowed = settings.penetration if isinstance(one.pair, Pair) else max(settings.penetration, _RESOLVED)
         overlap = one.penetration / (one.pair.scale if isinstance(one.pair, Pair) else one.pair.measure)
         if not overlap <= allowed:
-            failures.append(f"what touches in {one.pair.name} overlaps by {overlap:.1e}; {allowed:.1e} was asked")
+            failures.append(
+                f"contact {one.pair.name} has a relative penetration of {overlap:.1e}; {allowed:.1e} was requested"
+            )
         elif one.closed and march.penalties[one.pair].stiffness < (1.0 - _SOFT) * one.pair.stiffest:
-            failures.append(f"the penalty of {one.pair.name} could not be raised to what the elements can follow")
+            failures.append(f"the penalty of contact {one.pair.name} could not be raised to the limit of the elements")
         elif (share := shares.get(one.pair, 0.0)) > FELT:
             failures.append(
-                f"what touches in {one.pair.name} overlaps by {one.penetration * model.units.length:.1e} m, which "
-                f"changes what presses or moves by {share:.0%}"
+                f"contact {one.pair.name} has a penetration of {one.penetration * model.units.length:.1e} m, which "
+                f"changes forces or motions by {share:.0%}"
             )
         if isinstance(one.pair, Face) and one.closed:
             deep = cut(model, one.pair, system.z)
             if not deep <= max(settings.penetration, _RESOLVED) * one.pair.measure:
-                failures.append(f"a tip of {one.pair.name} cuts in by {deep * model.units.length:.1e} m")
+                failures.append(
+                    f"a tip of contact {one.pair.name} cuts into the beam by {deep * model.units.length:.1e} m"
+                )
         far = _across(march, one)
         if not far <= _FROM_AFAR * min(one.pair.measure, _SLENDER):
-            failures.append(f"what touches in {one.pair.name} presses across a gap of {far * model.units.length:.1e} m")
+            failures.append(f"contact {one.pair.name} presses across a gap of {far * model.units.length:.1e} m")
     if not force <= balance:
-        failures.append(f"the forces of loads and supports leave {force:.1e} of the largest")
+        failures.append(f"the forces of loads and supports have a sum of {force:.1e} of the largest")
     if not moment <= balance:
-        failures.append(f"the moments of loads and supports leave {moment:.1e} of the largest")
+        failures.append(f"the moments of loads and supports have a sum of {moment:.1e} of the largest")
     for one in system.touches:
         if isinstance(one.pair, Pair) and one.lacks > LACKING:
             end, side = model.beams[one.pair.second].name, model.beams[one.pair.first].name
             failures.append(
-                f"in {one.pair.name} an end of {end} presses on the side of {side}, and a force of "
-                f"{one.missing * model.units.force:.1e} N along {end} is left out"
+                f"in contact {one.pair.name} an end of {end} presses on the side of {side}, and a force of "
+                f"{one.missing * model.units.force:.1e} N along {end} is missing"
             )
     if not curvature > 0.0:
         failures.append(f"the smallest curvature of the potential energy is {curvature:.1e}: no minimum")

@@ -300,7 +300,7 @@ class March:
             if found is None:
                 return (
                     Ending.STEP_TOO_SMALL,
-                    f"no closing of a contact or stop found beyond {self.shown(load, start)}",
+                    f"the closing of a contact or stop beyond {self.shown(load, start)} was not found",
                 )
             value, system = found
             before_it = self._seen_otherwise(known, value)
@@ -310,7 +310,7 @@ class March:
             if again:
                 return (
                     Ending.STEP_TOO_SMALL,
-                    f"beyond {self.shown(load, start)} {again[0]} neither holds nor lets go",
+                    f"beyond {self.shown(load, start)} {again[0]} alternates between open and closed",
                 )
         where = f"beyond {self.shown(load, start)}"
         trouble = self.passed(before, system, where) or self._slipped(system, where)
@@ -412,13 +412,13 @@ class March:
             if pair in pressing or (abs(least) if pair in self.penalties else least) <= touching:
                 continue
             if self._overlapped_between(pair, before, system.z):
-                return Ending.BEAMS_CROSSED, f"{where} what may touch in {pair.name} passes through each other"
+                return Ending.BEAMS_CROSSED, f"{where} a beam passes through the opposite body in contact {pair.name}"
         turned = float(np.abs(system.elements.rotation).max())
         if turned > _TURNED:
             return Ending.TURNED_TOO_FAR, f"{where} an element turns by {turned:.2f} rad: take more elements"
         for pair in (*self.open, *self.penalties):
             if passed_through(self.model, pair, before, system.z):
-                return Ending.BEAMS_CROSSED, f"{where} what touches in {pair.name} passes through each other"
+                return Ending.BEAMS_CROSSED, f"{where} a beam passes through the opposite body in contact {pair.name}"
         return None
 
     def _slipped(self, system: System, where: str) -> Trouble | None:
@@ -427,9 +427,12 @@ class March:
         """
         for one in self.system.touches:
             if slipped_off(self.model, one, self.system.z, system.z):
-                return Ending.STEP_TOO_SMALL, f"{where} an end slips off a corner in {one.pair.name}"
+                return Ending.STEP_TOO_SMALL, f"{where} a beam's end slips off a corner in contact {one.pair.name}"
             if gone_past(self.model, one, self.system.z, system.z):
-                return Ending.STEP_TOO_SMALL, f"{where} an end slips off the other in {one.pair.name}"
+                return (
+                    Ending.STEP_TOO_SMALL,
+                    f"{where} a beam's end slips off the other beam in contact {one.pair.name}",
+                )
         return None
 
     def room(self, stop: StopPart, system: System) -> float:

@@ -67,7 +67,9 @@ class Prepared:
                 ending, sentence = stopped.ending, stopped.sentence
         closed = {name: f"closed at {value:.6g}" for name, value in march.closing.items()}
         tested = [f"{name}: {closed.get(name, 'stayed open')}" for name in scene.contacts]
-        left = [f"{end.sentence}; it was left for the state beside it to which the energy leads" for end in march.left]
+        left = [
+            f"{end.sentence}; the solution continues on a nearby branch, found by energy descent" for end in march.left
+        ]
         return Answer(
             solver="fea",
             scene=scene.name,

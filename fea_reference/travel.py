@@ -183,7 +183,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
         if march.iterations > limit:
             raise StoppedError(
                 Ending.STEP_TOO_SMALL,
-                f"{march.iterations} iterations only led to {march.shown(load, march.values[load])}",
+                f"{march.iterations} iterations reach no farther than {march.shown(load, march.values[load])}",
             )
         if looking and not known:
             known = [*march.foregone(load), (float(march.values[load]), march.curvature)]
@@ -298,7 +298,7 @@ def _drawn_taut(march: March, load: int, pulls: list[tuple[float, float]]) -> St
     value = taut_at(pulls) if march.settings.kinematics == "bending" and march.held else None
     if value is None:
         return None
-    told = f"forces grow without limit as {march.shown(load, value)} is neared, where beams would have to become longer"
+    told = f"forces grow without limit as {march.shown(load, value)} is neared, where beams would have to stretch"
     return StoppedError(Ending.STEP_TOO_SMALL, told)
 
 
@@ -399,11 +399,11 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
         Loss.BIFURCATION: "another one branches off",
         Loss.CONTACT: f"the contact {lost.what} lets go",
         Loss.STOP: f"the stop {lost.what} lets go",
-        Loss.SLIP: f"an end slips off in {lost.what}",
+        Loss.SLIP: f"a beam's end slips off in contact {lost.what}",
     }[lost.loss]
     sentence = (
         f"at {march.shown(load, lost.value)} the branch of minima ends, {why}: the smallest curvature comes to "
-        f"{lost.curvature:.3g} there, and what is left has {lost.left:.3g}"
+        f"{lost.curvature:.3g} there, and to {lost.left:.3g} after the loss"
     )
     after = None
     leads_on = _leads_on(march, load, target, lost)
@@ -421,5 +421,5 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
         march.critical.append(_record(march, course, lost, after))
     if after is None:
         if course.beyond == "jump":
-            sentence += "; the decrease of the energy from there leads to no minimum that was found"
+            sentence += "; the energy descent from there finds no minimum"
         raise StoppedError(Ending.BRANCH_ENDS, sentence)

@@ -41,24 +41,24 @@ def certify(march: March) -> Certificate:
     allowed = max(_BALANCE, floor * float(np.sqrt(len(model.mesh.places))))
     failures = []
     if not residual <= max(settings.residual, floor):
-        failures.append(f"the unbalanced force is {residual:.1e} of the largest")
+        failures.append(f"the unbalanced force is {residual:.1e} of the largest force")
     if not violation <= max(_VIOLATION, system.floor):
         failures.append(f"a drive, a slide or a pin is violated by {violation:.1e} of the longest beam")
     yielding = max((abs(stop.moment(system.z)) / STIFFNESS for stop in model.stops), default=0.0)
     if not yielding <= _YIELDING:
         failures.append(f"a stop yields by {yielding:.1e} rad")
     if not thinnest > 0.0:
-        failures.append(f"an element is turned inside out: det F is {thinnest:.1e}")
+        failures.append(f"an element is inverted: det F is {thinnest:.1e}")
     if not penetration <= settings.penetration:
         failures.append(
-            f"what touches overlaps by {penetration:.1e} of the thickness; {settings.penetration:.1e} was asked"
+            f"the penetration is {penetration:.1e} of the thickness; {settings.penetration:.1e} was requested"
         )
     if not behind <= _OTHER_WAY * settings.penetration:
-        failures.append(f"a beam's end presses by {behind:.1e} of the thickness into the other's side")
+        failures.append(f"a beam's end penetrates the opposite side by {behind:.1e} of the thickness")
     if not force <= allowed:
-        failures.append(f"the forces of loads and supports leave {force:.1e} of the largest")
+        failures.append(f"the forces of loads and supports have a sum of {force:.1e} of the largest")
     if not moment <= allowed:
-        failures.append(f"the moments of loads and supports leave {moment:.1e} of the largest")
+        failures.append(f"the moments of loads and supports have a sum of {moment:.1e} of the largest")
     if not curvature > 0.0:
         failures.append(f"the smallest curvature of the potential energy is {curvature:.1e}: no minimum")
     return Certificate(

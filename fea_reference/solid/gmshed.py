@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-MISSING = "gmsh cannot be imported (the extra 'solid' brings it): a plain mapped mesh, whose nodes are the same"
+MISSING = "gmsh cannot be imported (the extra 'solid' installs gmsh): a mapped mesh with the same nodes"
 
 
 def available() -> bool:

@@ -50,7 +50,7 @@ _SECANTS = 25  # evaluations before bisection: a gap without a zero so far is di
 _POLISHED = 1e-12  # times the scale: residual at a station, round-off permitting
 
 
-_NO_MINIMUM = "those that are, are no minima of the potential energy"
+_NO_MINIMUM = "the equilibria found are no minima of the potential energy"
 
 
 class StoppedError(Exception):
@@ -96,7 +96,9 @@ class March:
         found = equilibrium(self.model, penalties, self.settings, values, z)
         self.iterations += found.iterations
         if self.iterations > self.settings.iteration_limit:
-            raise StoppedError(Ending.STEP_TOO_SMALL, f"{self.settings.iteration_limit} iterations were not enough")
+            raise StoppedError(
+                Ending.STEP_TOO_SMALL, f"no convergence within {self.settings.iteration_limit} iterations"
+            )
         return found
 
     def loosen(self) -> None:
@@ -149,7 +151,7 @@ def reach(march: March, part: int, target: float) -> None:
         through = "" if found.system is None else passed(march.model, march.penalties, march.system.z, found.system.z)
         aside = found.system is not None and beside_minima(march.model, found.system)
         if found.system is None or through or aside:
-            blocked = f"a beam passes through what it may touch in {through}" if through else blocked
+            blocked = f"a beam passes through the opposite body in contact {through}" if through else blocked
             why = blocked if through else _NO_MINIMUM if aside else found.why
             march.step, cuts = _CUT * abs(step), cuts + 1
             if found.system is None:
@@ -198,7 +200,7 @@ def _tighten(march: March) -> None:
             return  # the certificate reports the penetration
         found = march.look(march.values, march.system.z, penalties)
         if found.system is None:
-            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact cannot be made as stiff as asked: {found.why}")
+            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact penalty cannot be raised as requested: {found.why}")
         march.penalties, march.system = penalties, found.system
         march.asked = {pair: max(rho, penalties[pair]) for pair, rho in march.asked.items()}
 
@@ -212,7 +214,7 @@ def _fasten(march: March) -> None:
     if march.penalties != march.asked:
         found = _fastened(march, march.values, march.system.z, march.penalties, march.asked)
         if found.system is None:
-            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact cannot be made as stiff as asked: {found.why}")
+            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact penalty cannot be raised as requested: {found.why}")
         march.system = found.system
     march.penalties = march.asked
 
@@ -260,7 +262,8 @@ def _closing(march: March, part: int, name: str, here: float, before: System) ->
     if c is None:
         unit = march.model.stepped[part].unit
         raise StoppedError(
-            Ending.STEP_TOO_SMALL, f"where {name} closes between {here * unit:.6g} and {goal * unit:.6g} is not found"
+            Ending.STEP_TOO_SMALL,
+            f"the closing of {name} between {here * unit:.6g} and {goal * unit:.6g} was not found",
         )
     if loose == asked:
         return c

@@ -45,11 +45,11 @@ def equilibrium(model: Model, penalties: Mapping[Pair, float], settings: Setting
                 residual = float(np.abs(system.residual).max())
             arrived = residual <= max(settings.residual * system.scale, system.floor)
             if arrived and not float(system.strained.determinants.min()) > 0.0:
-                return Found(None, iteration, "an element is turned inside out")
+                return Found(None, iteration, "an element is inverted")
             if arrived:  # otherwise a corner without overlap was active
                 return Found(system, iteration)
         if iteration >= _PATIENCE and residual > _FAR * system.scale:
-            return Found(None, iteration, "Newton's iterations do not arrive")
+            return Found(None, iteration, "Newton's iterations do not converge")
         step = system.solve(-system.residual)
         if step is None:
             return Found(None, iteration, "the tangent is singular")
@@ -58,7 +58,7 @@ def equilibrium(model: Model, penalties: Mapping[Pair, float], settings: Setting
         share = _not_too_deep(model, penalties, system, share, step)
         foreseen = system.outlook(share * step)
         z = z + share * step
-    return Found(None, settings.newton_limit, "Newton's iterations do not arrive")
+    return Found(None, settings.newton_limit, "Newton's iterations do not converge")
 
 
 def _not_too_deep(model: Model, penalties: Mapping[Pair, float], system: System, share: float, step: Array) -> float:

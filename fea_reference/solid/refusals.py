@@ -16,13 +16,15 @@ def refuse(scene: Scene) -> None:
     mistakes = too_curved(scene)
     for name, contact in scene.contacts.items():
         if not contact.thick:
-            allowed = "for the solid, edges, thick = true: what has a thickness would overlap before its line touches"
-            mistakes.append(Mistake(f"contacts.{name}", "lines that touch", allowed))
+            allowed = "for the solid, edges, thick = true: thick beams overlap before their lines touch"
+            mistakes.append(Mistake(f"contacts.{name}", "contact of neutral lines", allowed))
     for stage in scene.stages:
         if stage.beyond is not None:
             mistakes.append(
                 Mistake(
-                    f"stages.{stage.name}.beyond", repr(stage.beyond), "for the solid, none: it follows no branches"
+                    f"stages.{stage.name}.beyond",
+                    repr(stage.beyond),
+                    "for the solid, none: the solid follows no branches",
                 )
             )
     if mistakes:
