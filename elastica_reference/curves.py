@@ -98,8 +98,9 @@ class Straight:
 
 @dataclass(frozen=True)
 class Circular:
-    """An arc about ``center`` (2,) with ``radius`` R from the angle ``begin`` φ over ``sweep``, positive
-    counter-clockwise.
+    """An arc about ``center`` (2,) with ``radius`` R from the angle ``begin`` φ over ``sweep``.
+
+    The sweep is positive counter-clockwise.
     """
 
     center: Array

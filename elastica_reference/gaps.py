@@ -122,9 +122,7 @@ def _of_pair(
         return np.asarray(sigma[np.argmin((A[0][:, None] - B[0]) ** 2 + (A[1][:, None] - B[1]) ** 2, axis=1)])
 
     def away(known: Known, places: Array, start: Array) -> tuple[Array, Array, Array]:
-        """Lateral distances to the left of the other line, closest points, and distances of places on the
-        first line.
-        """
+        """Distances of places to the left of the other line, closest points, and absolute distances."""
         at, r0 = start.copy(), known.along(one, places)[:2]
         for _ in range(_FEET):
             x, y, theta, m = known.along(other, at)[:4]

@@ -209,8 +209,9 @@ def _examined(way: Way, trial: State) -> bool:
 
 
 def _touched(state: State) -> dict[tuple[str, str], tuple[float, float]]:
-    """First and last arc length of every closed place, by contact and beam; ends in contact are checked like other
-    places.
+    """First and last arc length of every closed place, by contact and beam.
+
+    Ends in contact are checked like other places.
     """
     found = {}
     for name, touch in state.structure.touches.items():

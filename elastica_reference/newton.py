@@ -74,10 +74,10 @@ def solve(
 def linearised(
     equations: Equations, z: Array, lam: float, guess: Known, condition: Condition | None = None
 ) -> tuple[Evaluation, Array, Array]:
-    """All quantities at z (n,) and λ, with pieces solved from ``guess``; the rows r (n,) and their derivative J (n,
-    n).
+    """All quantities at z (n,) and λ, the rows r (n,), and their derivative J (n, n).
 
-    With a condition r and J have an additional row, and J a column for λ.
+    Pieces are solved from the tangent angles of ``guess``. With a condition r and J have an additional row, and J a
+    column for λ.
 
     Raises:
         LostError: a piece cannot be integrated, or a row is not finite.

@@ -133,10 +133,9 @@ class State:
         return np.stack([x, y, theta, m, F[0], F[1]])[:, 1:]
 
     def pressures(self, wrap: Wrap, s: Array) -> tuple[Array, float, float]:
-        """Line pressure (n,) at places ``s`` (n,) in a wrap, and the point forces at both ends; positive in
-        compression.
+        """Line pressure (n,) at places ``s`` (n,) in a wrap, and the point forces at both ends.
 
-        The force at a clamped end belongs to the support.
+        Compression is positive. The force at a clamped end belongs to the support.
         """
         zone, g = self.found.zones[wrap.contact], wrap.sense
         strip = self.equations.model.strips[wrap.beam]

@@ -34,9 +34,7 @@ def advance(model: Model, z: State, step: Array) -> State:
 
 
 def carried(model: Model, before: State, now: State, rate: Array) -> Array:
-    """Vector ``rate`` (size,) of the state ``before``, transported to ``now`` with equal turn and stretch of the
-    chords.
-    """
+    """Vector ``rate`` (size,) of the state ``before``, transported to ``now``: equal turn and stretch of the chords."""
     same = rate.copy()
     for beam in model.beams:
         dofs = model.node_dofs[:2, beam.nodes]

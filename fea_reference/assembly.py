@@ -32,12 +32,12 @@ def assemble_ends(scene: Scene, march: March) -> None:
     try:
         reach(march, Course(moments, 1.0), 1.0)
         ways = np.array([_way(march, i) for i in range(len(model.apart))])
-        march.act(Acting(ways, stopping=False))
+        march.constrain(Acting(ways, stopping=False))
         reach(march, Course(way, 1.0), 1.0)
         forbidden = [mistake for stop in model.stops for mistake in _forbidden(march, stop, scene)]
         if forbidden:
             raise SceneError(forbidden)
-        march.act(Acting(ways, stopping=True))
+        march.constrain(Acting(ways, stopping=True))
         reach(march, Course(moments, 1.0), 0.0)
     except StoppedError as stopped:
         raise StoppedError(stopped.ending, f"during the assembly: {stopped.sentence}") from stopped

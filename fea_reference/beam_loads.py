@@ -166,8 +166,9 @@ def _mutual(model: Model, part: BeamMomentPart, other: BeamMomentPart, line: Neu
 
 
 def _turning(line: NeutralLine, zeta: Array) -> tuple[Array, Array, Array]:
-    """θ + 6 ξ (1 − ξ) γ at places (k,), continuous from the nodes, and derivatives by the unknowns of the element
-    lines.
+    """θ + 6 ξ (1 − ξ) γ at places (k,), and its derivatives by the unknowns of the element lines.
+
+    The angle is continuous from the nodes.
     """
     e, xi = line.locate(zeta)
     first, last = line.angles[e], line.angles[e + 1]

@@ -76,9 +76,7 @@ class Branch:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A point of a branch: the ``value``, the system, the softest ``mode``, and the direction ``way`` (t), ``rate``
-    (τ).
-    """
+    """A point of a branch: ``value``, system, softest ``mode``, and the direction ``way`` (t), ``rate`` (τ)."""
 
     value: float
     system: System
@@ -93,9 +91,7 @@ class Place:
 
 
 def place(branch: Branch, value: float, system: System, before: tuple[Array, float]) -> Place | None:
-    """Point of a branch at an equilibrium, with a direction in the sense of ``before``; None if there is no
-    direction.
-    """
+    """Point of a branch at an equilibrium, with a direction in the sense of ``before``; None without a direction."""
     f = load_direction(branch.model, branch.load, system.z, system.acting)
     solved = _solve(branch, system, f, before, np.zeros(branch.model.size), 1.0)
     if solved is None:

@@ -4,7 +4,7 @@ import numpy as np
 
 from cprbm_scene.answer import Array, Certificate
 from fea_reference.contacts import CLOSED, least_gap
-from fea_reference.face import cut
+from fea_reference.face import tip_depth
 from fea_reference.march import March
 from fea_reference.model import Model, OnBeam
 from fea_reference.stops import acting_stops
@@ -30,8 +30,8 @@ def certify(march: March) -> Certificate:
     pressure, equals the relative penetration.
     """
     model, settings = march.model, march.settings
-    march.renew()  # the last Newton iteration used predicted contact forces
-    march.poise()
+    march.reassemble()  # the last Newton iteration used predicted contact forces
+    march.remove_gap_round_off()
     system = march.system
     free = np.ones(model.size, dtype=bool)
     free[model.multipliers] = False
@@ -56,7 +56,7 @@ def certify(march: March) -> Certificate:
         press = stop.press(system.z, limit)
         if not press >= -_PULLS * max(1.0, system.scale):
             failures.append(f"{stop.known_as} acts in tension, with a moment of {press * model.units.moment:.1e} N·m")
-    if not system.told:
+    if not system.significant:
         left = system.floor * model.units.force
         if march.values[: len(model.loads)].any():
             failures.append(f"the loads cannot be distinguished from round-off, with forces of {left:.1e} N")
@@ -83,7 +83,7 @@ def certify(march: March) -> Certificate:
                 f"changes forces or motions by {share:.0%}"
             )
         if isinstance(one.pair, Face) and one.closed:
-            deep = cut(model, one.pair, system.z)
+            deep = tip_depth(model, one.pair, system.z)
             if not deep <= max(settings.penetration, _RESOLVED) * one.pair.measure:
                 failures.append(
                     f"a tip of contact {one.pair.name} cuts into the beam by {deep * model.units.length:.1e} m"
@@ -96,7 +96,7 @@ def certify(march: March) -> Certificate:
     if not moment <= balance:
         failures.append(f"the moments of loads and supports have a sum of {moment:.1e} of the largest")
     for one in system.touches:
-        if isinstance(one.pair, Pair) and one.lacks > LACKING:
+        if isinstance(one.pair, Pair) and one.missing_share > LACKING:
             end, side = model.beams[one.pair.second].name, model.beams[one.pair.first].name
             failures.append(
                 f"in contact {one.pair.name} an end of {end} presses on the side of {side}, and a force of "
@@ -142,10 +142,9 @@ def _drowned(march: March) -> bool:
 
 
 def _balance(model: Model, values: Array, system: System) -> tuple[float, float, float]:
-    """|ΣF| and |ΣM| about the origin of loads, supports, guides and drives, and the largest force or moment among
-    them.
+    """|ΣF| and |ΣM| of loads, supports, guides and drives, and the largest force or moment among them.
 
-    Both sums are relative to this largest value if it exceeds round-off.
+    Moments are about the origin. Both sums are relative to this largest value if it exceeds round-off.
 
     The two forces of a contact are opposite on one line and cancel in both sums. A contact force on a fixed body is a
     reaction of the support.

@@ -42,7 +42,7 @@ from fea_reference.hermite import Around, NeutralLine, along, plane, shapes, twi
 from fea_reference.model import Model, turned
 from fea_reference.state import Complex, State, squared, summed
 from fea_reference.swept import gone_over
-from fea_reference.touch import Circle, Penalty, Touch, gauss, together
+from fea_reference.touch import Circle, Penalty, Touch, count_points_per_place, gauss
 from fea_reference.zones import Gap, Zones, negative, stepped
 
 _BETWEEN = np.arange(1, 8) / 8.0  # shares of the way between two states
@@ -166,12 +166,12 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
 
     g = g - penalty.lead
     weight = penalty.stiffness * ds
-    alike = together(quadrature, e)
+    points_per_place = count_points_per_place(quadrature, e)
     return Touch(
         pair=circle,
         zones=zones,
-        chain=model.chain(((beam, e[::alike]),), z, body.dofs),
-        alike=alike,
+        chain=model.chain(((beam, e[::points_per_place]),), z, body.dofs),
+        points_per_place=points_per_place,
         stiffness=weight,
         gap=g,
         gap_by=g_q,

@@ -59,7 +59,7 @@ from fea_reference.model import BeamPart, Model
 from fea_reference.neighbours import nearest
 from fea_reference.state import State
 from fea_reference.staying import frame_of
-from fea_reference.touch import Pair, Penalty, Touch, gauss, together
+from fea_reference.touch import Pair, Penalty, Touch, count_points_per_place, gauss
 from fea_reference.zones import (
     Survey,
     Zones,
@@ -271,23 +271,23 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
         along_second = _overlap(model, pair.about(), z, distance, level)
         zones, zones_m = shared_out(zones, along_second, model.line(model.beams[pair.second], z).n, pair.carried)
     here = _along(model, pair, distance, quadrature, z, zones)
-    missing, lacks = _missing(model, pair, penalty, z, zones, here)
+    missing, missing_share = _missing(model, pair, penalty, z, zones, here)
     if zones_m.intervals.size:
         about = pair.about()
         there = _along(model, about, distance, quadrature, z, zones_m)
         more, most = _missing(model, about, penalty, z, zones_m, there)
-        missing, lacks = missing + more, max(lacks, most)
+        missing, missing_share = missing + more, max(missing_share, most)
         least = min(least, _seen(model, about, z, distance).least)
         zones, order = joined(zones, zones_m)
         here = here.with_other(there, (order[:, None] * quadrature + np.arange(quadrature)).ravel())
 
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
-    alike = together(quadrature, here.e, here.e_m)
+    points_per_place = count_points_per_place(quadrature, here.e, here.e_m)
     return Touch(
         pair=pair,
         zones=replace(zones, least=least + penalty.lead),
-        chain=model.chain(((beam, here.e[::alike]), (beam_m, here.e_m[::alike])), z),
-        alike=alike,
+        chain=model.chain(((beam, here.e[::points_per_place]), (beam_m, here.e_m[::points_per_place])), z),
+        points_per_place=points_per_place,
         stiffness=penalty.stiffness * here.ds,
         gap=here.g,
         gap_by=here.by,
@@ -298,7 +298,7 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
         x_m=here.x_m,
         normal=here.normal,
         missing=missing,
-        lacks=lacks,
+        missing_share=missing_share,
     )
 
 
@@ -312,8 +312,7 @@ def _overlap(model: Model, pair: Pair, z: State, distance: float, level: float) 
 
 @dataclass(frozen=True, slots=True)
 class _Along:
-    """Gauss points (k,) along the first beam: elements, places and points of both lines, and the gap with
-    derivatives.
+    """Gauss points (k,) along the first beam: elements, places and points of both lines, and the gap.
 
     ``ds`` (k,) is arc length of the first beam. ``by`` (14, k) and ``by_twice`` (14, 14, k) are derivatives of the
     gap by the element unknowns of the first line, then of the second.
@@ -394,11 +393,11 @@ def _along(model: Model, pair: Pair, distance: float, quadrature: int, z: State,
 
 
 def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
-    """Resting pressure κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂) at an end of the first beam in contact, else the median of the
-    zones.
+    """Resting pressure at an end of the first beam in contact, else the median of the zones.
 
-    Zero where the beams pull apart, and for a contact shorter than an element at the end. Ends held side by side may
-    part at once: their gap is zero up to round-off, and no pressure acts.
+    The pressure is κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂); zero where the beams pull apart, and for a contact shorter than
+    an element at the end. Ends held side by side may part at once: their gap is zero up to round-off, and no pressure
+    acts.
     """
     if not touch.closed:
         return 0.0

@@ -32,7 +32,7 @@ from fea_reference.advance import advance
 from fea_reference.contacts import zones_of
 from fea_reference.curvature import leaning
 from fea_reference.energy import penalised_energy, potential_energy
-from fea_reference.following import Lost
+from fea_reference.following import CriticalPoint
 from fea_reference.march import March
 from fea_reference.mass import lumped_mass
 from fea_reference.newton import equilibrium
@@ -59,7 +59,9 @@ _SAME = 1e-3  # relative to the larger decrease: equally low senses; Newton's re
 _STRONGEST = 1e12
 
 
-def descended(march: March, load: int, target: float, span: float, lost: Lost, beside: float = np.inf) -> float | None:
+def descended(
+    march: March, load: int, target: float, span: float, lost: CriticalPoint, beside: float = np.inf
+) -> float | None:
     """Descend from a critical point to a minimum; the dimensionless energy there, or None without a minimum.
 
     Also None if sections or bodies rotate by more than ``beside`` (rad); a much larger rotation ends the descent.
@@ -75,7 +77,7 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost, b
 
 
 def _descended(
-    march: March, load: int, target: float, span: float, lost: Lost, beside: float, *, loose: bool
+    march: March, load: int, target: float, span: float, lost: CriticalPoint, beside: float, *, loose: bool
 ) -> float | None:
     """Energy after a descent with ``loose`` or with the current penalties; None without a minimum."""
     beyond, left = _ASIDE if lost.loss is Loss.BIFURCATION else _BEYOND, target - lost.value
@@ -83,7 +85,7 @@ def _descended(
     if loose:
         march.penalties = {pair: Penalty(pair.stiffness) for pair in march.penalties}
     march.system = lost.system
-    march.renew()
+    march.reassemble()
     least = 10.0 * abs(lost.left) + 1.0
     way = leaning(march.model, lost.system, least) if lost.loss is Loss.BIFURCATION else lost.direction
     size = float(np.abs(way[march.model.moving]).max())
@@ -109,25 +111,25 @@ def _descended(
                 march.restore(trial)
                 march.tighten()
                 march.closing = dict.fromkeys(march.closing, end) | known
-                if march.turned(march.system, lost.system.z) > beside:
+                if march.largest_rotation(march.system, lost.system.z) > beside:
                     return None
                 return potential_energy(march.model, march.system, march.values)
     return None
 
 
 def _fallen(march: March, load: int, drag: float, first: State, farthest: float, steps: int) -> bool:
-    """Descend within ``steps`` to a minimum whose rotation from ``first`` is at most ``farthest`` (rad); True on
+    """Descend to a minimum within ``steps``, with a rotation from ``first`` up to ``farthest`` (rad); True on
     success.
     """
-    march.renew()  # without the drag
+    march.reassemble()  # without the drag
     convex = _CONVEX
     for _ in range(steps):
-        if drag > _STRONGEST or march.turned(march.system, first) > farthest:
+        if drag > _STRONGEST or march.largest_rotation(march.system, first) > farthest:
             return False
         if stiffer := march.stiffer(march.system):
             # on coarse elements the initial penalty may be too soft to prevent passing through
             march.penalties.update(stiffer)
-            march.renew()
+            march.reassemble()
         before, saved = march.system, march.saved()
         energy = penalised_energy(march.model, before, march.values)
         drag = max(drag, -convex * march.curvature)
@@ -138,16 +140,16 @@ def _fallen(march: March, load: int, drag: float, first: State, farthest: float,
             drag *= _FIRMER if little else _RAISED
             convex = max(convex, drag / soft) if little else convex
             continue
-        march.renew()
+        march.reassemble()
         convex = max(_SOFTER * convex, _CONVEX)
-        moved = march.moved(march.system, before.z)
+        moved = march.largest_motion(march.system, before.z)
         drag *= min(max(moved / _AIM, 0.1), 4.0)
         if moved > _AIM or not march.curvature > 0.0:
             continue
         saved, energy = march.saved(), penalised_energy(march.model, march.system, march.values)
         at_rest = _step(march, load, march.system.z, 0.0, march.system.z)
         if at_rest and not _risen(march, energy) and march.curvature > 0.0:
-            return march.turned(march.system, first) <= farthest
+            return march.largest_rotation(march.system, first) <= farthest
         march.restore(saved)
     return False
 
@@ -174,10 +176,10 @@ def _step(march: March, load: int, anchor: State, drag: float, start: State) -> 
             held if drag > 0.0 else None,
         )
         march.iterations += solved.iterations
-        if not solved.converged or march.moved(solved.system, anchor) > _FARTHEST:
+        if not solved.converged or march.largest_motion(solved.system, anchor) > _FARTHEST:
             return False
         if not _changes(march, load, solved.system):
-            if march.passed(anchor, solved.system, "") is not None:
+            if march.passing_failure(anchor, solved.system, "") is not None:
                 return False
             march.system = solved.system
             return True
@@ -193,5 +195,5 @@ def _changes(march: March, load: int, system: System) -> bool:
         march.penalties[pair] = Penalty(pair.stiffness)
         march.closing[pair.name] = march.value(load)
     for stop in changing:
-        march.turn(stop, load, system)
+        march.toggle_stop(stop, load, system)
     return bool(closing or changing)

@@ -55,7 +55,7 @@ from fea_reference.outline import Near, Outline
 from fea_reference.own_pins import held_on
 from fea_reference.state import Complex, State, summed
 from fea_reference.swept import Beside, gone_over
-from fea_reference.touch import THINNEST, Face, Penalty, Touch, gauss, together
+from fea_reference.touch import THINNEST, Face, Penalty, Touch, count_points_per_place, gauss
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, none
 
 _SLENDER = 0.01  # lengths of the longest beam: substitute for the thickness of a beam in contact as a line
@@ -154,11 +154,10 @@ def passed(model: Model, face: Face, before: State, after: State) -> bool:
 
 
 def _slid_along(before: _Seen, after: _Seen, zeta: Array, way: Array) -> Flags:
-    """True for places ``zeta`` (k,) that slid along the beam over a pressing tip, on paths ``way`` (2, k) in the body
-    frame.
+    """True for places ``zeta`` (k,) that slid along the beam over a pressing tip.
 
-    A tip that presses before and after has penetrated the beam: places next to it enter on one side and leave on the
-    other.
+    ``way`` (2, k) are the paths of the places in the body frame. A tip that presses before and after has penetrated
+    the beam: neighbouring places enter on one side and leave on the other.
     """
     tips = [one.tips() for one in (before, after)]
     there = [swept.beside(one.line, at) for one, (at, _) in zip((before, after), tips, strict=True)]
@@ -186,7 +185,7 @@ def _gone_over_a_tip(face: Face, before: _Seen, after: _Seen) -> bool:
     return bool((over & ~after.pressed_at(last, tips[1][1])).any())
 
 
-def cut(model: Model, face: Face, z: State) -> float:
+def tip_depth(model: Model, face: Face, z: State) -> float:
     """Largest depth of a pressing tip in the beam; on a slender tip a small overlap means a deep cut."""
     seen = _Seen(model, face, z)
     tips, out = seen.tips()
@@ -253,13 +252,13 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
 
     ends = np.isin(zones.intervals, [end for end in (0.0, float(line.n)) if end not in face.own])
     bent = _bent(seen, zones, kinks, penalty, quadrature, moves=moves)
-    alike = together(quadrature, e)
+    points_per_place = count_points_per_place(quadrature, e)
     weight = penalty.stiffness * ds
     return Touch(
         pair=face,
         zones=zones,
-        chain=model.chain(((beam, e[::alike]),), z, body.dofs),
-        alike=alike,
+        chain=model.chain(((beam, e[::points_per_place]),), z, body.dofs),
+        points_per_place=points_per_place,
         stiffness=weight,
         gap=g,
         gap_by=g_q,
@@ -372,8 +371,9 @@ class _Seen:
         return pressed
 
     def zones(self, lead: float = 0.0) -> tuple[Zones, dict[float, np.int64]]:
-        """Intervals with a gap below ``lead``, and the corners of the interval ends where n jumps; least gap minus
-        ``lead``.
+        """Intervals with a gap below ``lead``, and the corners of the interval ends where n jumps.
+
+        The least gap of the zones is reduced by ``lead``.
         """
         face, line = self.face, self.line
 

@@ -79,7 +79,7 @@ _AS_HELD = 0.5  # times the initial curvature with a rigid contact: the contact 
 
 
 @dataclass(frozen=True, slots=True)
-class Lost:
+class CriticalPoint:
     """Critical point of a branch at ``value``: the ``system`` and the unit mode φ as ``direction`` (size,).
 
     All values are dimensionless. ``loss``, ``what``, ``curvature`` and ``left`` as in
@@ -102,47 +102,49 @@ class CutShort:
     """Marker: an end of a beam cuts a zone short."""
 
 
-def followed(march: March, load: int, target: float, span: float) -> Lost | None:
+def follow_branch(march: March, load: int, target: float, span: float) -> CriticalPoint | None:
     """Follow the branch towards ``target``; returns the critical point before ``target``, or None.
 
     Without a critical point the state has moved along the branch, possibly not at all. If the branch turns back and
     stays a branch of minima, the state moves on to the branch that starts beyond, if any.
     """
     saved = march.saved()
-    end = _along(march, load, target, span, tight=False)
-    if isinstance(end, CutShort):
+    critical = _follow(march, load, target, span, tight=False)
+    if isinstance(critical, CutShort):
         # penetration under the penalties of load stepping shifts the slip
         march.restore(saved)
         march.tighten()
-        end = _along(march, load, target, span, tight=True)
-    if isinstance(end, Turn) and not beyond(march, end, target):
+        critical = _follow(march, load, target, span, tight=True)
+    if isinstance(critical, Turn) and not beyond(march, critical, target):
         march.restore(saved)
-    return end if isinstance(end, Lost) else None
+    return critical if isinstance(critical, CriticalPoint) else None
 
 
-def _along(march: March, load: int, target: float, span: float, *, tight: bool) -> Lost | Turn | CutShort | None:
+def _follow(
+    march: March, load: int, target: float, span: float, *, tight: bool
+) -> CriticalPoint | Turn | CutShort | None:
     """Critical point, turning point, or None; stops where a zone is cut short that loose penalties widen."""
-    march.look()
-    if march.loose:
+    march.update_sides()
+    if march.loosened:
         march.tighten()
-    lost = _letting_go(march, load, target, span) or _slipping_off(march, load, target, span)
-    if lost is not None:
-        return lost
+    critical = _vanishing_contact(march, load, target, span) or _end_slip(march, load, target, span)
+    if critical is not None:
+        return critical
     # under a loose penalty a contact may hold a state, on another branch, that a rigid contact does not
-    if march.soft():
+    if march.has_soft_penalty():
         march.tighten()
-    onward = float(np.sign(target - march.values[load]))
+    sense = float(np.sign(target - march.values[load]))
     branch = _branch(march, load, span)
-    here = place(branch, float(march.values[load]), march.system, (np.zeros(march.model.size), onward))
+    here = place(branch, float(march.values[load]), march.system, (np.zeros(march.model.size), sense))
     if not tight and cut_short(march.model, march.system):
         return CutShort()
     if here is None or not here.curvature > 0.0:
         return None
-    first, least, past, firm = here, here.curvature, 0, here.curvature
+    first, least, steps_past_minimum, tight_curvature = here, here.curvature, 0, here.curvature
     length = _FIRST
     known, turn = (here.curvature, length), None
-    gone: list[Stretch] = []
-    wide: tuple[Lost, March] | None = None
+    segments: list[Stretch] = []
+    uncertain: tuple[CriticalPoint, March] | None = None
     for tried in range(_STEPS):
         if tried % _LOOK == 0 and tried > 0:
             # at this rate of decrease no critical point comes within the limit of steps
@@ -151,98 +153,103 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
             known = here.curvature, length
         length = min(length, _MOST / max(float(np.abs(here.way[march.model.moving]).max()), _MOST))
         there = onwards(branch, here, length)
-        elsewhere = there is not None and length > _SHARP and not _goes_on_to(branch, here, there, length)
-        if there is None or elsewhere or left_a_corner(march.model, here.system, there.system):
+        other_branch = there is not None and length > _SHARP and not _same_branch(branch, here, there, length)
+        if there is None or other_branch or left_a_corner(march.model, here.system, there.system):
             length *= 0.25
             if length < _LEAST:
-                gone = [*gone, Stretch(branch, here, 0.0)]
-                return _slipped(march, load, gone, here) or _back_at(march, wide) or turn
+                segments = [*segments, Stretch(branch, here, 0.0)]
+                return _corner_slip(march, load, segments, here) or _restore_uncertain_end(march, uncertain) or turn
             continue
-        if any(gone_past(march.model, one, here.system.z, there.system.z) for one in here.system.touches):
-            lost = _slipping_off(march, load, target, span)
+        if any(gone_past(march.model, contact, here.system.z, there.system.z) for contact in here.system.touches):
+            critical = _end_slip(march, load, target, span)
             length *= 0.25
-            if lost is not None or length < _LEAST:
-                return lost or _back_at(march, wide) or turn
+            if critical is not None or length < _LEAST:
+                return critical or _restore_uncertain_end(march, uncertain) or turn
             continue
         if march.least_gap(there.system) < 0.0:
-            event = _event(march, branch, here, length)
+            event = _next_change(march, branch, here, length)
             if event is None:
                 return turn
-            lost = _changed(march, load, event)
-            if lost is not None:
-                return lost
+            critical = _apply_change(march, load, event)
+            if critical is not None:
+                return critical
             branch = _branch(march, load, span)
-            again = place(branch, float(march.values[load]), march.system, (event.way, event.rate))
-            if again is None or not again.curvature > 0.0:
+            restarted = place(branch, float(march.values[load]), march.system, (event.way, event.rate))
+            if restarted is None or not restarted.curvature > 0.0:
                 return turn
-            here, gone = again, []
+            here, segments = restarted, []
             continue
         if there.curvature <= 0.0:
             if not tight and cut_short(march.model, there.system):
                 return CutShort()
-            lost = _lost(march, branch, first, here, there, length)
-            slipped = lost and _slipped(march, load, [*gone, Stretch(branch, here, length)], lost)
-            known_well = lost is not None and lost.uncertainty <= _WIDE * span
-            if slipped is not None or (lost is not None and known_well and (lost.value - target) * onward <= 0.0):
-                return slipped or lost
+            critical = _critical_between(march, branch, first, here, there, length)
+            slipped = critical and _corner_slip(march, load, [*segments, Stretch(branch, here, length)], critical)
+            known_well = critical is not None and critical.uncertainty <= _WIDE * span
+            if slipped is not None or (
+                critical is not None and known_well and (critical.value - target) * sense <= 0.0
+            ):
+                return slipped or critical
             # such a long step leads to another branch, or past a near miss of two branches
-            wide = wide if lost is None else (lost, march.saved())
+            uncertain = uncertain if critical is None else (critical, march.saved())
             march.values, march.system = branch.at(here.value), here.system
             if known_well:
                 return turn  # the target comes before the critical point
             length *= 0.25
             if length < _LEAST:
-                return _back_at(march, wide) or turn
+                return _restore_uncertain_end(march, uncertain) or turn
             continue
         if not tight and cut_short(march.model, there.system):
             return CutShort()
-        if (there.value - target) * onward >= 0.0:
+        if (there.value - target) * sense >= 0.0:
             return turn
-        if march.passed(here.system.z, there.system, "") is not None:
+        if march.passing_failure(here.system.z, there.system, "") is not None:
             return turn
         march.values, march.system = branch.at(there.value), there.system
-        if there.curvature < WEAKER * firm and march.soft():
+        if there.curvature < WEAKER * tight_curvature and march.has_soft_penalty():
             # a state of low curvature is sensitive to the penetration of contacts
             march.tighten()
-            branch, firm = _branch(march, load, span), there.curvature
-            again = place(branch, float(march.values[load]), march.system, (there.way, there.rate))
-            if again is None or not again.curvature > 0.0:
+            branch, tight_curvature = _branch(march, load, span), there.curvature
+            restarted = place(branch, float(march.values[load]), march.system, (there.way, there.rate))
+            if restarted is None or not restarted.curvature > 0.0:
                 return turn
-            here, least, past = again, min(least, again.curvature), 0
+            here, least, steps_past_minimum = restarted, min(least, restarted.curvature), 0
             continue
-        if turn is None and here.rate * onward > 0.0 > there.rate * onward:
+        if turn is None and here.rate * sense > 0.0 > there.rate * sense:
             turn = Turn(branch, here, length)
-        past = past + 1 if there.curvature > _GROWN * least else 0
+        steps_past_minimum = steps_past_minimum + 1 if there.curvature > _GROWN * least else 0
         least = min(least, there.curvature)
-        if past >= _PAST:
+        if steps_past_minimum >= _PAST:
             return turn
-        gone = [*gone[-_KEPT:], Stretch(branch, here, length)]
+        segments = [*segments[-_KEPT:], Stretch(branch, here, length)]
         here, length = there, 1.5 * length
     return turn
 
 
-def _back_at(march: March, wide: tuple[Lost, March] | None) -> Lost | None:
-    """The critical point with a large uncertainty, and the saved state there, if no shorter step continues; else
-    None.
+def _restore_uncertain_end(march: March, uncertain: tuple[CriticalPoint, March] | None) -> CriticalPoint | None:
+    """The critical point with a large uncertainty, with the state restored; None without such a point.
+
+    Called if no shorter step continues the branch.
     """
-    if wide is None:
+    if uncertain is None:
         return None
-    march.restore(wide[1])
-    return wide[0]
+    march.restore(uncertain[1])
+    return uncertain[0]
 
 
-def _slipped(march: March, load: int, gone: list[Stretch], end: Lost | Place) -> Lost | None:
-    """Critical point where an end slips off a corner, after the segments ``gone``; None if no end does.
+def _corner_slip(march: March, load: int, segments: list[Stretch], end: CriticalPoint | Place) -> CriticalPoint | None:
+    """Critical point where an end slips off a corner, after the ``segments``; None if no end does.
 
     Called where the branch is lost to the penalty before the slip, or cannot be continued.
     """
-    slip = slips(march.model, gone, end.system)
+    slip = slips(march.model, segments, end.system)
     if slip is None:
         return None
-    march.values, march.system = gone[-1].branch.at(slip.place.value), slip.place.system
-    left = softest(march.model, _without(march, slip.one))
-    found = _ahead(march, load, slip.value - slip.place.value, Loss.SLIP, slip.one, slip.place.curvature, left)
-    return replace(found, uncertainty=float(abs(slip.value - end.value)))
+    march.values, march.system = segments[-1].branch.at(slip.place.value), slip.place.system
+    mode_without = softest(march.model, _without(march, slip.one))
+    critical = _extrapolated_end(
+        march, load, slip.value - slip.place.value, Loss.SLIP, slip.one, slip.place.curvature, mode_without
+    )
+    return replace(critical, uncertainty=float(abs(slip.value - end.value)))
 
 
 def _branch(march: March, load: int, span: float) -> Branch:
@@ -253,234 +260,261 @@ def _cosine(branch: Branch, here: Place, there: Place) -> float:
     return float(here.way @ (branch.weights * there.way)) + branch.weight * here.rate * there.rate
 
 
-def _goes_on_to(branch: Branch, here: Place, there: Place, length: float) -> bool:
+def _same_branch(branch: Branch, here: Place, there: Place, length: float) -> bool:
     """True if both points are on the same branch, a ``length`` of arc apart."""
-    return _cosine(branch, here, there) >= _STRAIGHT and _apart(branch, here, there) <= _LONGER * length
+    return _cosine(branch, here, there) >= _STRAIGHT and _distance(branch, here, there) <= _LONGER * length
 
 
-def _apart(branch: Branch, one: Place, other: Place) -> float:
+def _distance(branch: Branch, here: Place, there: Place) -> float:
     """Distance of two points in the metric of the arc length."""
-    way = (other.system.z.values - one.system.z.values) + (other.system.z.rest - one.system.z.rest)
-    return float(np.sqrt(way @ (branch.weights * way) + branch.weight * (other.value - one.value) ** 2))
+    difference = (there.system.z.values - here.system.z.values) + (there.system.z.rest - here.system.z.rest)
+    return float(np.sqrt(difference @ (branch.weights * difference) + branch.weight * (there.value - here.value) ** 2))
 
 
-def _event(march: March, branch: Branch, here: Place, length: float) -> Place | None:
+def _next_change(march: March, branch: Branch, here: Place, length: float) -> Place | None:
     """Point just behind the first change of a contact or stop within ``length``."""
     return sought(branch, here, length, lambda there: march.least_gap(there.system))
 
 
-def _changed(march: March, load: int, event: Place) -> Lost | None:
+def _apply_change(march: March, load: int, event: Place) -> CriticalPoint | None:
     """Close contacts and switch stops at ``event``; the critical point if an opening stop leaves an unstable state."""
     changing = [stop for stop in march.model.stops if march.room(stop, event.system) < 0.0]
     march.values[load], march.system = event.value, event.system
-    march.watch_what_touches(load)
-    march.switch(load, changing)
-    return stop_lost(march, load, event.curvature, event.system)
+    march.close_touching(load)
+    march.switch_stops(load, changing)
+    return stop_instability(march, load, event.curvature, event.system)
 
 
-def stop_lost(march: March, load: int, held: float, system: System) -> Lost | None:
-    """Critical point of stops just opened in a ``system`` of curvature ``held``; None if the state is stable."""
-    gone = [
+def stop_instability(march: March, load: int, curvature: float, system: System) -> CriticalPoint | None:
+    """Critical point of stops just opened in a ``system`` of the given ``curvature``; None if the state is stable."""
+    opened = [
         stop.known_as
         for stop in march.model.stops
         if stop.name in system.acting.limits and stop.name not in march.acting.limits
     ]
-    left = softest(march.model, march.system)
-    if not gone or left.curvature > 0.0:
+    mode = softest(march.model, march.system)
+    if not opened or mode.curvature > 0.0:
         return None
     value = float(march.values[load])
     energy = potential_energy(march.model, march.system, march.values)
     uncertainty = float(np.spacing(abs(value)))
-    return Lost(value, uncertainty, Loss.STOP, gone[0], held, left.curvature, energy, march.system, left.direction)
-
-
-def about_to_go(march: March, load: int, value: float) -> bool:
-    """True if a contact force, extrapolated linearly, vanishes before ``value`` and leaves an unstable state."""
-    way = value - float(march.values[load])
-    going = _next_to_go(march, load, float(np.sign(way)))
-    return (
-        going is not None
-        and abs(going[1]) < abs(way)
-        and not softest(march.model, _without(march, going[0])).curvature > 0.0
+    return CriticalPoint(
+        value, uncertainty, Loss.STOP, opened[0], curvature, mode.curvature, energy, march.system, mode.direction
     )
 
 
-def _letting_go(march: March, load: int, target: float, span: float) -> Lost | None:
+def force_about_to_vanish(march: March, load: int, value: float) -> bool:
+    """True if a contact force, extrapolated linearly, vanishes before ``value`` and leaves an unstable state."""
+    way = value - float(march.values[load])
+    next_contact = _next_vanishing(march, load, float(np.sign(way)))
+    return (
+        next_contact is not None
+        and abs(next_contact[1]) < abs(way)
+        and not softest(march.model, _without(march, next_contact[0])).curvature > 0.0
+    )
+
+
+def _vanishing_contact(march: March, load: int, target: float, span: float) -> CriticalPoint | None:
     """Critical point where a contact loses its force and leaves an unstable state; None if none is near."""
-    onward = float(np.sign(target - march.values[load]))
+    sense = float(np.sign(target - march.values[load]))
     saved = march.saved()
     while True:
-        going = _next_to_go(march, load, onward)
-        if going is None or going[1] * onward > (target - march.values[load]) * onward:
+        next_contact = _next_vanishing(march, load, sense)
+        if next_contact is None or next_contact[1] * sense > (target - march.values[load]) * sense:
             break
-        one, way = going
-        left = softest(march.model, _without(march, one))
-        if left.curvature > 0.0:
+        contact, way = next_contact
+        mode_without = softest(march.model, _without(march, contact))
+        if mode_without.curvature > 0.0:
             break
         if abs(way) <= _APPROACHED * span:
-            lost = _let_go(march, load, one, way, left)
-            if lost is not None:
-                return lost
+            critical = _end_at_zero_force(march, load, contact, way, mode_without)
+            if critical is not None:
+                return critical
             break
         before, rate = march.saved(), march.rate(load)
         size = min(_SHARE * abs(way), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
-        trouble = march.step(load, float(march.values[load]) + np.copysign(size, way), march.onward(load, rate, target))
+        trouble = march.step(
+            load, float(march.values[load]) + np.copysign(size, way), march.path_tangent(load, rate, target)
+        )
         if trouble is not None or not softest(march.model, march.system).curvature > 0.0:
             march.restore(before)
-            lost = _let_go(march, load, one, way, left) if abs(way) <= _FORESEEN * span else None
-            if lost is not None:
-                return lost
+            critical = (
+                _end_at_zero_force(march, load, contact, way, mode_without) if abs(way) <= _FORESEEN * span else None
+            )
+            if critical is not None:
+                return critical
             break
     march.restore(saved)
     return None
 
 
-def _let_go(march: March, load: int, one: Touch, way: float, left: Mode) -> Lost | None:
-    """Critical point at the zero of a contact force, at distance ``way``, with ``left`` the mode without contact.
+def _end_at_zero_force(march: March, load: int, contact: Touch, way: float, mode_without: Mode) -> CriticalPoint | None:
+    """Critical point at the zero of a contact force, at distance ``way``, with the mode ``mode_without`` the contact.
 
     None if the state is unstable with a rigid contact, too.
     """
-    held = softest(march.model, stiffened(march.model, march.system, one, _RIGID))
-    if not held.curvature > 0.0:
+    mode_with = softest(march.model, stiffened(march.model, march.system, contact, _RIGID))
+    if not mode_with.curvature > 0.0:
         return None
-    return _ahead(march, load, way, Loss.CONTACT, one, held.curvature, left)
+    return _extrapolated_end(march, load, way, Loss.CONTACT, contact, mode_with.curvature, mode_without)
 
 
-def _ahead(march: March, load: int, way: float, loss: Loss, one: Touch, held: float, left: Mode) -> Lost:
-    """Critical point at distance ``way`` in λ, where a contact ends; ``held`` is the curvature with the contact."""
-    return Lost(
+def _extrapolated_end(
+    march: March, load: int, way: float, loss: Loss, contact: Touch, curvature: float, mode_without: Mode
+) -> CriticalPoint:
+    """Critical point at distance ``way`` in λ, where a contact ends; ``curvature`` is the value with the contact."""
+    return CriticalPoint(
         float(march.values[load] + way),
         abs(way),
         loss,
-        one.pair.name,
-        held,
-        left.curvature,
+        contact.pair.name,
+        curvature,
+        mode_without.curvature,
         potential_energy(march.model, march.system, march.values),
         march.system,
-        left.direction,
+        mode_without.direction,
     )
 
 
-def _slipping_off(march: March, load: int, target: float, span: float) -> Lost | None:
+def _end_slip(march: March, load: int, target: float, span: float) -> CriticalPoint | None:
     """Critical point where a pressing end passes the end of the other beam; None if none is near.
 
     The zone has a finite width, smaller for tighter penalties, and part of it passes earlier. From there on the
     remaining distance is extrapolated, and is the uncertainty.
     """
-    onward, saved = float(np.sign(target - march.values[load])), march.saved()
+    sense, saved = float(np.sign(target - march.values[load])), march.saved()
     tight = behind = False
-    while (going := _next_to_slip(march, load, onward * span)) is not None:
-        one, way = going
-        if tight and not behind and -_SLIPPING * span <= way * onward < 0.0:
+    while (next_slip := _next_slip(march, load, sense * span)) is not None:
+        contact, way = next_slip
+        if tight and not behind and -_SLIPPING * span <= way * sense < 0.0:
             # under tight penalties the slip lies behind the current state
             march.restore(saved)
-            if not _nearer(march, load, _BACK * way):
+            if not _step_towards(march, load, _BACK * way):
                 break
             march.tighten()
             behind = True
             continue
-        if not 0.0 <= way * onward <= min(_SLIPPING * span, (target - march.values[load]) * onward):
+        if not 0.0 <= way * sense <= min(_SLIPPING * span, (target - march.values[load]) * sense):
             break
         if not tight:
             # penetration shifts the slip, possibly to a point behind the current state
             march.tighten()
             tight = True
             continue
-        if abs(way) > _AS_GOOD * span and _nearer(march, load, way):
+        if abs(way) > _AS_GOOD * span and _step_towards(march, load, way):
             continue
         if abs(way) > _FORESEEN * span:
             break
-        return _ahead(march, load, way, Loss.SLIP, one, march.curvature, softest(march.model, _without(march, one)))
+        return _extrapolated_end(
+            march, load, way, Loss.SLIP, contact, march.curvature, softest(march.model, _without(march, contact))
+        )
     march.restore(saved)
     return None
 
 
-def _nearer(march: March, load: int, way: float) -> bool:
+def _step_towards(march: March, load: int, way: float) -> bool:
     """Step over most of the distance ``way``, within the limit of motion; True on success, else the state stays."""
     before, rate = march.saved(), march.rate(load)
     size = min(_SHARE * abs(way), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
     value = float(march.values[load] + np.copysign(size, way))
-    if march.step(load, value, march.onward(load, rate, value)) is None:
+    if march.step(load, value, march.path_tangent(load, rate, value)) is None:
         return True
     march.restore(before)
     return False
 
 
-def _next_to_slip(march: March, load: int, ahead: float) -> tuple[Touch, float] | None:
+def _next_slip(march: March, load: int, ahead: float) -> tuple[Touch, float] | None:
     """The contact with the first end to slip off, and the distance in λ at the current rate."""
     step = _DIFFERENCE * ahead
-    moved = advance(march.model, march.system.z, step * march.rate(load))
-    found: tuple[Touch, float] | None = None
-    for one in march.system.touches:
-        here = left_to_go(march.model, one, march.system.z)
-        there = None if here is None else left_to_go(march.model, one, moved)
+    moved_state = advance(march.model, march.system.z, step * march.rate(load))
+    first_slip: tuple[Touch, float] | None = None
+    for contact in march.system.touches:
+        here = left_to_go(march.model, contact, march.system.z)
+        there = None if here is None else left_to_go(march.model, contact, moved_state)
         if here is None or there is None or not there < here:
             continue
         way = step * here / (here - there)
-        if found is None or abs(way) < abs(found[1]):
-            found = one, way
-    return found
+        if first_slip is None or abs(way) < abs(first_slip[1]):
+            first_slip = contact, way
+    return first_slip
 
 
-def _holding(first: System, now: System) -> Iterator[tuple[Touch, Touch]]:
+def _contact_parts_since(first: System, now: System) -> Iterator[tuple[Touch, Touch]]:
     """Pairs (contact at ``first``, contact ``now``) of all closed contacts, then of their zones if the counts agree."""
-    begun = {old.pair: old for old in first.touches if old.closed}
-    both = [(begun[one.pair], one) for one in now.touches if one.closed and one.pair in begun]
-    for old, one in both:
-        yield old, one
-        zones, before = _zones(one), _zones(old)
+    initial_contacts = {
+        initial_contact.pair: initial_contact for initial_contact in first.touches if initial_contact.closed
+    }
+    both = [
+        (initial_contacts[contact.pair], contact)
+        for contact in now.touches
+        if contact.closed and contact.pair in initial_contacts
+    ]
+    for initial_contact, contact in both:
+        yield initial_contact, contact
+        zones, before = _zones(contact), _zones(initial_contact)
         if len(zones) == len(before) > 1:
             yield from zip(before, zones, strict=True)
 
 
-def _parts(one: Touch) -> list[Touch]:
+def _parts(contact: Touch) -> list[Touch]:
     """Parts of a contact that may lose their force: the contact, and its zones if there are several."""
-    zones = _zones(one)
-    return [one, *zones] if len(zones) > 1 else [one]
+    zones = _zones(contact)
+    return [contact, *zones] if len(zones) > 1 else [contact]
 
 
-def _zones(one: Touch) -> list[Touch]:
+def _zones(contact: Touch) -> list[Touch]:
     """The contact restricted to every zone along the first beam."""
-    order = np.argsort(one.zeta, kind="stable")
+    order = np.argsort(contact.zeta, kind="stable")
     number = np.empty(len(order), dtype=int)
-    number[order] = np.concatenate(([0], np.cumsum(np.diff(one.zeta[order]) > _BETWEEN)))
-    return [replace(one, stiffness=np.where(number == i, one.stiffness, 0.0)) for i in range(number.max() + 1)]
+    number[order] = np.concatenate(([0], np.cumsum(np.diff(contact.zeta[order]) > _BETWEEN)))
+    return [replace(contact, stiffness=np.where(number == i, contact.stiffness, 0.0)) for i in range(number.max() + 1)]
 
 
-def _gone(march: March, branch: Branch, first: Place, begun: Touch, one: Touch, held: float) -> bool:
-    """True if the force of a contact has vanished, where the rigid contact would give the curvature ``held``."""
-    if one.push < _NOTHING * begun.push:
+def _force_vanished(
+    march: March, branch: Branch, first: Place, initial_contact: Touch, contact: Touch, curvature: float
+) -> bool:
+    """True if the force of a contact has vanished, where the rigid contact would give the ``curvature``."""
+    if contact.push < _NOTHING * initial_contact.push:
         return True
-    change = float(begun.foreseen(first.way).sum()) - begun.push
-    soon = change < 0.0 and begun.push * abs(first.rate) < -change * _SOON * branch.span and one.push < begun.push
-    if not (soon or one.push < _LITTLE * begun.push):
+    change = float(initial_contact.foreseen(first.way).sum()) - initial_contact.push
+    soon = (
+        change < 0.0
+        and initial_contact.push * abs(first.rate) < -change * _SOON * branch.span
+        and contact.push < initial_contact.push
+    )
+    if not (soon or contact.push < _LITTLE * initial_contact.push):
         return False
-    return held > _AS_HELD * softest(march.model, stiffened(march.model, first.system, begun, _RIGID)).curvature
+    return (
+        curvature
+        > _AS_HELD * softest(march.model, stiffened(march.model, first.system, initial_contact, _RIGID)).curvature
+    )
 
 
-def _next_to_go(march: March, load: int, onward: float) -> tuple[Touch, float] | None:
+def _next_vanishing(march: March, load: int, sense: float) -> tuple[Touch, float] | None:
     """The contact or zone whose force vanishes first at the current rate, and the distance in λ."""
     rate = march.rate(load)
-    found: tuple[Touch, float] | None = None
-    for one in (part for each in march.system.touches if each.closed for part in _parts(each)):
-        change = float(one.foreseen(onward * rate).sum()) - one.push
+    first_part: tuple[Touch, float] | None = None
+    for part in (part for contact in march.system.touches if contact.closed for part in _parts(contact)):
+        change = float(part.foreseen(sense * rate).sum()) - part.push
         if change >= 0.0:
             continue
-        way = float(-one.push / change)
-        if found is None or way < abs(found[1]):
-            found = one, onward * way
-    return found
+        way = float(-part.push / change)
+        if first_part is None or way < abs(first_part[1]):
+            first_part = part, sense * way
+    return first_part
 
 
-def _without(march: March, one: Touch) -> System:
+def _without(march: March, contact: Touch) -> System:
     """The current state without a contact, or without a zone of a contact."""
-    if all(one is not each for each in march.system.touches):
-        return stiffened(march.model, march.system, one, 0.0)
-    others = {pair: penalty for pair, penalty in march.penalties.items() if pair != one.pair}
+    if all(contact is not other for other in march.system.touches):
+        return stiffened(march.model, march.system, contact, 0.0)
+    others = {pair: penalty for pair, penalty in march.penalties.items() if pair != contact.pair}
     return assemble(march.model, others, march.settings.quadrature, march.values, march.system.z, march.acting)
 
 
-def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place, length: float) -> Lost | None:
+def _critical_between(
+    march: March, branch: Branch, first: Place, here: Place, there: Place, length: float
+) -> CriticalPoint | None:
     """Critical point between two points with positive and non-positive curvature.
 
     None if no point with a vanishing curvature is found between: the points are on different branches.
@@ -490,14 +524,16 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
         (s, before), (t, behind) = low, high
         if abs(behind.value - before.value) <= _FINE * branch.span and t - s <= _SHORT * length:
             break
-        if length > _SHARP and _apart(branch, before, behind) > _FARTHER * (t - s):
+        if length > _SHARP and _distance(branch, before, behind) > _FARTHER * (t - s):
             return None
         # regula falsi, with the weight of the unchanged end halved (Illinois variant)
         above, below = weights[0] * before.curvature, weights[1] * behind.curvature
         share = min(max(above / (above - below), 0.02), 0.98)
         # near a singular tangent there may be no solution
         tried = ((part, onwards(branch, here, s + part * (t - s))) for part in (share, 0.5 * share, 0.5 + 0.5 * share))
-        share, middle = next(((part, found) for part, found in tried if found is not None), (share, None))
+        share, middle = next(
+            ((part, place_found) for part, place_found in tried if place_found is not None), (share, None)
+        )
         if middle is None:
             if min(before.curvature, -behind.curvature) > _HELD * first.curvature:
                 return None
@@ -513,17 +549,19 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
     uncertainty = float(abs(behind.value - before.value) + np.spacing(abs(value)))
     march.values, march.system = branch.at(before.value), before.system
     energy = potential_energy(march.model, march.system, march.values)
-    for begun, one in _holding(first.system, before.system):
-        held = softest(march.model, stiffened(march.model, before.system, one, _RIGID)).curvature
-        if held > _HELD * first.curvature and _gone(march, branch, first, begun, one, held):
+    for initial_contact, contact in _contact_parts_since(first.system, before.system):
+        curvature = softest(march.model, stiffened(march.model, before.system, contact, _RIGID)).curvature
+        if curvature > _HELD * first.curvature and _force_vanished(
+            march, branch, first, initial_contact, contact, curvature
+        ):
             # the other zones stay in contact
-            left = softest(march.model, stiffened(march.model, before.system, one, 0.0))
-            lets_go = Loss.CONTACT, one.pair.name, held, left.curvature
-            return Lost(value, uncertainty, *lets_go, energy, before.system, left.direction)
+            mode_without = softest(march.model, stiffened(march.model, before.system, contact, 0.0))
+            lets_go = Loss.CONTACT, contact.pair.name, curvature, mode_without.curvature
+            return CriticalPoint(value, uncertainty, *lets_go, energy, before.system, mode_without.direction)
     mass = lumped_mass(march.model)
     along, size = float(before.mode.direction @ (mass * before.way)), float(np.sqrt(before.way @ (mass * before.way)))
     # τ vanishes with μ at a fold only; round-off over the last μ makes τ small at a bifurcation too
     fold = abs((clear or before).rate) < _TURNING * abs(first.rate) and abs(along) > _ALONG * size
     loss, side = Loss.FOLD if fold else Loss.BIFURCATION, -1.0 if fold and along < 0.0 else 1.0
     zero = before.curvature if before.curvature < -behind.curvature else behind.curvature
-    return Lost(value, uncertainty, loss, "", zero, zero, energy, before.system, side * before.mode.direction)
+    return CriticalPoint(value, uncertainty, loss, "", zero, zero, energy, before.system, side * before.mode.direction)

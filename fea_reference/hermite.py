@@ -105,8 +105,9 @@ class NeutralLine:
 
 @dataclass(frozen=True, slots=True)
 class Around:
-    """k places on a line: the ``element``, the vector ``way`` from its first node, x' and x'' by ζ, as complex
-    numbers.
+    """k places on a line, as complex numbers.
+
+    The ``element``, the vector ``way`` from its first node, and x', x'' by ζ as ``ahead`` and ``bent``.
     """
 
     element: Index
@@ -177,8 +178,9 @@ def along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
 
 
 def twice_along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
-    """Second derivatives (7, 7, k) of v·x by the same unknowns; only m (H₂ t₁ + H₄ t₂) is nonlinear, in
-    θ₁, θ₂ and N.
+    """Second derivatives (7, 7, k) of v·x by the same unknowns, for constant vectors ``v`` (2, k).
+
+    Only m (H₂ t₁ + H₄ t₂) is nonlinear, in θ₁, θ₂ and N.
     """
     at_first, at_second = _turned_by(v, H, line, e)
     (before, first), (behind, second) = (at_first.real, at_first.imag), (at_second.real, at_second.imag)

@@ -65,8 +65,8 @@ class Roles:
     side: Array = field(compare=False)
 
     def sides(self, zeta: Array, zeta_m: Array, d: Array) -> Array:
-        """Sides (k,) of places ``zeta`` (k,) against ``zeta_m`` (k,); the sign of ``d`` (k,) without a nearby known
-        pair.
+        """Sides (k,) of places ``zeta`` (k,) against ``zeta_m`` (k,); the sign of ``d`` (k,) if no known pair is
+        near.
         """
         seen = np.where(d < 0.0, -1.0, 1.0)
         if not self.side.size or not zeta.size:

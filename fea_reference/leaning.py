@@ -82,8 +82,8 @@ class Chain:
         return every
 
     def hessian(self, local: Array, gradient: Array) -> Array:
-        """Second derivatives (M, M, k) by all unknowns, from ``local`` (m, m, k) and first derivatives ``gradient``
-        (m, k).
+        """Second derivatives (M, M, k) by all unknowns, from ``local`` (m, m, k) and ``gradient`` (m, k) by the
+        lines' own.
         """
         m, size = len(gradient), self.dofs.shape
         half = np.zeros((m, *size))
@@ -97,9 +97,7 @@ class Chain:
         return every
 
     def local(self, step: Array, m: int) -> Array:
-        """Step (m, k) of the lines' unknowns, with tangent angles for rotations, for a ``step`` (size,) of all
-        unknowns.
-        """
+        """Step (m, k) of the lines' unknowns, with tangent angles for rotations, from a ``step`` (size,) of all."""
         every = step[self.dofs]
         own = every[:m].copy()
         for row, by in zip(self.rows, self.by, strict=True):

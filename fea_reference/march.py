@@ -32,11 +32,11 @@ from fea_reference.contacts import (
     zones_of,
 )
 from fea_reference.curvature import positive, softest
-from fea_reference.face import cut
+from fea_reference.face import tip_depth
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.off_a_corner import slipped_off
-from fea_reference.onward import Onward, onward
+from fea_reference.onward import PathTangent, path_tangent
 from fea_reference.poised import poised
 from fea_reference.settings import Settings
 from fea_reference.sinking import Depth, known_depths, sunk
@@ -100,7 +100,7 @@ class StoppedError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Behind:
+class LastStep:
     """The last step: parameter number ``load``, increment ``by``, higher-order terms of the path.
 
     With u from −1 at the beginning of the step to 0 at the end, the path is u times the last tangent + ``second`` u²
@@ -117,7 +117,7 @@ class Behind:
 
 
 @dataclass(frozen=True, slots=True)
-class Left:
+class BypassedPoint:
     """A critical point passed although no continuation was requested: the sentence for the user and the record."""
 
     sentence: str
@@ -136,16 +136,16 @@ class March:
         closing: value of the stepped parameter at the first closing of a contact or stop, by name.
         switched: value at the last switch of a stop, by name.
         critical: critical points passed on request.
-        left: critical points passed without request.
+        bypassed: critical points passed without request.
         iterations: Newton iterations since the last station.
-        far: True if zones moved too far between the last stations for tight penalties; the next one starts with loose
+        zones_far: True if zones moved too far between the last stations for tight penalties; the next one starts with loose
             ones.
-        loose: True if penalties were loosened after the last tightening.
-        known: last system with a computed smallest curvature, and this curvature.
-        behind: the last step, if the branch continued along it.
-        course: parameter number, value and curvature one step before, with tight penalties, while critical points
+        loosened: True if penalties were loosened after the last tightening.
+        known_curvature: last system with a computed smallest curvature, and this curvature.
+        last_step: the last step, if the branch continued along it.
+        previous_point: parameter number, value and curvature one step before, with tight penalties, while critical points
             count.
-        firm: lower bounds of penalties up to the next station, by contact, above the bound from the penetration.
+        least_penalties: lower bounds of penalties up to the next station, by contact, above the bound from the penetration.
     """
 
     model: Model
@@ -158,43 +158,43 @@ class March:
     closing: dict[str, float] = field(default_factory=dict)
     switched: dict[str, float] = field(default_factory=dict)
     critical: list[Critical] = field(default_factory=list)
-    left: list[Left] = field(default_factory=list)
+    bypassed: list[BypassedPoint] = field(default_factory=list)
     iterations: int = 0
-    far: bool = False
-    loose: bool = False
-    known: tuple[System, float] | None = None
-    behind: Behind | None = None
-    course: tuple[int, float, float] | None = None
-    firm: dict[str, float] = field(default_factory=dict)
+    zones_far: bool = False
+    loosened: bool = False
+    known_curvature: tuple[System, float] | None = None
+    last_step: LastStep | None = None
+    previous_point: tuple[int, float, float] | None = None
+    least_penalties: dict[str, float] = field(default_factory=dict)
 
-    def foregone(self, load: int) -> list[tuple[float, float]]:
+    def points_before(self, load: int) -> list[tuple[float, float]]:
         """Value and curvature one step before, as a list; empty if the step had another parameter than ``load``."""
-        if self.course is None or self.course[0] != load or self.course[1] == self.values[load]:
+        if self.previous_point is None or self.previous_point[0] != load or self.previous_point[1] == self.values[load]:
             return []
-        return [self.course[1:]]
+        return [self.previous_point[1:]]
 
     @property
     def curvature(self) -> float:
         """Smallest curvature of the potential energy on the feasible directions, computed once per system."""
-        if self.known is None or self.known[0] is not self.system:
-            self.known = self.system, softest(self.model, self.system).curvature
-        return self.known[1]
+        if self.known_curvature is None or self.known_curvature[0] is not self.system:
+            self.known_curvature = self.system, softest(self.model, self.system).curvature
+        return self.known_curvature[1]
 
     @property
     def minimum(self) -> bool:
         """True if the smallest curvature is positive."""
-        if self.known is None or self.known[0] is not self.system:
+        if self.known_curvature is None or self.known_curvature[0] is not self.system:
             return positive(self.model, self.system)
-        return self.known[1] > 0.0
+        return self.known_curvature[1] > 0.0
 
     @property
-    def held(self) -> bool:
+    def penetrations_bounded(self) -> bool:
         """True if no penetration is far above the allowed one, so that penalties could be tightened."""
         allowed = self.allowed()
-        return all(one.penetration <= _HELD * allowed.get(one.pair, np.inf) for one in self.system.touches)
+        return all(contact.penetration <= _HELD * allowed.get(contact.pair, np.inf) for contact in self.system.touches)
 
     @property
-    def pull(self) -> float:
+    def largest_axial_force(self) -> float:
         """Largest axial force."""
         return float(np.abs(self.system.z[self.model.element_dofs[6]]).max())
 
@@ -208,7 +208,7 @@ class March:
             closing=dict(self.closing),
             switched=dict(self.switched),
             critical=list(self.critical),
-            left=list(self.left),
+            bypassed=list(self.bypassed),
         )
 
     def restore(self, saved: March) -> None:
@@ -220,7 +220,7 @@ class March:
             saved.acting,
         )
         self.penalties, self.closing, self.switched = dict(saved.penalties), dict(saved.closing), dict(saved.switched)
-        self.far, self.loose, self.course = saved.far, saved.loose, saved.course
+        self.zones_far, self.loosened, self.previous_point = saved.zones_far, saved.loosened, saved.previous_point
 
     def rate(self, load: int, system: System | None = None) -> Array:
         """Path tangent dz/dλ (size,) of this or another ``system``; zero if the stiffness matrix is singular."""
@@ -228,105 +228,115 @@ class March:
         rate = system.solve(load_direction(self.model, load, system.z, self.acting))
         return np.zeros(self.model.size) if rate is None else rate
 
-    def onward(self, load: int, rate: Array, target: float) -> Onward:
-        """Path tangent towards ``target`` with contacts that begin to press; ``rate`` (size,) is the tangent without
-        them.
+    def path_tangent(self, load: int, rate: Array, target: float) -> PathTangent:
+        """Path tangent towards ``target`` with the contacts that begin to press.
+
+        ``rate`` (size,) is the path tangent without these contacts.
         """
         sense = float(np.sign(target - self.values[load]))
-        return onward(self.model, self.system, self.penalties, self.settings.quadrature, rate, sense)
+        return path_tangent(self.model, self.system, self.penalties, self.settings.quadrature, rate, sense)
 
-    def solve(self, load: int, value: float, z: State, begun: Mapping[Contact, Touch] = _NONE) -> System | None:
+    def solve(
+        self, load: int, value: float, z: State, starting_contacts: Mapping[Contact, Touch] = _NONE
+    ) -> System | None:
         """Equilibrium at ``value`` from the start ``z``; None if Newton's method fails.
 
-        ``begun`` are contacts that start to press in the start state.
+        ``starting_contacts`` begin to press in the start state.
         """
         values = self.values.copy()
         values[load] = value
-        depths = self.depths() | {pair: one.penetration for pair, one in begun.items() if isinstance(pair, Pair)}
-        pushes = self.pushes() | {pair: one.pushes for pair, one in begun.items()}
+        depths = self.depths() | {
+            pair: contact.penetration for pair, contact in starting_contacts.items() if isinstance(pair, Pair)
+        }
+        pushes = self.pushes() | {pair: contact.pushes for pair, contact in starting_contacts.items()}
         solved = equilibrium(self.model, self.settings, self.penalties, values, z, self.acting, depths, pushes)
         self.iterations += solved.iterations
-        return solved.system if solved.converged else self._let_go(values, way_to(self.model, self.system.z, z))
+        return (
+            solved.system
+            if solved.converged
+            else self._without_pulling_contact(values, way_to(self.model, self.system.z, z))
+        )
 
-    def _let_go(self, values: Array, foreseen: Array) -> System | None:
+    def _without_pulling_contact(self, values: Array, predicted: Array) -> System | None:
         """Equilibrium under ``values`` without a contact predicted to be in tension; None if there is none.
 
         A beam lying on a surface lifts off place by place, and Newton's active set may cycle. A solution without the
         contact is accepted if it has no overlap.
         """
-        for one in (one for one in self.system.touches if one.closed and one.foreseen(foreseen).sum() <= 0.0):
-            left = {pair: penalty for pair, penalty in self.penalties.items() if pair is not one.pair}
+        for contact in (
+            contact for contact in self.system.touches if contact.closed and contact.foreseen(predicted).sum() <= 0.0
+        ):
+            remaining = {pair: penalty for pair, penalty in self.penalties.items() if pair is not contact.pair}
             solved = equilibrium(
-                self.model, self.settings, left, values, self.system.z, self.acting, self.depths(), self.pushes()
+                self.model, self.settings, remaining, values, self.system.z, self.acting, self.depths(), self.pushes()
             )
             self.iterations += solved.iterations
-            if solved.converged and zones_of(self.model, one.pair, solved.system.z).least >= 0.0:
+            if solved.converged and zones_of(self.model, contact.pair, solved.system.z).least >= 0.0:
                 z = solved.system.z
                 return assemble(self.model, self.penalties, self.settings.quadrature, values, z, self.acting)
         return None
 
-    def step(self, load: int, value: float, onward: Onward) -> Trouble | None:
+    def step(self, load: int, value: float, tangent: PathTangent) -> Trouble | None:
         """Step to ``value``, or to the first change of a contact or stop; the reason of a failure, else None."""
         penalties = dict(self.penalties)
-        self.look()
+        self.update_sides()
         before, start = self.system.z, float(self.values[load])
-        predicted = advance(self.model, before, self._foreseen(load, value - start, onward.rate))
-        predicted, begun = self._begun(onward, penalties, predicted, value - start)
-        system = self.solve(load, value, predicted, begun)
+        predicted = advance(self.model, before, self._predicted_step(load, value - start, tangent.rate))
+        predicted, starting_contacts = self._with_point_forces(tangent, penalties, predicted, value - start)
+        system = self.solve(load, value, predicted, starting_contacts)
         for _ in range(_STIFFENINGS):
             stiffer = self.stiffer(system) if system is not None else {}
             if not stiffer:
                 break
             self.penalties.update(stiffer)
             system = self.solve(load, value, predicted)
-        if system is not None and self._sees_more_ends(system):
-            self.renew()
+        if system is not None and self._include_overlapping_ends(system):
+            self.reassemble()
             system = self.solve(load, value, predicted)
         if system is None:
             return (
                 Ending.STEP_TOO_SMALL,
-                f"Newton's method finds no equilibrium beyond {self.shown(load, start)}",
+                f"Newton's method finds no equilibrium beyond {self.described(load, start)}",
             )
-        if self.moved(system, predicted) > _CORRECTED:
+        if self.largest_motion(system, predicted) > _CORRECTED:
             return (
                 Ending.STEP_TOO_SMALL,
-                f"beyond {self.shown(load, start)} the nearest equilibrium is on another branch",
+                f"beyond {self.described(load, start)} the nearest equilibrium is on another branch",
             )
         touched = self.least_gap(system) < 0.0
         changing = [stop for stop in self.model.stops if self.room(stop, system) < 0.0]
         if touched:
             known = {start: self.system, value: system}
-            found = self._first_touch(load, known)
-            if found is None:
+            first_touch = self._first_touch(load, known)
+            if first_touch is None:
                 return (
                     Ending.STEP_TOO_SMALL,
-                    f"the closing of a contact or stop beyond {self.shown(load, start)} was not found",
+                    f"the closing of a contact or stop beyond {self.described(load, start)} was not found",
                 )
-            value, system = found
-            before_it = self._seen_otherwise(known, value)
-            if before_it is not None:
-                value, system, touched = before_it, known[before_it], False
-            again = [stop.known_as for stop in changing if self.switched.get(stop.name) == value]
-            if again:
+            value, system = first_touch
+            side_change = self._value_before_side_change(known, value)
+            if side_change is not None:
+                value, system, touched = side_change, known[side_change], False
+            alternating = [stop.known_as for stop in changing if self.switched.get(stop.name) == value]
+            if alternating:
                 return (
                     Ending.STEP_TOO_SMALL,
-                    f"beyond {self.shown(load, start)} {again[0]} alternates between open and closed",
+                    f"beyond {self.described(load, start)} {alternating[0]} alternates between open and closed",
                 )
-        where = f"beyond {self.shown(load, start)}"
-        trouble = self.passed(before, system, where) or self._slipped(system, where)
+        where = f"beyond {self.described(load, start)}"
+        trouble = self.passing_failure(before, system, where) or self.slip_failure(system, where)
         if trouble is not None:
             return trouble
         self.values[load], self.system = value, system
-        self.change_places()
+        self.exchange_beams()
         if touched:
             self._close_tightly(load, value - start)
-            self.watch_what_touches(load, value - start)
-            self.switch(load, changing)
+            self.close_touching(load, value - start)
+            self.switch_stops(load, changing)
         return None
 
-    def _seen_otherwise(self, known: Mapping[float, System], value: float) -> float | None:
-        """Last value before ``value`` at which a pair of beams lies on another side than assumed; None if there is
-        none.
+    def _value_before_side_change(self, known: Mapping[float, System], value: float) -> float | None:
+        """Last value before ``value`` at which a pair of beams lies on another side than assumed, or None.
 
         A closing starts without overlap. A point that faces another beam from the far side, around an end, has a gap
         as negative as its distance and is no closing.
@@ -334,75 +344,79 @@ class March:
         pairs = (pair for pair in self.open if isinstance(pair, Pair) and pair.roles is None)
         if not any(least_gap(self.model, pair, known[value].z) < -pair.scale for pair in pairs):
             return None
-        clear = [one for one in known if self.least_gap(known[one]) >= 0.0]
-        last = min(clear, key=lambda one: abs(one - value), default=value)
-        otherwise = [open_in(self.model, pair, known[last].z) for pair in self.open] != self.open
-        return last if otherwise and last != value else None
+        clear = [lam for lam in known if self.least_gap(known[lam]) >= 0.0]
+        last = min(clear, key=lambda lam: abs(lam - value), default=value)
+        sides_differ = [open_in(self.model, pair, known[last].z) for pair in self.open] != self.open
+        return last if sides_differ and last != value else None
 
-    def _begun(
-        self, onward: Onward, penalties: Mapping[Contact, Penalty], z: State, step: float
+    def _with_point_forces(
+        self, tangent: PathTangent, penalties: Mapping[Contact, Penalty], z: State, step: float
     ) -> tuple[State, dict[Contact, Touch]]:
-        """Predicted state near ``z`` with the predicted point forces after a ``step`` in λ, and the contacts that
-        begin.
+        """Predicted state near ``z`` with the predicted point forces, and the contacts that begin to press.
+
+        ``step`` is the increment of λ.
         """
-        model, quadrature, way = self.model, self.settings.quadrature, step * onward.rate
-        pressing = [one for one in self.system.touches if one.push > 0.0]
-        known = known_depths(self.system, {one.pair: one.penetration for one in pressing}, self.pushes())
-        foreseen = {one.pair: one.foreseen(way) for one in pressing}
-        for pair, push in onward.pushes.items():
+        model, quadrature, way = self.model, self.settings.quadrature, step * tangent.rate
+        pressing = [contact for contact in self.system.touches if contact.push > 0.0]
+        known = known_depths(self.system, {contact.pair: contact.penetration for contact in pressing}, self.pushes())
+        foreseen = {contact.pair: contact.foreseen(way) for contact in pressing}
+        for pair, push in tangent.pushes.items():
             known[pair] = Depth(self.settings.penetration * pair.scale, push * step)
             foreseen[pair] = np.array([push * step])
-        z = sunk(model, penalties, quadrature, onward.system, z, foreseen, known)
-        begun = (touch(model, pair, penalties[pair], quadrature, z) for pair in onward.pushes)
-        return z, {one.pair: one for one in begun if one.closed}
+        z = sunk(model, penalties, quadrature, tangent.system, z, foreseen, known)
+        starting_contacts = (touch(model, pair, penalties[pair], quadrature, z) for pair in tangent.pushes)
+        return z, {contact.pair: contact for contact in starting_contacts if contact.closed}
 
-    def gone(self, load: int, before: March, rate: Array, ahead: Array) -> Behind:
-        """Record of the step from ``before``, with path tangent ``rate`` (size,), to the current state, with
-        ``ahead`` (size,).
+    def step_record(self, load: int, before: March, rate: Array, ahead: Array) -> LastStep:
+        """Record of the step from ``before`` to the current state, with path tangents ``rate`` and ``ahead`` (size,).
 
         Both states have the penalties of the step: motions due to a later tightening do not belong to the path.
         """
         by = float(self.values[load] - before.values[load])
         second, third = bend(self.model, before.system.z, self.system.z, (rate, ahead), by)
-        return Behind(load, by, second, third, before.acting, frozenset(before.penalties))
+        return LastStep(load, by, second, third, before.acting, frozenset(before.penalties))
 
     def stiffer(self, system: System) -> dict[Contact, Penalty]:
         """Stiffer penalties for contacts that are too deep; empty if all of them have their stiffest penalty.
 
         A circle's penalty never exceeds its value at a station, where the penetration in a point determines it.
         """
-        deep = {one: self.penalties[one].stiffness for one in _too_deep(self.model, system)}
-        wide = {one.pair for one in system.touches if isinstance(one.pair, Circle) and not in_points(one)}
-        limits = {one: one.stiffest if one in wide else np.inf for one in deep}
-        return {one: Penalty(min(_STIFFER * now, limits[one])) for one, now in deep.items() if now < limits[one]}
+        deep = {contact: self.penalties[contact].stiffness for contact in _too_deep(self.model, system)}
+        wide = {
+            contact.pair for contact in system.touches if isinstance(contact.pair, Circle) and not in_points(contact)
+        }
+        limits = {contact: contact.stiffest if contact in wide else np.inf for contact in deep}
+        return {
+            contact: Penalty(min(_STIFFER * now, limits[contact]))
+            for contact, now in deep.items()
+            if now < limits[contact]
+        }
 
-    def _closes_more(self, system: System) -> bool:
+    def _overlaps_more(self, system: System) -> bool:
         """True if a contact that is open now overlaps in ``system``: no step could start from there."""
         gaps = zip(self.gaps(self.system), self.gaps(system), strict=True)
         return any(after < 0.0 <= before for before, after in gaps)
 
-    def _gone_through(self, system: System) -> bool:
+    def _passed_rigid_body(self, system: System) -> bool:
         """True if ``system``, with other penalties, lies beyond a rigid body that presses now."""
         rigid = (pair for pair in self.penalties if isinstance(pair, Rigid))
         return any(passed_through(self.model, pair, self.system.z, system.z) for pair in rigid)
 
-    def _foreseen(self, load: int, step: float, rate: Array) -> Array:
+    def _predicted_step(self, load: int, step: float, rate: Array) -> Array:
         """Predicted motion (size,) for a ``step`` in λ: third order if the last step applies, else first order."""
-        first, behind = step * rate, self.behind
-        if behind is None or behind.load != load or behind.acting is not self.acting:
+        first, last_step = step * rate, self.last_step
+        if last_step is None or last_step.load != load or last_step.acting is not self.acting:
             return first
-        if behind.contacts != frozenset(self.penalties) or not abs(step) <= _AHEAD * abs(behind.by):
+        if last_step.contacts != frozenset(self.penalties) or not abs(step) <= _AHEAD * abs(last_step.by):
             return first
-        u = step / behind.by
-        more = u**2 * behind.second + u**3 * behind.third
+        u = step / last_step.by
+        more = u**2 * last_step.second + u**3 * last_step.third
         bent, straight = (float(np.abs(way[self.model.moving]).max()) for way in (more, first))
         return first + more if bent <= _BENT * straight else first
 
-    def passed(self, before: State, system: System, where: str) -> Trouble | None:
-        """Failure if bodies passed through each other, or an element turned too far, on the way from ``before``; else
-        None.
-        """
-        pressing = {one.pair for one in system.touches if one.closed}
+    def passing_failure(self, before: State, system: System, where: str) -> Trouble | None:
+        """Failure if bodies passed through each other, or an element turned too far, since ``before``; else None."""
+        pressing = {contact.pair for contact in system.touches if contact.closed}
         for pair in (*self.open, *self.penalties):
             if isinstance(pair, Face):
                 continue  # a Face is tested in the frame of its body, below
@@ -421,17 +435,15 @@ class March:
                 return Ending.BEAMS_CROSSED, f"{where} a beam passes through the opposite body in contact {pair.name}"
         return None
 
-    def _slipped(self, system: System, where: str) -> Trouble | None:
-        """Failure if a pressing end slipped off another beam's end, or off a corner, on the way to ``system``; else
-        None.
-        """
-        for one in self.system.touches:
-            if slipped_off(self.model, one, self.system.z, system.z):
-                return Ending.STEP_TOO_SMALL, f"{where} a beam's end slips off a corner in contact {one.pair.name}"
-            if gone_past(self.model, one, self.system.z, system.z):
+    def slip_failure(self, system: System, where: str) -> Trouble | None:
+        """Failure if a pressing end slipped off another beam's end or off a corner before ``system``; else None."""
+        for contact in self.system.touches:
+            if slipped_off(self.model, contact, self.system.z, system.z):
+                return Ending.STEP_TOO_SMALL, f"{where} a beam's end slips off a corner in contact {contact.pair.name}"
+            if gone_past(self.model, contact, self.system.z, system.z):
                 return (
                     Ending.STEP_TOO_SMALL,
-                    f"{where} a beam's end slips off the other beam in contact {one.pair.name}",
+                    f"{where} a beam's end slips off the other beam in contact {contact.pair.name}",
                 )
         return None
 
@@ -445,16 +457,16 @@ class March:
         # the largest force may be the stop's own, which vanishes where the stop opens
         return stop.press(system.z, limit) / max(1.0, system.scale) + _PULLS
 
-    def switch(self, load: int, changing: Iterable[StopPart]) -> None:
+    def switch_stops(self, load: int, changing: Iterable[StopPart]) -> None:
         """Close or open the stops among ``changing`` that have reached their margin."""
         arrived = [stop for stop in changing if self.room(stop, self.system) <= _SWITCHED]
         for stop in arrived:
             self.switched[stop.name] = float(self.values[load])
-            self.turn(stop, load, self.system)
+            self.toggle_stop(stop, load, self.system)
         if arrived:
-            self.renew()
+            self.reassemble()
 
-    def turn(self, stop: StopPart, load: int, system: System) -> None:
+    def toggle_stop(self, stop: StopPart, load: int, system: System) -> None:
         """Open a closed stop; close an open stop at the limit nearest in ``system``."""
         if stop.name in self.acting.limits:
             self.acting = self.acting.released(stop.name)
@@ -462,18 +474,18 @@ class March:
             self.acting = self.acting.stopped(stop.name, stop.room(system.z)[1])
             self.closing.setdefault(stop.known_as, self.value(load))
 
-    def act(self, acting: Acting) -> None:
+    def constrain(self, acting: Acting) -> None:
         """Change the active constraints without motion."""
         self.acting = acting
-        self.renew()
+        self.reassemble()
 
-    def renew(self) -> None:
+    def reassemble(self) -> None:
         """Assemble the system again with the current constraints and penalties, in the same state."""
         self.system = assemble(
             self.model, self.penalties, self.settings.quadrature, self.values, self.system.z, self.acting
         )
 
-    def look(self) -> None:
+    def update_sides(self) -> None:
         """Update the sides of all open contacts, and the sides of self-contacts, from the current state."""
         model, z = self.model, self.system.z
         self.open = [open_in(model, pair, z) for pair in self.open]
@@ -490,13 +502,13 @@ class March:
         another in a single step may therefore end open behind the other beam.
         """
         way = after.values - before.values
-        moved = float(np.abs(way[self.model.moving]).max())
+        largest_motion = float(np.abs(way[self.model.moving]).max())
         least = zones_of(self.model, pair, before).least
-        if least > 2.0 * moved:
+        if least > 2.0 * largest_motion:
             return False
-        deepest = least - _DEEPER * self._finest if least < 0.0 else 0.0
+        deepest = least - _DEEPER * self._shortest_element if least < 0.0 else 0.0
         thick = min(pair.distance, pair.scale) if isinstance(pair, Pair) else 0.0
-        parts = max(2, int(np.ceil(moved / max(self._finest, _THROUGH * thick))))
+        parts = max(2, int(np.ceil(largest_motion / max(self._shortest_element, _THROUGH * thick))))
         pace = against(self.model, pair, before, after) / parts
 
         def overlaps(first: int, last: int) -> bool:
@@ -516,7 +528,7 @@ class March:
         return overlaps(0, parts)
 
     @property
-    def _finest(self) -> float:
+    def _shortest_element(self) -> float:
         return min(float(self.model.line(beam, self.model.start).lengths.min()) for beam in self.model.beams)
 
     def _first_touch(self, load: int, known: dict[float, System]) -> tuple[float, System] | None:
@@ -539,9 +551,9 @@ class March:
             # a gap within half the closing tolerance counts as zero; the aim lies inside the tolerance, because beyond
             # its edge an end without thickness would be on the other side
             gap = gaps(value)[which]
-            return 0.0 if 0.0 <= gap <= 0.5 * arrived[which] else gap - _INSIDE * arrived[which]
+            return 0.0 if 0.0 <= gap <= 0.5 * tolerances[which] else gap - _INSIDE * tolerances[which]
 
-        arrived = [*(CLOSED * pair.scale for pair in self.open), *(_SWITCHED for _ in self.model.stops)]
+        tolerances = [*(CLOSED * pair.scale for pair in self.open), *(_SWITCHED for _ in self.model.stops)]
         clear, beyond = sorted(known, key=lambda value: min(gaps(value)), reverse=True)
         xtol = 1e-11 * max(abs(clear), abs(beyond))
         try:
@@ -549,7 +561,7 @@ class March:
                 pairs = list(zip(gaps(clear), gaps(beyond), strict=True))
                 first = min((i for i, pair in enumerate(pairs) if pair[1] < 0.0), key=lambda i: _straight(*pairs[i]))
                 root = float(brentq(sought, clear, beyond, (first,), xtol=xtol, rtol=1e-11))
-                if gaps(root)[first] > arrived[first]:  # a jump: the overlap is visible only beyond a certain size
+                if gaps(root)[first] > tolerances[first]:  # a jump: the overlap is visible only beyond a certain size
                     over = [value for value in known if gaps(value)[first] <= 0.0]
                     root = over[int(np.argmin(np.abs(np.array(over) - root)))]
                 if min((*gaps(root)[:first], *gaps(root)[first + 1 :]), default=0.0) >= 0.0:
@@ -598,7 +610,7 @@ class March:
         """The least value of :meth:`gaps`."""
         return min(self.gaps(system), default=np.inf)
 
-    def watch_what_touches(self, load: int, way: float = 0.0) -> None:
+    def close_touching(self, load: int, way: float = 0.0) -> None:
         """Close every open contact with a vanishing gap; ``way`` is the last step in λ."""
         z = self.system.z
         closing = [p for p in self.open if least_gap(self.model, p, z) <= CLOSED * p.scale]
@@ -608,17 +620,17 @@ class March:
             unseen = zones_of(self.model, pair, z).least > CLOSED * pair.scale
             closed = pair.about() if unseen and isinstance(pair, Pair) else pair
             self.penalties[closed] = Penalty(pair.stiffness)
-            left = self._left(load, pair, way) * self.model.stepped[load].unit
-            self.closing.setdefault(pair.name, self.value(load) + left)
+            remainder = self._increment_to_zero_gap(load, pair, way) * self.model.stepped[load].unit
+            self.closing.setdefault(pair.name, self.value(load) + remainder)
         if closing:
-            self.renew()
+            self.reassemble()
 
-    def _left(self, load: int, pair: Contact, way: float) -> float:
+    def _increment_to_zero_gap(self, load: int, pair: Contact, way: float) -> float:
         """Increment of λ to the exact zero of a gap within the closing tolerance, by the current rate of the gap."""
         step = _DIFFERENCE * way
-        moved = advance(self.model, self.system.z, step * self.rate(load))
-        here, there = (least_gap(self.model, pair, z) for z in (self.system.z, moved))
-        return step * here / (here - there) if 0.0 < here < (here - there) / _DIFFERENCE else 0.0
+        moved_state = advance(self.model, self.system.z, step * self.rate(load))
+        here, gap_there = (least_gap(self.model, pair, z) for z in (self.system.z, moved_state))
+        return step * here / (here - gap_there) if 0.0 < here < (here - gap_there) / _DIFFERENCE else 0.0
 
     def loosen(self, *kinds: type[Contact]) -> bool:
         """Lower the penalties of contacts of the given ``kinds``, as far as possible; True on success.
@@ -643,84 +655,90 @@ class March:
             self.model, self.settings, looser, self.values, self.system.z, self.acting, self.depths(), self.pushes()
         )
         self.iterations += solved.iterations
-        if not solved.converged or _too_deep(self.model, solved.system) or self._closes_more(solved.system):
+        if not solved.converged or _too_deep(self.model, solved.system) or self._overlaps_more(solved.system):
             return False
-        there = self._gone_through(solved.system) or self._slipped(solved.system, "") is not None
-        if self.moved(solved.system, self.system.z) <= _CORRECTED and not there:
-            self.system, self.penalties, self.loose = solved.system, looser, True
-            self.change_places()
+        contact_lost = self._passed_rigid_body(solved.system) or self.slip_failure(solved.system, "") is not None
+        if self.largest_motion(solved.system, self.system.z) <= _CORRECTED and not contact_lost:
+            self.system, self.penalties, self.loosened = solved.system, looser, True
+            self.exchange_beams()
             return True
         return False
 
-    def change_places(self) -> None:
-        """Exchange the beams of a pair where an end of the second presses: the gap function sees ends of the first
-        only.
+    def exchange_beams(self) -> None:
+        """Exchange the beams of a pair where an end of the second presses.
 
-        If ends of both beams press, the zones at an end are integrated along the beam of this end. The pair returns
-        to a single integral when only one beam's ends press.
+        The gap function sees ends of the first beam only. If ends of both beams press, the zones at an end are
+        integrated along the beam of this end. The pair returns to a single integral when only one beam's ends press.
         """
-        for one in self.system.touches:
-            pair, lacks = one.pair, one.lacks
+        for contact in self.system.touches:
+            pair, missing_share = contact.pair, contact.missing_share
             if not isinstance(pair, Pair) or pair.roles is not None:
                 continue
-            if pair.carried and one.closed and lacks <= LACKING and (alone := self._alone(one, pair)) is not None:
-                solved = self._instead(pair, alone)
-                if solved is not None and all(found.lacks <= LACKING for found in solved[0].touches):
+            if (
+                pair.carried
+                and contact.closed
+                and missing_share <= LACKING
+                and (alone := self._as_single_integral(contact, pair)) is not None
+            ):
+                solved = self._with_replaced_pair(pair, alone)
+                if solved is not None and all(contact.missing_share <= LACKING for contact in solved[0].touches):
                     self.system, self.penalties = solved
                 continue
             about = pair.about()
             for other in (about, replace(pair, carried=pair.ends_m), replace(about, carried=about.ends_m)):
-                if lacks <= LACKING:
+                if missing_share <= LACKING:
                     break
-                if other != pair and (solved := self._instead(pair, other)) is not None:
-                    less = next((found.lacks for found in solved[0].touches if found.pair == other), 0.0)
-                    if less < lacks:
-                        (self.system, self.penalties), pair, lacks = solved, other, less
+                if other != pair and (solved := self._with_replaced_pair(pair, other)) is not None:
+                    reduced_share = next(
+                        (contact.missing_share for contact in solved[0].touches if contact.pair == other), 0.0
+                    )
+                    if reduced_share < missing_share:
+                        (self.system, self.penalties), pair, missing_share = solved, other, reduced_share
 
-    def _sees_more_ends(self, system: System) -> bool:
+    def _include_overlapping_ends(self, system: System) -> bool:
         """Include beam ends that overlap in ``system`` but are missing in the pair's integral; True if there are any.
 
         Measured along the other beam, such an end is oblique: its contact would start later and deeper than normal to
         the beam's side.
         """
         more: dict[Contact, Contact] = {}
-        for one in system.touches:
-            pair, z = one.pair, system.z
-            if not isinstance(pair, Pair) or pair.roles is not None or pair.carried or not one.closed:
+        for contact in system.touches:
+            pair, z = contact.pair, system.z
+            if not isinstance(pair, Pair) or pair.roles is not None or pair.carried or not contact.closed:
                 continue
             last, last_m = (self.model.line(self.model.beams[i], z).n for i in (pair.first, pair.second))
-            if at_ends(one.zones.zeta_m, last_m) or least_at_ends(self.model, pair, z) >= -CLOSED * pair.scale:
+            if at_ends(contact.zones.zeta_m, last_m) or least_at_ends(self.model, pair, z) >= -CLOSED * pair.scale:
                 continue
-            more[pair] = replace(pair, carried=pair.ends_m) if at_ends(one.zones.intervals, last) else pair.about()
+            more[pair] = replace(pair, carried=pair.ends_m) if at_ends(contact.zones.intervals, last) else pair.about()
         self.penalties = {more.get(pair, pair): penalty for pair, penalty in self.penalties.items()}
         return bool(more)
 
-    def _alone(self, one: Touch, pair: Pair) -> Pair | None:
+    def _as_single_integral(self, contact: Touch, pair: Pair) -> Pair | None:
         """The pair as integrated along the only beam with pressing ends; None if ends of both beams press."""
         last, last_m = (self.model.line(self.model.beams[i], self.system.z).n for i in (pair.first, pair.second))
-        if not at_ends(one.zones.intervals, last):
+        if not at_ends(contact.zones.intervals, last):
             return pair.about()
-        return None if at_ends(one.zones.zeta_m, last_m) else replace(pair, carried=())
+        return None if at_ends(contact.zones.zeta_m, last_m) else replace(pair, carried=())
 
-    def _instead(self, pair: Pair, other: Pair) -> tuple[System, dict[Contact, Penalty]] | None:
+    def _with_replaced_pair(self, pair: Pair, other: Pair) -> tuple[System, dict[Contact, Penalty]] | None:
         """Equilibrium and penalties with ``pair`` replaced by ``other``; None if the state would change."""
-        penalties = {other if one == pair else one: penalty for one, penalty in self.penalties.items()}
-        depths = {other if one == pair else one: depth for one, depth in self.depths().items()}
-        pushes = {one: push for one, push in self.pushes().items() if one != pair}
+        penalties = {other if key == pair else key: penalty for key, penalty in self.penalties.items()}
+        depths = {other if key == pair else key: depth for key, depth in self.depths().items()}
+        pushes = {key: push for key, push in self.pushes().items() if key != pair}
         solved = equilibrium(
             self.model, self.settings, penalties, self.values, self.system.z, self.acting, depths, pushes
         )
         self.iterations += solved.iterations
-        if not solved.converged or self.moved(solved.system, self.system.z) > _CORRECTED:
+        if not solved.converged or self.largest_motion(solved.system, self.system.z) > _CORRECTED:
             return None
         return solved.system, penalties
 
     def zones(self) -> dict[Contact, Array]:
         """First and last place ζ of every closed contact with a rigid body, (2,)."""
         return {
-            one.pair: np.array([one.zones.intervals.min(), one.zones.intervals.max()])
-            for one in self.system.touches
-            if isinstance(one.pair, Rigid) and one.closed
+            contact.pair: np.array([contact.zones.intervals.min(), contact.zones.intervals.max()])
+            for contact in self.system.touches
+            if isinstance(contact.pair, Rigid) and contact.closed
         }
 
     def tighten(self) -> None:
@@ -729,41 +747,46 @@ class March:
         A contact in a point starts at a depth with the same force, which saves iterations of a large change. Such
         pairs of beams are held active meanwhile: a motion above their depth would open them or multiply their force.
         """
-        self.loose = False
+        self.loosened = False
         most = _TIGHTEN
         falls: dict[Contact, float] = {}
         for tries in range(_TIGHTENINGS):
             allowed = self.allowed()
             factors = {
-                one.pair: self._wanted(one, falls.get(one.pair, _IN_A_POINT), allowed.get(one.pair))
-                for one in self.system.touches
+                contact.pair: self._penalty_factor(
+                    contact, falls.get(contact.pair, _IN_A_POINT), allowed.get(contact.pair)
+                )
+                for contact in self.system.touches
             }
-            pressures = {one.pair: resting_pressure(self.model, one, self.system.z) for one in self.system.touches}
+            pressures = {
+                contact.pair: resting_pressure(self.model, contact, self.system.z) for contact in self.system.touches
+            }
             done = all(
-                self._will_do(one, factors[one.pair], tries, allowed.get(one.pair)) for one in self.system.touches
+                self._penalty_accepted(contact, factors[contact.pair], tries, allowed.get(contact.pair))
+                for contact in self.system.touches
             )
-            if done and not self._misled(pressures):
+            if done and not self._leads_outdated(pressures):
                 return
             tighter = dict(self.penalties)
             depths: dict[Contact, float] = {}
-            held: dict[Contact, float] = {}
-            for one in self.system.touches:
-                narrow = one.closed and np.ptp(one.zones.intervals) < POINT
+            held_depths: dict[Contact, float] = {}
+            for contact in self.system.touches:
+                narrow = contact.closed and np.ptp(contact.zones.intervals) < POINT
                 limit = most**_NARROW if narrow else most
-                factor = min(max(factors[one.pair], 1.0 / limit), limit)
-                stiffness = factor * self.penalties[one.pair].stiffness
-                tighter[one.pair] = Penalty(stiffness, pressures[one.pair] / stiffness)
-                depths[one.pair] = one.penetration * factor ** (-1.0 / falls.get(one.pair, _IN_A_POINT))
-                if narrow and isinstance(one.pair, Pair):
-                    held[one.pair] = depths[one.pair]
+                factor = min(max(factors[contact.pair], 1.0 / limit), limit)
+                stiffness = factor * self.penalties[contact.pair].stiffness
+                tighter[contact.pair] = Penalty(stiffness, pressures[contact.pair] / stiffness)
+                depths[contact.pair] = contact.penetration * factor ** (-1.0 / falls.get(contact.pair, _IN_A_POINT))
+                if narrow and isinstance(contact.pair, Pair):
+                    held_depths[contact.pair] = depths[contact.pair]
             pushes = self.pushes()
             known = known_depths(self.system, depths, pushes)
             z = sunk(self.model, tighter, self.settings.quadrature, self.system, self.system.z, pushes, known)
-            solved = equilibrium(self.model, self.settings, tighter, self.values, z, self.acting, held, pushes)
+            solved = equilibrium(self.model, self.settings, tighter, self.values, z, self.acting, held_depths, pushes)
             self.iterations += solved.iterations
-            near = solved.converged and self.moved(solved.system, self.system.z) <= _CORRECTED
-            if near and not self._gone_through(solved.system):
-                falls = self._falls(solved.system, tighter)
+            near = solved.converged and self.largest_motion(solved.system, self.system.z) <= _CORRECTED
+            if near and not self._passed_rigid_body(solved.system):
+                falls = self._penetration_exponents(solved.system, tighter)
                 self.system, self.penalties = solved.system, tighter
                 most = min(most**1.5, _TIGHTEN)
             else:
@@ -772,32 +795,34 @@ class March:
                 tried = max(max(factor, 1.0 / factor) for factor in factors.values())
                 most = max(min(most, tried) ** 0.4, _GENTLEST)
 
-    def firmer(self, name: str) -> bool:
+    def raise_penalty(self, name: str) -> bool:
         """Hold a contact by a far stiffer penalty up to the next station; True if this was possible."""
         pair = next(pair for pair in self.penalties if pair.name == name)
         stiffness = _FIRMER * self.penalties[pair].stiffness
         if stiffness > _FIRMEST * pair.stiffest:
             return False
-        self.firm[name] = stiffness
+        self.least_penalties[name] = stiffness
         self.tighten()
         return self.penalties[pair].stiffness >= (1.0 - _EVEN) * stiffness
 
-    def soft(self) -> bool:
+    def has_soft_penalty(self) -> bool:
         """True if a closed contact has a penalty far below the stiffest that the elements resolve."""
         return any(
-            one.closed and self.penalties[one.pair].stiffness < _SOFT * one.pair.stiffest for one in self.system.touches
+            contact.closed and self.penalties[contact.pair].stiffness < _SOFT * contact.pair.stiffest
+            for contact in self.system.touches
         )
 
-    def sunk(self) -> bool:
+    def has_deep_pair(self) -> bool:
         """True if contacts are so deep under the current penalties that the next step might pass through."""
-        return self.cut() or any(
-            isinstance(one.pair, Pair) and one.penetration > _SINKING * one.pair.scale for one in self.system.touches
+        return self.has_deep_tip() or any(
+            isinstance(contact.pair, Pair) and contact.penetration > _SINKING * contact.pair.scale
+            for contact in self.system.touches
         )
 
-    def cut(self) -> bool:
+    def has_deep_tip(self) -> bool:
         """True if a tip of a rigid edge has cut deep into a beam: no further step may find an equilibrium there."""
-        faces = (one.pair for one in self.system.touches if isinstance(one.pair, Face) and one.closed)
-        return any(cut(self.model, face, self.system.z) > _SINKING * face.scale for face in faces)
+        faces = (contact.pair for contact in self.system.touches if isinstance(contact.pair, Face) and contact.closed)
+        return any(tip_depth(self.model, face, self.system.z) > _SINKING * face.scale for face in faces)
 
     def settle(self, load: int) -> None:
         """Tighten penalties and switch stops until both are consistent.
@@ -814,9 +839,9 @@ class March:
                 return
             before, closing = self.acting, dict(self.closing)
             for stop in changing:
-                self.turn(stop, load, self.system)
+                self.toggle_stop(stop, load, self.system)
             system = self.solve(load, float(self.values[load]), self.system.z)
-            if system is None or self.moved(system, self.system.z) > _CORRECTED:
+            if system is None or self.largest_motion(system, self.system.z) > _CORRECTED:
                 self.acting, self.closing = before, closing
                 return
             self.system = system
@@ -833,13 +858,13 @@ class March:
             self.penalties[pair] = Penalty(pair.stiffness)
             self.closing.setdefault(pair.name, self.value(load))
         system = self.solve(load, float(self.values[load]), z)
-        if system is None or self.moved(system, z) > _CORRECTED:
+        if system is None or self.largest_motion(system, z) > _CORRECTED:
             self.restore(there)
             return False
         self.system = system
         return True
 
-    def sharpen(self) -> None:
+    def iterate_to_round_off(self) -> None:
         """Iterate the residual down to round-off, if a few iterations suffice.
 
         The accepted residual is relative to the largest element force, which may exceed the loads a hundredfold.
@@ -851,80 +876,82 @@ class March:
                 self.model, settings, self.penalties, self.values, system.z, self.acting, self.depths(), self.pushes()
             )
             self.iterations += solved.iterations
-            if solved.converged and self.moved(solved.system, system.z) <= _SHARP:
+            if solved.converged and self.largest_motion(solved.system, system.z) <= _SHARP:
                 self.system = solved.system
 
-    def poise(self) -> None:
-        """Correct the residual by the round-off of gaps times a stiff penalty, unless the forces themselves are
-        round-off.
-        """
+    def remove_gap_round_off(self) -> None:
+        """Remove the round-off of gaps times a stiff penalty from the residual, if the forces exceed round-off."""
         accepted = self.settings.residual * self.system.scale
-        if self.system.told and float(np.abs(self.system.residual).max()) > accepted:
+        if self.system.significant and float(np.abs(self.system.residual).max()) > accepted:
             self.system = poised(self.model, self.values, self.system, accepted)
 
     def allowed(self) -> dict[Contact, float]:
-        """Allowed penetration by contact, from the requested penetration or from the contact's effect on other
-        forces.
+        """Allowed penetration by contact, from the requested penetration or from the effect on other forces.
 
         For contacts with smooth rigid surfaces only the effect counts; a contact without an entry has no bound.
         """
         system, settings = self.system, self.settings
-        known = felt(self.model, system, self.penalties, self.open, settings.quadrature)
+        effects = felt(self.model, system, self.penalties, self.open, settings.quadrature)
         felt_at_most = min(_FELT * settings.penetration, FELT)
-        found: dict[Contact, float] = {}
-        for one in system.touches:
-            if not one.closed:
+        depths: dict[Contact, float] = {}
+        for contact in system.touches:
+            if not contact.closed:
                 continue
-            depth = settings.penetration * one.pair.scale if isinstance(one.pair, Pair) or one.sharp else np.inf
-            if (share := known.get(one.pair, 0.0)) > 0.0:
-                little = one.penetration * max(felt_at_most / share, 1.0 / _TIGHTEN)
-                depth = min(depth, max(little, ROUNDED))
+            depth = (
+                settings.penetration * contact.pair.scale if isinstance(contact.pair, Pair) or contact.sharp else np.inf
+            )
+            if (share := effects.get(contact.pair, 0.0)) > 0.0:
+                reduced_depth = contact.penetration * max(felt_at_most / share, 1.0 / _TIGHTEN)
+                depth = min(depth, max(reduced_depth, ROUNDED))
             if np.isfinite(depth):
-                found[one.pair] = depth
-        return found
+                depths[contact.pair] = depth
+        return depths
 
-    def _wanted(self, one: Touch, fall: float, allowed: float | None) -> float:
+    def _penalty_factor(self, contact: Touch, fall: float, allowed: float | None) -> float:
         """Factor of a penalty for the penetration ``allowed``, and at least for the stiffness required at a station.
 
         The penetration goes with the penalty to the power −1/``fall``: −2/3 in a point between sides, −1/2 at a tip,
         −1 in an area. On a smooth rigid surface the penalty is constant: beyond the resolution of the elements a
         stiffer penalty costs more accuracy than its penetration.
         """
-        least = max(one.pair.stiffest, self.firm.get(one.pair.name, 0.0)) / self.penalties[one.pair].stiffness
-        if not one.closed:
+        least = (
+            max(contact.pair.stiffest, self.least_penalties.get(contact.pair.name, 0.0))
+            / self.penalties[contact.pair].stiffness
+        )
+        if not contact.closed:
             return 1.0
         if allowed is None:
             return max(1.0, least)
         aim = _AIM * allowed
         # a penetration above this bound belongs to a body that was passed through
-        slender = max(1.0, self._finest / one.pair.scale)
+        slender = max(1.0, self._shortest_element / contact.pair.scale)
         most = _STIFFEST * (slender * _STANDARD / self.settings.penetration) ** _FALLS[1] * least
-        return float(min(max((one.penetration / aim) ** fall, least), most))
+        return float(min(max((contact.penetration / aim) ** fall, least), most))
 
-    def _will_do(self, one: Touch, factor: float, tries: int, allowed: float | None) -> bool:
+    def _penalty_accepted(self, contact: Touch, factor: float, tries: int, allowed: float | None) -> bool:
         """True if a penalty needs no change; after several iterations a pair's penalty may be too stiff."""
         if allowed is None:
             return factor <= 1.0 + _SAME
         if abs(factor - 1.0) <= _EVEN:
             return True
-        enough = one.penetration <= allowed
-        stiff = one.pair.stiffest <= (1.0 + _EVEN) * self.penalties[one.pair].stiffness
+        enough = contact.penetration <= allowed
+        stiff = contact.pair.stiffest <= (1.0 + _EVEN) * self.penalties[contact.pair].stiffness
         return tries >= _POLISHINGS and enough and stiff
 
-    def _falls(self, system: System, tighter: Mapping[Contact, Penalty]) -> dict[Contact, float]:
-        """Exponents of the penetration, −Δln ε/Δln depth, from the current penalties to the ``tighter`` ones of
+    def _penetration_exponents(self, system: System, tighter: Mapping[Contact, Penalty]) -> dict[Contact, float]:
+        """Exponents of the penetration, −Δln ε/Δln depth, between the current penalties and ``tighter`` ones of
         ``system``.
         """
-        before = {one.pair: one.penetration for one in self.system.touches}
-        found = {}
-        for one in system.touches:
-            factor = tighter[one.pair].stiffness / self.penalties[one.pair].stiffness
-            share = one.penetration / before[one.pair] if before[one.pair] > 0.0 else 0.0
+        before = {contact.pair: contact.penetration for contact in self.system.touches}
+        exponents = {}
+        for contact in system.touches:
+            factor = tighter[contact.pair].stiffness / self.penalties[contact.pair].stiffness
+            share = contact.penetration / before[contact.pair] if before[contact.pair] > 0.0 else 0.0
             if share > 0.0 and abs(np.log(share)) > _EVEN:
-                found[one.pair] = float(np.clip(-np.log(factor) / np.log(share), *_FALLS))
-        return found
+                exponents[contact.pair] = float(np.clip(-np.log(factor) / np.log(share), *_FALLS))
+        return exponents
 
-    def _misled(self, pressures: Mapping[Contact, float]) -> bool:
+    def _leads_outdated(self, pressures: Mapping[Contact, float]) -> bool:
         """True if a lead differs from the lead of the current axial forces."""
         return any(
             abs(pressure / self.penalties[pair].stiffness - self.penalties[pair].lead)
@@ -939,26 +966,26 @@ class March:
         """
         allowed = self.settings.penetration
         return {
-            one.pair: one.penetration if one.push > 0.0 else allowed * one.pair.scale
-            for one in self.system.touches
-            if isinstance(one.pair, Pair)
-            and one.zones.least <= CLOSED * one.pair.scale
-            and self.penalties[one.pair].stiffness >= one.pair.stiffness
+            contact.pair: contact.penetration if contact.push > 0.0 else allowed * contact.pair.scale
+            for contact in self.system.touches
+            if isinstance(contact.pair, Pair)
+            and contact.zones.least <= CLOSED * contact.pair.scale
+            and self.penalties[contact.pair].stiffness >= contact.pair.stiffness
         }
 
     def pushes(self) -> dict[Contact, Array]:
         """Point forces (k,) of the closed contacts."""
-        return {one.pair: one.pushes for one in self.system.touches if one.closed}
+        return {contact.pair: contact.pushes for contact in self.system.touches if contact.closed}
 
-    def moved(self, system: System, z: State) -> float:
+    def largest_motion(self, system: System, z: State) -> float:
         """Largest displacement (or rotation) between ``system`` and the state ``z``."""
         return float(np.abs((system.z.values - z.values)[self.model.moving]).max())
 
-    def turned(self, system: System, z: State) -> float:
+    def largest_rotation(self, system: System, z: State) -> float:
         """Largest rotation (rad) of a section or body between ``system`` and the state ``z``."""
         return float(np.abs((system.z.values - z.values)[self.model.turning]).max())
 
-    def shown(self, load: int, value: float) -> str:
+    def described(self, load: int, value: float) -> str:
         """Name of the stepped parameter and a value in SI units, for messages."""
         part = self.model.stepped[load]
         return f"{part.name} = {value * part.unit:.6g}"
@@ -970,20 +997,24 @@ def _too_deep(model: Model, system: System) -> list[Contact]:
     Where neutral lines cross, the first beam is on no side of the second, and no penalty separates them.
     """
     return [
-        one.pair
-        for one in system.touches
-        if one.penetration > _SUNK * _deepest(one.pair)
-        or (isinstance(one.pair, Face) and one.closed and cut(model, one.pair, system.z) > _SUNK * one.pair.scale)
+        contact.pair
+        for contact in system.touches
+        if contact.penetration > _SUNK * _deepest(contact.pair)
+        or (
+            isinstance(contact.pair, Face)
+            and contact.closed
+            and tip_depth(model, contact.pair, system.z) > _SUNK * contact.pair.scale
+        )
     ]
 
 
-def _deepest(what: Contact) -> float:
+def _deepest(contact: Contact) -> float:
     """Greatest penetration of a contact not yet passed through; infinite for lines and edges."""
-    match what:
+    match contact:
         case Pair(distance=distance, scale=scale) if distance > 0.0:
             return scale
         case Circle():
-            return what.deepest
+            return contact.deepest
         case _:
             return np.inf
 

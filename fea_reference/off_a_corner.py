@@ -86,9 +86,7 @@ def cut_short(model: Model, system: System) -> bool:
 
 
 def slips(model: Model, gone: Sequence[Stretch], end: System) -> Slip | None:
-    """The slip beyond the segments ``gone`` of a branch that ends early, at ``end``, because of penalties; None
-    without any.
-    """
+    """The slip beyond the segments ``gone`` of a branch that penalties end early, at ``end``; None without a slip."""
     for last in end.touches:
         if left_of_side(model, last, end.z) is None or not _cut_short(model, last, _BESIDE):
             continue

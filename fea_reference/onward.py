@@ -28,7 +28,7 @@ _NOTHING = 1e-12  # times the largest compliance: contacts below are linearly de
 
 
 @dataclass(frozen=True, slots=True)
-class Onward:
+class PathTangent:
     """Path tangent ``rate`` (size,), rates of the contact forces ``pushes``, and the ``system`` with these contacts."""
 
     rate: Array
@@ -36,9 +36,9 @@ class Onward:
     system: System
 
 
-def onward(
+def path_tangent(
     model: Model, system: System, penalties: Mapping[Contact, Penalty], quadrature: int, rate: Array, sense: float
-) -> Onward:
+) -> PathTangent:
     """Path tangent in ``sense`` (±1) of λ with the new contacts; ``rate`` (size,) is the tangent without them."""
     found = []
     for one in system.touches:
@@ -64,10 +64,10 @@ def onward(
         if pushing.all():
             touches = {each[0].pair: each[0] for each in found}
             others = tuple(touches.get(one.pair, one) for one in system.touches)
-            return Onward(
+            return PathTangent(
                 rate + moved @ p,
                 {pair: float(push) for pair, push in zip(touches, p, strict=True)},
                 replace(system, touches=others),
             )
         found = [each for each, pushes in zip(found, pushing, strict=True) if pushes]
-    return Onward(rate, {}, system)
+    return PathTangent(rate, {}, system)

@@ -198,8 +198,8 @@ class Broken:
         return np.asarray(np.where(near.corner, round_it, _across(self._normals.take(side, axis=1), y, rest, begins)))
 
     def _foot(self, y: Array) -> tuple[Ints, Array, Array]:
-        """Closest side (k,) of points (2, k), distance (k,) of the closest point along the side, and vector from
-        there.
+        """Closest side (k,) of points (2, k), closest distance (k,) along the side, and the vector from
+        there (2, k).
         """
         tangents, first, low, high = self._sides
         begins, back = self._complex

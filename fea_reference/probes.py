@@ -121,8 +121,9 @@ def _holding_ends(march: March, name: str) -> list[float]:
 
 
 def _holding(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]:
-    """Reaction forces and moments at a fixed point, with pivots and stops, or of guides and drives of a point or
-    body.
+    """Reaction forces and moments at a fixed point, or of guides and drives of a point or body.
+
+    A fixed point includes its pivots and stops.
     """
     model, z = march.model, march.system.z
     turning = {key for key, body in scene.bodies.items() if isinstance(body, TurningBody) and body.about == name}

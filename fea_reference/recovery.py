@@ -61,10 +61,9 @@ def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Arra
 
 
 def _cut(model: Model, system: System, beam: BeamPart) -> tuple[Array, Array, Array, Array]:
-    """Force and moment (3, n) on every element's first node without contacts and loads; contacts' places, points,
-    forces.
+    """Forces and moments at first nodes without contacts and loads, and contacts' places, points and forces.
 
-    Places are (k,), points and forces (2, k).
+    Force and moment (3, n) act on the first node of every element; places are (k,), points and forces (2, k).
     """
     ends = system.elements.gradient[:3, beam.elements].copy()  # force and moment on every element's first node
     number = model.beams.index(beam)

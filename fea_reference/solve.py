@@ -68,7 +68,8 @@ class Prepared:
         closed = {name: f"closed at {value:.6g}" for name, value in march.closing.items()}
         tested = [f"{name}: {closed.get(name, 'stayed open')}" for name in scene.contacts]
         left = [
-            f"{end.sentence}; the solution continues on a nearby branch, found by energy descent" for end in march.left
+            f"{end.sentence}; the solution continues on a nearby branch, found by energy descent"
+            for end in march.bypassed
         ]
         return Answer(
             solver="fea",
@@ -79,7 +80,7 @@ class Prepared:
             stations=tuple(stations),
             events=(*events, *openings(scene, stations)),
             critical=tuple(march.critical),
-            gone_over=tuple(end.record for end in march.left),
+            gone_over=tuple(end.record for end in march.bypassed),
             seconds=self.seconds + time.perf_counter() - began,
             notes=(*tested, *left),
         )

@@ -46,7 +46,7 @@ class System:
             chord, so
             that its round-off is 12 EI/h² times the spacing of machine numbers at the chord's angle. A penalty ε adds
             ε times an element's share of the zone times the round-off of the gap.
-        told: True if the forces in equilibrium exceed round-off.
+        significant: True if the forces in equilibrium exceed round-off.
     """
 
     z: State
@@ -58,7 +58,7 @@ class System:
     loads: tuple[BeamLoad, ...]
     scale: float
     floor: float
-    told: bool
+    significant: bool
 
     def solve(self, right: Array) -> Array | None:
         """Solution (size,) of the tangent's equations for ``right`` (size,); None for a singular tangent."""
@@ -178,8 +178,10 @@ def _summed(
     angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
     floor = _ROUND_OFF * model.stiffest * float(np.spacing(angle))
     floor += rounded
-    told = largest > NOTHING * floor
-    return System(z, acting, residual, tangent, elements, touches, loads, largest if told else 1.0, floor, told)
+    significant = largest > NOTHING * floor
+    return System(
+        z, acting, residual, tangent, elements, touches, loads, largest if significant else 1.0, floor, significant
+    )
 
 
 def _pushes(one: Touch, foreseen: Array | None) -> Array:

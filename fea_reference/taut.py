@@ -32,8 +32,9 @@ _CUTS = 6  # cuts of a step, to a quarter
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """A turning point on a branch of minima: the last point ``before``, and an arc ``length`` after which τ changes
-    sign.
+    """A turning point on a branch of minima, within an arc ``length`` from the point ``before``.
+
+    τ has the opposite sign at the end of the arc.
     """
 
     branch: Branch
@@ -53,7 +54,7 @@ def beyond(march: March, turn: Turn, target: float) -> bool:
     size = min(abs(way), _PREDICTED / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
     for _ in range(_CUTS):
         value = target if size >= abs(way) else float(there.value + np.copysign(size, way))
-        if march.step(load, value, march.onward(load, rate, target)) is None and march.minimum:
+        if march.step(load, value, march.path_tangent(load, rate, target)) is None and march.minimum:
             return True
         march.restore(saved)
         march.values, march.system = branch.at(there.value), there.system

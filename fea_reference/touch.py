@@ -223,14 +223,14 @@ class Touch:
 
     ``stiffness`` (k,) is the penalty times the length of a point, and ``gap`` (k,) the gap minus the lead. ``gap_by``
     (m, k) and ``gap_by_twice`` (m, m, k) are the gap's derivatives by the element unknowns of the first line, then of
-    the second or a moving body. ``chain`` continues to all unknowns, at c = k/alike places, as ``alike`` consecutive
+    the second or a moving body. ``chain`` continues to all unknowns, at c = k/points_per_place places, as ``points_per_place`` consecutive
     points lie in the same elements.
 
     ``zeta`` (k,) and ``zeta_m`` (k,) are places on the first and second beam, the latter empty for a rigid body.
     ``x`` and ``x_m`` (2, k) are points of the first neutral line and of the second or the edge. ``normal`` (2, k)
     points to the first beam.
 
-    ``missing`` is the force left out at ends of the second beam, and ``lacks`` its largest share of a zone's force.
+    ``missing`` is the force left out at ends of the second beam, and ``missing_share`` its largest share of a zone's force.
     ``bent`` (m, m, k) are further second derivatives of the energy at some points. ``sharp`` is True for a contact at
     a tip or end.
     """
@@ -238,7 +238,7 @@ class Touch:
     pair: Contact
     zones: Zones
     chain: Chain
-    alike: int
+    points_per_place: int
     stiffness: Array
     gap: Array
     gap_by: Array
@@ -249,7 +249,7 @@ class Touch:
     x_m: Array
     normal: Array
     missing: float = 0.0
-    lacks: float = 0.0
+    missing_share: float = 0.0
     bent: Array | None = None
     sharp: bool = False
 
@@ -287,11 +287,11 @@ class Touch:
 
     def foreseen(self, step: Array) -> Array:
         """Point forces (k,) after a ``step`` (size,) of the unknowns, to first order."""
-        local = np.repeat(self.chain.local(step, len(self.gap_by)), self.alike, axis=1)
+        local = np.repeat(self.chain.local(step, len(self.gap_by)), self.points_per_place, axis=1)
         return np.asarray(self.pushes - self.stiffness * (self.gap_by * local).sum(axis=0))
 
     def _summed(self, at_points: Array) -> Array:
-        return np.asarray(at_points.reshape(*at_points.shape[:-1], -1, self.alike).sum(axis=-1))
+        return np.asarray(at_points.reshape(*at_points.shape[:-1], -1, self.points_per_place).sum(axis=-1))
 
     @property
     def penetration(self) -> float:
@@ -316,7 +316,7 @@ def gauss(points: int) -> tuple[Array, Array]:
     return frozen_array(places), frozen_array(weights)
 
 
-def together(quadrature: int, *elements: Index) -> int:
+def count_points_per_place(quadrature: int, *elements: Index) -> int:
     """Number of consecutive points in the same ``elements`` (k,): those of an interval, or a single point.
 
     An interval lies within an element up to round-off of its ends.

@@ -218,9 +218,7 @@ def ends_over(first: NeutralLine, second: NeutralLine) -> bool:
 
 
 def end_apart(first: NeutralLine, second: NeutralLine) -> float:
-    """Distance of the nearer end of the first beam from the second; infinite if neither end has a closest point
-    inside.
-    """
+    """Distance of the nearer end of the first beam from the second; infinite without a closest point inside."""
     near = nearest(first.nodes[[0, -1]], second.nodes)[1].astype(float)
     zeta, found = project(second, first.points[:, [0, -1]], near)
     over = found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)
@@ -235,9 +233,7 @@ def seen(
     tapers: Tapers | None = None,
     free: tuple[float, float] = (0.0, np.inf),
 ) -> Survey:
-    """Gap survey of two beams, wherever the gap is below the second's longest element, within the range ``free`` of
-    ζ.
-    """
+    """Gap survey of two beams at places ζ in ``free``, wherever the gap is below the second's longest element."""
 
     def at(where: Array, guess: Array) -> Gap:
         return gap(first, second, one_side(side), T, tapers, where, guess)

@@ -38,9 +38,7 @@ class Corner:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Broken:
-    """Straight sides from ``first`` (s, 2) along unit vectors ``tangent`` (s, 2), from distance ``low`` to ``high``
-    (s,).
-    """
+    """Straight sides from ``first`` (s, 2) along ``tangent`` (s, 2), between distances ``low`` and ``high`` (s,)."""
 
     first: Array
     tangent: Array
@@ -140,9 +138,7 @@ def broken(contact: LineContact, origin: Array, unit: float) -> tuple[Broken, tu
 
 
 def graph(contact: FunctionContact, origin: Array, unit: float) -> tuple[Graph, tuple[Corner, ...]]:
-    """The edge of a function's graph with its corners, dimensionless with ``origin`` (2,) (m) and length ``unit``
-    (m).
-    """
+    """The edge of a function's graph with its corners, dimensionless with ``origin`` (2,) (m) and ``unit`` (m)."""
     across = contact.axis == "y"
     here, other = origin[::-1] if across else origin
     f = (Polynomial(contact.coefficients)(Polynomial([here, unit])) - other) / unit
@@ -157,9 +153,7 @@ def graph(contact: FunctionContact, origin: Array, unit: float) -> tuple[Graph, 
 
 
 def ends(points: Array, tangents: Array) -> tuple[Broken, tuple[Corner, ...]]:
-    """Backward sides at the first and last of ``points`` (k, 2) with ``tangents`` (2, 2), and their common corner, if
-    any.
-    """
+    """Backward sides at both ends of ``points`` (k, 2) with ``tangents`` (2, 2), and their common corner, if any."""
     out, both, pieces = left(tangents), points[[0, -1]], np.diff(points, axis=0)
     far = np.full(2, np.inf)
     for i in (0, 1):

@@ -283,16 +283,14 @@ def _vanishing(
     start: tuple[float, float],
     c: float,
 ) -> float | None:
-    """λ at the zero of a contact's gap, between an open ``start`` (λ, gap) and an overlapping state; None without
-    success.
+    """λ at the zero of a contact's gap, between an open ``start`` and an overlapping state; None without success.
 
-    The contact itself is removed, so that its gap is smooth. An overlapping state may be far from the open state: its
-    search starts from the nearest known state, in shorter steps if necessary. After passing through, the overlap has
-    no meaning and counts as infinite.
+    The contact itself is removed for a smooth gap. An overlapping state may be far from the open state: its search
+    starts from the nearest known state, in shorter steps if necessary. After passing through, the overlap counts as
+    infinite.
 
-    Plain false position would converge slowly, because the overlap without the contact may exceed the gap a
-    hundredfold. The gap of an end that stays twice is therefore halved (Dowell and Jarratt, BIT 11 (1971) 168-174,
-    "Illinois").
+    Plain false position would converge slowly, as the overlap without the contact may exceed the gap a hundredfold.
+    The gap of an end that stays twice is therefore halved (Dowell and Jarratt, BIT 11 (1971) 168-174, "Illinois").
 
     Args:
         march: at the end of the step.
@@ -300,7 +298,7 @@ def _vanishing(
         name: of the contact.
         without: penalties of the other contacts.
         known: z by λ, extended by all states found.
-        start: beginning of the step.
+        start: λ and gap at the beginning of the step.
         c: first λ to evaluate.
     """
     watched = dict.fromkeys((pair for pair in march.penalties if pair.name == name), 1.0)

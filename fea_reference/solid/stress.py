@@ -23,9 +23,7 @@ _GAUSS = 1.0 / np.sqrt(3.0)
 
 
 def bending_and_membrane(model: Model, q: Array, beam: int, youngs_modulus: float, u: Array) -> tuple[Array, Array]:
-    """Bending and membrane stress (k,) at fractions ``u`` (k,) of a beam's arc length, in the unit of
-    ``youngs_modulus``.
-    """
+    """Bending and membrane stress (k,) at fractions ``u`` (k,) of the arc length, in the unit of ``youngs_modulus``."""
     right, left = (_face_strain(model, q, beam, side, u) for side in (-1.0, 1.0))
     return 0.5 * youngs_modulus * (right - left), 0.5 * youngs_modulus * (right + left)
 

@@ -42,8 +42,9 @@ def grounded(model: Model, row: Row) -> int | None:
 
 
 def balance(model: Model, system: System, values: Array) -> tuple[float, float]:
-    """|ΣF| and |ΣM| about the origin of loads, supports, rows and contacts with fixed bodies, relative to the
-    largest.
+    """|ΣF| and |ΣM| of loads, supports, rows and contacts with fixed bodies, relative to the largest.
+
+    Moments are about the origin.
     """
     z = system.z
     forces: list[Array] = []

@@ -15,7 +15,7 @@ from fea_reference import Settings, following, prepared
 from fea_reference.assembly import assemble_ends
 from fea_reference.branch import Place
 from fea_reference.curvature import Mode
-from fea_reference.following import followed
+from fea_reference.following import follow_branch
 from fea_reference.travel import Course, reach
 from tests.fea_reference import faint_contact
 from tests.fea_reference.cantilever import EI, LENGTH, cantilever
@@ -35,7 +35,7 @@ def turned_to(clamp, stopped_at=None):
 
 
 def test_a_fold_is_found_and_known_as_finely_as_told():
-    lost = followed(turned_to(0.5), 0, TURNED, TURNED)
+    lost = follow_branch(turned_to(0.5), 0, TURNED, TURNED)
     assert lost.loss is Loss.FOLD
     assert lost.value == pytest.approx(SNAP.fold.clamp, rel=2e-4)
     # λ is even about its fold: where the curvature's zero lies within a 10⁻⁴ of a step, λ is known to its square
@@ -45,7 +45,7 @@ def test_a_fold_is_found_and_known_as_finely_as_told():
 def test_a_stop_that_acts_before_the_fold_holds_beyond_it():
     """The beam's far end comes down to the stop's angle at φ = 0.6, before the fold, and stands there as φ grows."""
     march = turned_to(0.5, SNAP.at(0.6).far)
-    assert followed(march, 0, TURNED, TURNED) is None
+    assert follow_branch(march, 0, TURNED, TURNED) is None
     assert march.closing["stop"] == pytest.approx(0.6, rel=2e-4)
     assert "stop" in march.acting.limits
     assert march.values[0] > 1.05 * SNAP.fold.clamp
@@ -77,7 +77,7 @@ def test_the_march_stands_before_a_station_behind_which_the_branch_ends(elements
     assemble_ends(scene, march)
     before, target = (share * GREENHILL / march.model.stepped[0].unit for share in (0.9, 0.99))
     reach(march, Course(0, before), before)
-    assert followed(march, 0, target, target) is None
+    assert follow_branch(march, 0, target, target) is None
     assert before < march.values[0] <= target
     assert march.curvature > 1e-3
 
@@ -147,7 +147,7 @@ def test_a_turn_sharper_than_a_step_is_not_stepped_over(monkeypatch):
         least_gap=lambda system: np.inf,
         passed=lambda before, system, what: None,
     )
-    followed(march, 0, 1.0, 1.0)
+    follow_branch(march, 0, 1.0, 1.0)
     ((here, there),) = ends
     assert here.curvature > 0.0 >= there.curvature
     assert here.value == pytest.approx(END, abs=RADIUS)
