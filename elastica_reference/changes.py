@@ -5,20 +5,20 @@ from dataclasses import replace
 import numpy as np
 
 from elastica_reference.newton import LostError
-from elastica_reference.restructure import NotCoveredError, at_ends
+from elastica_reference.restructure import NotCoveredError, moved_to_ends
 from elastica_reference.state import State
 from elastica_reference.structure import Resting, Touch, Wrap
 from elastica_reference.way import Way, places_of, touches_of
 
-PULLS = -1e-10  # of a contact's force, dimensionless
-_DRAWS = -1e-6  # times a wrap's force
+LEAST_FORCE = -1e-10  # of a contact's force, dimensionless
+_LEAST_WRAP_FORCE = -1e-6  # times a wrap's force
 _CUTS = -1e-9  # curvature of the gap beside a place on a circle, dimensionless
 _FIRST_LENGTH = 1e-3  # times a beam's length: half length of a new wrap
 _ABOUT_TO_SLIDE = 0.05  # times a beam's length: distance from which a place of contact may come to an end
 _LOOKED_AT = 101  # samples along a wrap
 
 
-def open_first(way: Way, trial: State) -> bool:
+def open_first_contact(way: Way, trial: State) -> bool:
     """Step to the first opening of a contact in tension; True if there is any.
 
     Raises:
@@ -26,7 +26,7 @@ def open_first(way: Way, trial: State) -> bool:
     """
     shares = {}
     for name, force in trial.forces.items():
-        if force < PULLS:
+        if force < LEAST_FORCE:
             was = way.state.forces[name]
             shares[name] = was / (was - force) if was > 0.0 else 0.0
     if not shares:
@@ -39,7 +39,7 @@ def open_first(way: Way, trial: State) -> bool:
     return True
 
 
-def reform(way: Way, trial: State) -> bool:
+def change_form(way: Way, trial: State) -> bool:
     """Replace places by wraps or end contacts, and conversely, where needed; True if there was any change.
 
     Raises:
@@ -50,14 +50,19 @@ def reform(way: Way, trial: State) -> bool:
     for name, touch in trial.structure.touches.items():
         strip = way.model.strips[touch.beam]
         if isinstance(touch, Wrap):
-            _look_over(trial, touch)
+            _check_wrap(trial, touch)
             a, b = trial.wrapped(touch)
             if b < a:
                 del places[name, "begin"], places[name, "end"]
                 touches[name], places[name, touch.beam] = Resting(name, touch.beam, None), 0.5 * (a + b)
             continue
-        touches[name], places = at_ends(trial, way.model, touch, places)
-        if touches[name] == touch and isinstance(touch, Resting) and touch.at is None and _cuts(trial, touch):
+        touches[name], places = moved_to_ends(trial, way.model, touch, places)
+        if (
+            touches[name] == touch
+            and isinstance(touch, Resting)
+            and touch.at is None
+            and _cuts_into_circle(trial, touch)
+        ):
             s = places.pop((name, touch.beam))
             touches[name] = Wrap(name, touch.beam, sense_of(trial, touch, s))
             half = _FIRST_LENGTH * strip.length
@@ -94,12 +99,12 @@ def slide_onto_end(way: Way, goal: float) -> bool:
 
 def presses(state: State) -> bool:
     """True if every contact presses and every wrap has a non-negative length within its beam."""
-    if any(force < PULLS for force in state.forces.values()):
+    if any(force < LEAST_FORCE for force in state.forces.values()):
         return False
     for touch in state.structure.touches.values():
         if isinstance(touch, Wrap):
             a, b = state.wrapped(touch)
-            if not 0.0 <= a <= b <= state.equations.model.strips[touch.beam].length or _draws(state, touch):
+            if not 0.0 <= a <= b <= state.equations.model.strips[touch.beam].length or _is_pulling(state, touch):
                 return False
     return True
 
@@ -107,34 +112,34 @@ def presses(state: State) -> bool:
 def sense_of(state: State, touch: Resting | Wrap, s: float) -> float:
     """+1 if a beam runs around its circle counter-clockwise, else −1."""
     x, y, theta = state.along(touch.beam, np.array([s]))[:3, 0]
-    arm = np.array([x, y]) - state.found.centres[touch.contact][:, 0]
+    arm = np.array([x, y]) - state.evaluation.centres[touch.contact][:, 0]
     return float(np.sign(arm[0] * np.sin(theta) - arm[1] * np.cos(theta)))
 
 
-def _look_over(trial: State, wrap: Wrap) -> None:
+def _check_wrap(trial: State, wrap: Wrap) -> None:
     """Check that a wrap presses everywhere, and neither begins nor ends beyond its beam."""
     a, b = trial.wrapped(wrap)
     if wrap.held and b < a:
         raise NotCoveredError(f"{wrap.beam} leaves the circle of {wrap.contact} at its clamp")
     if a < 0.0 or b > trial.equations.model.strips[wrap.beam].length:
         raise LostError
-    if b >= a and _draws(trial, wrap):
+    if b >= a and _is_pulling(trial, wrap):
         raise NotCoveredError(f"{wrap.beam} does not press on the circle of {wrap.contact} all along its wrap")
 
 
-def _draws(state: State, wrap: Wrap) -> bool:
+def _is_pulling(state: State, wrap: Wrap) -> bool:
     a, b = state.wrapped(wrap)
     pressure, begin, end = state.pressures(wrap, np.linspace(a, b, _LOOKED_AT))
-    size = float(np.hypot(*state.found.resultants[wrap.contact][:, 0]))
-    return min(float(np.min(pressure)) * (b - a), begin, end) < _DRAWS * size
+    size = float(np.hypot(*state.evaluation.resultants[wrap.contact][:, 0]))
+    return min(float(np.min(pressure)) * (b - a), begin, end) < _LEAST_WRAP_FORCE * size
 
 
-def _cuts(state: State, touch: Resting) -> bool:
+def _cuts_into_circle(state: State, touch: Resting) -> bool:
     """True if a beam in contact with a circle at a place cuts into the circle on both sides."""
     strip = state.equations.model.strips[touch.beam]
     s = np.array([state.places[touch.contact, touch.beam]])
     x, y, theta, m = state.along(touch.beam, s)[:4, 0]
-    arm = np.array([x, y]) - state.found.centres[touch.contact][:, 0]
+    arm = np.array([x, y]) - state.evaluation.centres[touch.contact][:, 0]
     rho = float(np.hypot(*arm))
     kappa = float((strip.line.curvature(s) + strip.compliance(s) * m)[0])
     away = kappa * (-np.sin(theta) * arm[0] + np.cos(theta) * arm[1]) / rho
@@ -143,4 +148,4 @@ def _cuts(state: State, touch: Resting) -> bool:
 
 def _out_of_order(state: State) -> bool:
     """True if a place of contact has passed a knot or another place."""
-    return any(float(part.b[0]) < float(part.a[0]) for parts in state.found.parts.values() for part in parts)
+    return any(float(part.b[0]) < float(part.a[0]) for parts in state.evaluation.parts.values() for part in parts)

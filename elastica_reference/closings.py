@@ -10,7 +10,7 @@ from elastica_reference.changes import presses, sense_of
 from elastica_reference.evaluation import Columns, Evaluation
 from elastica_reference.gaps import Overlap
 from elastica_reference.newton import LostError
-from elastica_reference.restructure import NotCoveredError, at_ends, closed
+from elastica_reference.restructure import NotCoveredError, moved_to_ends, touch_for
 from elastica_reference.state import State
 from elastica_reference.structure import Meeting, Resting, Touch, Wrap
 from elastica_reference.way import Way
@@ -23,7 +23,7 @@ _FIRST_WRAPS = (0.25, 0.1, 0.03)  # shares of the distance to an overlap: first 
 _PULLS = -1e-9  # of a pressure and of a force, dimensionless
 
 
-def close_first(way: Way, trial: State, found: list[Overlap]) -> None:
+def close_first(way: Way, trial: State, overlaps: list[Overlap]) -> None:
     """Step to the first closing among the overlaps of a trial.
 
     Raises:
@@ -35,23 +35,23 @@ def close_first(way: Way, trial: State, found: list[Overlap]) -> None:
     ends = {
         touch.beam for touch in trial.structure.touches.values() if not isinstance(touch, Wrap) and touch.at is not None
     }
-    for overlap in sorted(found, key=lambda overlap: overlap.beam not in ends):
+    for overlap in sorted(overlaps, key=lambda overlap: overlap.beam not in ends):
         present = trial.structure.touches.get(overlap.contact)
         if present is not None:
-            _move_in(way, trial, present, overlap)
+            _move_inwards(way, trial, present, overlap)
             return
         clamp = _clamped_on(way, overlap)
         if clamp is not None:
-            _leave_clamp(way, trial, overlap, clamp)
+            _continue_from_clamp(way, trial, overlap, clamp)
             return
-        touch, own = closed(way.model, overlap)
+        touch, own = touch_for(way.model, overlap)
         touches: dict[str, Touch] = {**trial.structure.touches, overlap.contact: touch}
         state = way.restructured(touches, {**trial.places, **own}, trial, trial.lam, pinned=overlap.contact)
-        ended, places = at_ends(state, way.model, touch, state.places)
+        ended, places = moved_to_ends(state, way.model, touch, state.places)
         if ended != touch:
             touches[overlap.contact] = ended
             state = way.restructured(touches, places, state, state.lam, pinned=overlap.contact)
-            if at_ends(state, way.model, ended, state.places)[0] != ended:
+            if moved_to_ends(state, way.model, ended, state.places)[0] != ended:
                 raise LostError
         reached.append((way.between(state, trial.lam), overlap))
     state, overlap = min(reached, key=lambda item: abs(item[0].lam - way.lam))
@@ -59,7 +59,7 @@ def close_first(way: Way, trial: State, found: list[Overlap]) -> None:
     way.accept(state)
 
 
-def _move_in(way: Way, trial: State, present: Touch, overlap: Overlap) -> None:
+def _move_inwards(way: Way, trial: State, present: Touch, overlap: Overlap) -> None:
     """Continue a contact at a beam's end between the ends; elsewhere the overlap would be a second place."""
     length = way.model.strips[overlap.beam].length
     second = NotCoveredError(f"{overlap.contact} touches at a second place or along a length")
@@ -101,7 +101,7 @@ def _clamped_on(way: Way, overlap: Overlap) -> str | None:
     return None
 
 
-def _leave_clamp(way: Way, trial: State, overlap: Overlap, which: str) -> None:
+def _continue_from_clamp(way: Way, trial: State, overlap: Overlap, which: str) -> None:
     """Step to equal curvatures of a clamped end and its circle, then continue along the circle or away from it.
 
     The contact at once carries the whole shear force of the clamp.
@@ -109,13 +109,13 @@ def _leave_clamp(way: Way, trial: State, overlap: Overlap, which: str) -> None:
     strip, name = way.model.strips[overlap.beam], overlap.contact
     s = 0.0 if which == "start" else strip.length
     held = np.array([s])
-    arm = trial.along(strip.name, held)[:2, 0] - trial.found.centres[name][:, 0]
+    arm = trial.along(strip.name, held)[:2, 0] - trial.evaluation.centres[name][:, 0]
     sense = sense_of(trial, Resting(name, strip.name, None), s)
     kappa = sense / math.hypot(*arm)
     wanted = float((strip.rigidity(held) * (kappa - strip.line.curvature(held)))[0])
 
-    def bent(z: Columns, found: Evaluation) -> Columns:
-        part = found.parts[strip.name][0 if which == "start" else -1]
+    def bent(z: Columns, evaluation: Evaluation) -> Columns:
+        part = evaluation.parts[strip.name][0 if which == "start" else -1]
         moment: Columns = part.start[3] if which == "start" else part.end[3]
         return moment - wanted
 
@@ -123,13 +123,13 @@ def _leave_clamp(way: Way, trial: State, overlap: Overlap, which: str) -> None:
     way.between(at, trial.lam)
     way.note_closed(name, at.lam, trial.lam)
     way.accept(at)
-    state = _wrapped(way, trial, overlap, which, sense) or _at_a_place(way, trial, overlap, which)
+    state = _wrap_from_clamp(way, trial, overlap, which, sense) or _place_beyond_clamp(way, trial, overlap, which)
     if state is None:
         raise NotCoveredError(f"the beginning of {name} beside the clamp of {strip.name} was not found")
     way.accept(state)
 
 
-def _wrapped(way: Way, trial: State, overlap: Overlap, which: str, sense: float) -> State | None:
+def _wrap_from_clamp(way: Way, trial: State, overlap: Overlap, which: str, sense: float) -> State | None:
     """State with a wrap from the clamp, if it presses; else None."""
     at, name, strip = way.state, overlap.contact, way.model.strips[overlap.beam]
     if strip.beam.tapered and way.model.scene.contacts[name].thick:
@@ -148,11 +148,11 @@ def _wrapped(way: Way, trial: State, overlap: Overlap, which: str, sense: float)
     return None
 
 
-def _at_a_place(way: Way, trial: State, overlap: Overlap, which: str) -> State | None:
+def _place_beyond_clamp(way: Way, trial: State, overlap: Overlap, which: str) -> State | None:
     """State with a place of contact that moves away from the clamp; None if there is none."""
     at, name, strip = way.state, overlap.contact, way.model.strips[overlap.beam]
     held = at.along(strip.name, np.array([0.0 if which == "start" else strip.length]))[:, 0]
-    arm = held[:2] - at.found.centres[name][:, 0]
+    arm = held[:2] - at.evaluation.centres[name][:, 0]
     shear = abs(float(held[4:] @ arm) / math.hypot(*arm))
     for share in _FIRST_PLACES:
         s = share * strip.length if which == "start" else (1.0 - share) * strip.length

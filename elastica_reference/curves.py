@@ -193,9 +193,9 @@ class Graph:
             u = u + self._sense * step
             if np.max(np.abs(step), initial=0.0) < 1e-15 * self.length:
                 break
-        found = np.asarray(u)
-        found.setflags(write=False)
-        return found
+        variables = np.asarray(u)
+        variables.setflags(write=False)
+        return variables
 
     def angle(self, s: Array) -> Array:
         """θ."""

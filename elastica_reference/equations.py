@@ -25,7 +25,7 @@ import numpy as np
 from cprbm_scene import CircleContact
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import BeamForce, DisplacementDrive, DistributedLoad, Force, Moment, SlidingBody
-from elastica_reference.evaluation import Columns, Evaluation, Held, Part
+from elastica_reference.evaluation import Columns, EndAction, Evaluation, Part
 from elastica_reference.layout import Layout, layout
 from elastica_reference.model import Model, Strip
 from elastica_reference.spectral import piece, rule
@@ -262,7 +262,7 @@ class Equations:
     def _end(self, out: Evaluation, strip: Strip, which: str, state: Columns) -> None:
         """Rows of a beam's end except the forces, which follow once the contacts are known."""
         end, sign = (strip.start, 1.0) if which == "start" else (strip.end, -1.0)
-        out.ends[strip.name, which] = Held(state[:2], sign * state[4:6], sign * state[3])
+        out.ends[strip.name, which] = EndAction(state[:2], sign * state[4:6], sign * state[3])
         if end.point is not None:
             out.rows += list(state[:2] - out.moved(self.model.scene.body_of(end.point), self.model.rest(end.point)))
         out.rows.append(state[2] - out.angle(strip.name, which) if end.welded else state[3])

@@ -64,7 +64,7 @@ class Zone:
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class EndAction:
     """Action of a beam's end on its support: ``force`` (2, K) at ``place`` (2, K) and ``moment`` (K,)."""
 
     place: Columns
@@ -95,7 +95,7 @@ class Evaluation:
     placements: dict[str, Columns] = field(default_factory=dict)
     on_body: dict[str, Columns] = field(default_factory=dict)
     parts: dict[str, list[Part]] = field(default_factory=dict)
-    ends: dict[tuple[str, str], Held] = field(default_factory=dict)
+    ends: dict[tuple[str, str], EndAction] = field(default_factory=dict)
     resultants: dict[str, Columns] = field(default_factory=dict)
     centres: dict[str, Columns] = field(default_factory=dict)
     zones: dict[str, Zone] = field(default_factory=dict)
@@ -148,7 +148,7 @@ class Evaluation:
                 ]
                 for beam, parts in self.parts.items()
             },
-            ends={key: Held(one(end.place), one(end.force), one(end.moment)) for key, end in self.ends.items()},
+            ends={key: EndAction(one(end.place), one(end.force), one(end.moment)) for key, end in self.ends.items()},
             resultants={name: one(columns) for name, columns in self.resultants.items()},
             centres={name: one(columns) for name, columns in self.centres.items()},
             zones={

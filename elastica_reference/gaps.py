@@ -69,15 +69,15 @@ def overlaps(
         sides: side of the beam by contact, beam and other beam, if ``before`` is still in contact.
         tolerance: dimensionless.
     """
-    found: list[Overlap] = []
+    candidates: list[Overlap] = []
     for name, contact in model.scene.contacts.items():
         if isinstance(contact, CircleContact):
-            found += _of_circle(model, now, name, contact, now.centre(name), touched)
+            candidates += _of_circle(model, now, name, contact, now.centre(name), touched)
         elif isinstance(contact, BeamContact):
             one, other = contact.between
-            found += _of_pair(model, now, before, name, contact, (one, other), touched, sides)
-            found += _of_pair(model, now, before, name, contact, (other, one), touched, sides)
-    return [overlap for overlap in found if overlap.gap < -tolerance]
+            candidates += _of_pair(model, now, before, name, contact, (one, other), touched, sides)
+            candidates += _of_pair(model, now, before, name, contact, (other, one), touched, sides)
+    return [overlap for overlap in candidates if overlap.gap < -tolerance]
 
 
 def _of_circle(
@@ -157,12 +157,12 @@ def _of_pair(
     gaps, at, _, distance = measured(s)
     # far from its initial side a line has gone around the other's end rather than passed through
     gaps = np.where(between(at) & (distance < 0.1), gaps, np.inf)
-    found = []
+    minima = []
     for place, _, at_end in _minima(lambda places: measured(places)[0], s, gaps, touched.get((name, one))):
         value, foot, side, _ = (float(array[0]) for array in measured(np.array([place])))
         if between(np.array([foot]))[0]:
-            found.append(Overlap(name, one, place, at_end, other, foot, side, value))
-    return found
+            minima.append(Overlap(name, one, place, at_end, other, foot, side, value))
+    return minima
 
 
 def _minima(
@@ -171,7 +171,7 @@ def _minima(
     """Places, values and True at an end, for all local minima except the known one."""
     fence = np.pad(values, 1, constant_values=np.inf)
     step = s[1] - s[0]
-    found = []
+    minima = []
     # a gap changes at most by the arc length; no minimum is located where the other line ends
     beside = np.pad(np.isfinite(values), 1, constant_values=True)
     least = (values < step) & (values <= fence[:-2]) & (values < fence[2:]) & beside[:-2] & beside[2:]
@@ -181,10 +181,10 @@ def _minima(
             continue
         place, value = _least(function, float(s[max(i - 1, 0)]), float(s[min(i + 1, len(s) - 1)]))
         if i in (0, len(s) - 1) and values[i] <= value:
-            found.append((float(s[i]), float(values[i]), True))
+            minima.append((float(s[i]), float(values[i]), True))
         else:
-            found.append((place, value, False))
-    return found
+            minima.append((place, value, False))
+    return minima
 
 
 def _least(function: Callable[[Array], Array], low: float, high: float) -> tuple[float, float]:

@@ -17,13 +17,13 @@ import time
 from cprbm_scene import Answer, Ending, Mistake, Scene, SceneError, StationAnswer
 from cprbm_scene.solving import requirements, station_reached
 from cprbm_scene.statement import BeamContact, BeamMoment, EdgeContact, SelfContact, TurningBody
-from elastica_reference.changes import open_first, reform, slide_onto_end
+from elastica_reference.changes import change_form, open_first_contact, slide_onto_end
 from elastica_reference.closings import close_first
 from elastica_reference.gaps import overlaps
-from elastica_reference.model import modelled
-from elastica_reference.newton import LostError, checked
-from elastica_reference.passing import passes
-from elastica_reference.probing import answered
+from elastica_reference.model import model_of
+from elastica_reference.newton import LostError, residual_with_more_points
+from elastica_reference.passing import passed_through
+from elastica_reference.probing import station_answer
 from elastica_reference.restructure import NotCoveredError
 from elastica_reference.settings import Settings
 from elastica_reference.state import State
@@ -64,7 +64,7 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
     refuse(scene)
     chosen = settings or Settings()
     began = time.perf_counter()
-    way = Way(modelled(scene), chosen)
+    way = Way(model_of(scene), chosen)
     stations: list[StationAnswer] = []
     ending, sentence = Ending.COMPLETED, ""
     try:
@@ -95,7 +95,7 @@ def refuse(scene: Scene) -> None:
     Raises:
         SceneError: the scene has such records; the error names every key.
     """
-    found = [
+    refused = [
         *(
             (mistake.key, mistake.found, mistake.allowed)
             for mistakes in requirements(scene).values()
@@ -132,9 +132,9 @@ def refuse(scene: Scene) -> None:
             if probe.of in scene.bodies and probe.quantity == "reaction"
         ),
     ]
-    if found:
+    if refused:
         raise SceneError(
-            [Mistake(key, what, f"{known}, for the exact solution", scene.file) for key, what, known in found]
+            [Mistake(key, what, f"{known}, for the exact solution", scene.file) for key, what, known in refused]
         )
 
 
@@ -145,12 +145,12 @@ def _certified(way: Way, station: float) -> StationAnswer:
         NotCoveredError: the residual with more Gauss points is too large.
     """
     try:
-        finer = checked(way.state, way.settings.further)
+        finer = residual_with_more_points(way.state, way.settings.further)
     except LostError:
         finer = math.inf
     if not finer <= way.settings.tolerance:
         raise NotCoveredError(f"at {station:g} more Gauss points are needed: their residual is {finer:.1e}")
-    return answered(way, station, finer)
+    return station_answer(way, station, finer)
 
 
 def _advance(way: Way, target: float, step: float) -> float:
@@ -168,7 +168,7 @@ def _advance(way: Way, target: float, step: float) -> float:
         goal = target if abs(target - way.lam) <= step else way.lam + math.copysign(step, whole)
         try:
             trial = way.attempt(goal)
-            if not _examined(way, trial):
+            if not _accept_or_change(way, trial):
                 changes += 1
             step = min(1.5 * step, largest)
         except LostError as error:
@@ -186,42 +186,42 @@ def _advance(way: Way, target: float, step: float) -> float:
     return step
 
 
-def _examined(way: Way, trial: State) -> bool:
+def _accept_or_change(way: Way, trial: State) -> bool:
     """Accept a trial without changes of contact and return True; else step to the first change and return False.
 
     Raises:
         LostError: the change was not found.
         NotCoveredError: there are no equations for the change.
     """
-    if open_first(way, trial) or reform(way, trial):
+    if open_first_contact(way, trial) or change_form(way, trial):
         return False
-    found = overlaps(way.model, trial, way.known, _touched(trial), way.sides, _OVERLAP)
-    if found:
+    overlapping = overlaps(way.model, trial, way.known, _closed_ranges(trial), way.sides, _OVERLAP)
+    if overlapping:
         try:
-            close_first(way, trial, found)
+            close_first(way, trial, overlapping)
         except LostError as error:
-            raise LostError(f"{found[0].contact} touches") from error
+            raise LostError(f"{overlapping[0].contact} touches") from error
         return False
-    if passes(way.model, way.known, trial):
+    if passed_through(way.model, way.known, trial):
         raise LostError
     way.accept(trial)
     return True
 
 
-def _touched(state: State) -> dict[tuple[str, str], tuple[float, float]]:
+def _closed_ranges(state: State) -> dict[tuple[str, str], tuple[float, float]]:
     """First and last arc length of every closed place, by contact and beam.
 
     Ends in contact are checked like other places.
     """
-    found = {}
+    ranges = {}
     for name, touch in state.structure.touches.items():
         if isinstance(touch, Wrap):
-            found[name, touch.beam] = state.wrapped(touch)
+            ranges[name, touch.beam] = state.wrapped(touch)
             continue
         if touch.at is None:
             s = state.places[name, touch.beam]
-            found[name, touch.beam] = (s, s)
+            ranges[name, touch.beam] = (s, s)
         if isinstance(touch, Meeting):
             sigma = state.places[name, touch.onto]
-            found[name, touch.onto] = (sigma, sigma)
-    return found
+            ranges[name, touch.onto] = (sigma, sigma)
+    return ranges

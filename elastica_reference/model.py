@@ -143,7 +143,7 @@ class Model:
         return np.asarray(np.mean(np.array(list(self.scene.bodies[body].points.values())), axis=0) / self.unit_length)
 
 
-def modelled(scene: Scene) -> Model:
+def model_of(scene: Scene) -> Model:
     """Model of a scene."""
     lengths = {name: neutral_line(beam.curve, 1.0).length for name, beam in scene.beams.items()}
     unit = max(lengths.values())

@@ -52,11 +52,11 @@ def solve(
     last, free = np.inf, int(condition is not None)
     n = len(z)
     for _ in range(iterations):
-        found, r, J = linearised(equations, z, lam, guess, condition)
+        evaluation, r, J = linearised(equations, z, lam, guess, condition)
         size = float(np.max(np.abs(r)))
         if not size <= _LARGEST:
             raise LostError
-        here = State(equations, z, lam, found, size)
+        here = State(equations, z, lam, evaluation, size)
         if size < _ROUND_OFF or (size < _SETTLED and size >= 0.5 * last):
             return here
         last = size
@@ -85,13 +85,13 @@ def linearised(
     n, free = len(z), int(condition is not None)
     columns = np.concatenate([z, [lam]])[:, None] + 1j * _STEP * np.eye(n + 1)[:, : n + free]
     try:
-        found = equations(columns[:n], columns[n], _angles_of(guess))
+        evaluation = equations(columns[:n], columns[n], _angles_of(guess))
     except (UnsolvableError, FloatingPointError) as error:
         raise LostError from error
-    rows = np.stack([*found.rows, *([condition(columns[:n], found)] if condition is not None else [])])
+    rows = np.stack([*evaluation.rows, *([condition(columns[:n], evaluation)] if condition is not None else [])])
     if not np.all(np.isfinite(rows)):
         raise LostError
-    return found.real(), np.ascontiguousarray(rows[:, 0].real), rows.imag / _STEP
+    return evaluation.real(), np.ascontiguousarray(rows[:, 0].real), rows.imag / _STEP
 
 
 def _angles_of(known: Known) -> Callable[[str, Array], Array]:
@@ -99,7 +99,7 @@ def _angles_of(known: Known) -> Callable[[str, Array], Array]:
     return lambda beam, s: known.along(beam, s)[2]
 
 
-def checked(state: State, further: int) -> float:
+def residual_with_more_points(state: State, further: int) -> float:
     """Largest row for the same z with ``further`` more Gauss points per piece.
 
     Raises:
@@ -107,7 +107,7 @@ def checked(state: State, further: int) -> float:
     """
     finer = replace(state.equations, nodes=state.equations.nodes + further)
     try:
-        found = finer(state.z[:, None], np.array([state.lam]), _angles_of(state))
+        evaluation = finer(state.z[:, None], np.array([state.lam]), _angles_of(state))
     except UnsolvableError as error:
         raise LostError from error
-    return float(np.max(np.abs(np.concatenate(found.rows))))
+    return float(np.max(np.abs(np.concatenate(evaluation.rows))))

@@ -23,7 +23,7 @@ _ON = 1e-5  # units of length: larger than the distance between a line and its c
 _DEEP = 0.5  # times the distance at contact with a circle
 
 
-def passes(model: Model, before: Known, after: Known) -> bool:
+def passed_through(model: Model, before: Known, after: Known) -> bool:
     """True if a beam may have passed through a circle or another beam between two states."""
     for name, contact in model.scene.contacts.items():
         if isinstance(contact, CircleContact):

@@ -18,12 +18,12 @@ from elastica_reference.way import Way
 _FLOOR = 1e-13  # of a residual, dimensionless: about a hundred roundings
 
 
-def answered(way: Way, value: float, finer: float) -> StationAnswer:
+def station_answer(way: Way, value: float, finer: float) -> StationAnswer:
     """A station's answer; ``finer`` is the largest row with more Gauss points."""
     model, state, scene = way.model, way.state, way.model.scene
     # a guide constrains a slide; the remaining direction is a row of the equations
     free = [body for body, freedoms in model.moving.items() if freedoms == 3]
-    left = max((float(np.max(np.abs(state.found.on_body[body]))) for body in free), default=0.0)
+    left = max((float(np.max(np.abs(state.evaluation.on_body[body]))) for body in free), default=0.0)
     certificate = Certificate(
         residual=max(finer, state.residual),
         residual_floor=_FLOOR,
@@ -60,14 +60,18 @@ def answered(way: Way, value: float, finer: float) -> StationAnswer:
 def _value(
     scene: Scene, model: Model, state: State, probe: Probe, closed_at: dict[str, float]
 ) -> Array | float | list[float]:
-    found, touches = state.found, state.structure.touches
+    evaluation, touches = state.evaluation, state.structure.touches
     match probe.quantity:
         case "displacement":
             return _displacement(model, state, probe.of) * model.unit_length
         case "rotation":
-            return float(found.placements[probe.of][2, 0])
+            return float(evaluation.placements[probe.of][2, 0])
         case "force":
-            return float(np.hypot(*found.resultants[probe.of][:, 0])) * model.unit_force if probe.of in touches else 0.0
+            return (
+                float(np.hypot(*evaluation.resultants[probe.of][:, 0])) * model.unit_force
+                if probe.of in touches
+                else 0.0
+            )
         case "centre":
             return [_centre(state, probe.of, scene.contacts[probe.of].beams[0]) * model.unit_length] if (
                 probe.of in touches
@@ -104,7 +108,7 @@ def _value(
 
 def _displacement(model: Model, state: State, point: str) -> Array:
     rest = model.rest(point)
-    return np.asarray(state.found.moved(model.scene.body_of(point), rest)[:, 0] - rest)
+    return np.asarray(state.evaluation.moved(model.scene.body_of(point), rest)[:, 0] - rest)
 
 
 def _centre(state: State, contact: str, beam: str) -> float:
@@ -132,28 +136,28 @@ def _ends(state: State, contact: str, beam: str) -> tuple[float, float]:
 
 def _touching(model: Model, state: State) -> dict[str, Array]:
     """Places (k, 2), m: midway between the neutral lines of two beams, or on the circle."""
-    found = {}
+    places = {}
     for name, touch in state.structure.touches.items():
         contact = model.scene.contacts[name]
         begin, end = _ends(state, name, touch.beam)
         s = np.linspace(begin, end, 21) if end > begin else np.array([begin])
         line = state.along(touch.beam, s)[:2]
         if isinstance(contact, CircleContact):
-            centre = state.found.centres[name]
+            centre = state.evaluation.centres[name]
             arm = line - centre
             line = centre + arm * (contact.radius / model.unit_length) / np.hypot(*arm)
         else:
             assert isinstance(touch, Meeting)
             sigma = np.array([state.z[state.equations.layout.places[name, touch.onto]]])
             line = 0.5 * (line + state.along(touch.onto, sigma)[:2])
-        found[name] = frozen_array(line.T * model.unit_length)
-    return found
+        places[name] = frozen_array(line.T * model.unit_length)
+    return places
 
 
 def _reaction(scene: Scene, state: State, name: str) -> tuple[Array, float]:
     """Reaction force and moment at a fixed point, or of the drives of a point or body."""
     model, force, moment = state.equations.model, np.zeros(2), 0.0
-    for (beam, which), held in state.found.ends.items():
+    for (beam, which), held in state.evaluation.ends.items():
         strip = model.strips[beam]
         end = strip.start if which == "start" else strip.end
         if end.point == name and scene.body_of(name) not in model.moving:
@@ -171,7 +175,7 @@ def _reaction(scene: Scene, state: State, name: str) -> tuple[Array, float]:
 def _energy(model: Model, state: State) -> float:
     """∫ m² c/2 ds minus the work of dead loads."""
     energy, gauss = 0.0, rule(state.equations.nodes)
-    for beam, parts in state.found.parts.items():
+    for beam, parts in state.evaluation.parts.items():
         spans = [(float(part.a[0]), float(part.b[0])) for part in parts]
         spans += [state.wrapped(wrap) for wrap in state.structure.wraps(beam)]
         for a, b in spans:
@@ -187,7 +191,7 @@ def _energy(model: Model, state: State) -> float:
         elif isinstance(load, DistributedLoad):
             strip = model.strips[load.beam]
             begin, stop = (share * strip.length for share in load.along)
-            for part in state.found.parts[load.beam]:
+            for part in state.evaluation.parts[load.beam]:
                 a, b = float(part.a[0]), float(part.b[0])
                 if begin < 0.5 * (a + b) < stop:
                     s = a + (b - a) * gauss.points
@@ -196,5 +200,5 @@ def _energy(model: Model, state: State) -> float:
         elif isinstance(load, Force):
             energy -= value * float(_displacement(model, state, load.point) @ unit(load.direction))
         elif isinstance(load, Moment):
-            energy -= value * float(state.found.placements[load.body][2, 0])
+            energy -= value * float(state.evaluation.placements[load.body][2, 0])
     return energy

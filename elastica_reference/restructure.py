@@ -21,7 +21,7 @@ class NotCoveredError(Exception):
     """The solution has no equations for the scene's state; the text says which."""
 
 
-def structured(model: Model, touches: Mapping[str, Touch], places: Places) -> Structure:
+def structure_of(model: Model, touches: Mapping[str, Touch], places: Places) -> Structure:
     """The structure of closed contacts at given places.
 
     Raises:
@@ -49,7 +49,9 @@ def structured(model: Model, touches: Mapping[str, Touch], places: Places) -> St
     return Structure(frozendict(touches), frozendict(order))
 
 
-def at_ends(known: Known, model: Model, touch: Touch, places: Places) -> tuple[Touch, dict[tuple[str, str], float]]:
+def moved_to_ends(
+    known: Known, model: Model, touch: Touch, places: Places
+) -> tuple[Touch, dict[tuple[str, str], float]]:
     """A touch with its place moved to an end of the beam if beyond, and the places.
 
     Raises:
@@ -81,7 +83,7 @@ def _within(model: Model, beam: str, s: float) -> float:
     return min(max(s, 0.0), model.strips[beam].length)
 
 
-def closed(model: Model, overlap: Overlap) -> tuple[Touch, dict[tuple[str, str], float]]:
+def touch_for(model: Model, overlap: Overlap) -> tuple[Touch, dict[tuple[str, str], float]]:
     """The touch for an overlap, and its places."""
     strip = model.strips[overlap.beam]
     at = overlap.s if overlap.at_end else None

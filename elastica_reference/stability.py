@@ -45,12 +45,12 @@ def least_curvature(state: State) -> float:
     structure, spacing = _cut(state)
     equations = replace(state.equations, structure=structure)
     z = start_of(equations, state, {**state.places, **state.forces})
-    found, _, J = linearised(equations, z, state.lam, state)
+    evaluation, _, J = linearised(equations, z, state.lam, state)
     free = sum(state.equations.model.moving.values())  # bodies come first among the unknowns, and last among the rows
     n = len(z)
-    index = [*range(free), *(place for place, _ in found.turnings.values())]
-    rows = [*range(n - free, n), *(row for _, row in found.turnings.values())]
-    weights = np.concatenate([np.ones(free), [spacing[key] for key in found.turnings]])
+    index = [*range(free), *(place for place, _ in evaluation.turnings.values())]
+    rows = [*range(n - free, n), *(row for _, row in evaluation.turnings.values())]
+    weights = np.concatenate([np.ones(free), [spacing[key] for key in evaluation.turnings]])
     if not weights.min() >= 0.0:
         raise LostError  # places have passed each other
     root = np.sqrt(weights)
@@ -71,7 +71,7 @@ def _cut(state: State) -> tuple[Structure, dict[tuple[str, float], float]]:
     for beam, strip in state.equations.model.strips.items():
         places = state.equations.places_of(beam, state.z)
         items = list(zip(places, state.structure.order[beam], strict=True))
-        for part in state.found.parts[beam]:
+        for part in state.evaluation.parts[beam]:
             a, b = float(part.a[0]), float(part.b[0])
             compliance = float(np.max(strip.compliance(np.linspace(a, b, 9))))
             largest = max(hypot(*part.force[:, 0]), hypot(*part.end_force[:, 0]))

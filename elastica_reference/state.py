@@ -64,7 +64,7 @@ class State:
     equations: Equations
     z: Array
     lam: float
-    found: Evaluation
+    evaluation: Evaluation
     residual: float
 
     @property
@@ -84,7 +84,7 @@ class State:
 
     def centre(self, contact: str) -> Array:
         """A circle's centre (2,)."""
-        return self.found.centres[contact][:, 0]
+        return self.evaluation.centres[contact][:, 0]
 
     def unknowns(self) -> Mapping[str, float | Array]:
         """Unknowns of bodies and drives and forces of contacts, by name."""
@@ -96,7 +96,7 @@ class State:
         """(x, y, θ, m, Fx, Fy) (6, n) at arc lengths ``s`` (n,); at a contact the value beyond."""
         s = np.asarray(s, dtype=float)
         values = np.empty((6, len(s)))
-        parts = self.found.parts[beam]
+        parts = self.evaluation.parts[beam]
         number = np.clip(np.searchsorted([float(part.a[0]) for part in parts], s, side="right") - 1, 0, None)
         for k in np.unique(number):
             here = number == k
@@ -110,14 +110,14 @@ class State:
 
     def wrapped(self, wrap: Wrap) -> tuple[float, float]:
         """Arc lengths of the beginning and end of a wrap."""
-        zone = self.found.zones[wrap.contact]
+        zone = self.evaluation.zones[wrap.contact]
         return float(zone.a[0]), float(zone.b[0])
 
     def _wrapped(self, wrap: Wrap, s: Array) -> Array:
         """(x, y, θ, m, Fx, Fy) (6, n) within a wrap, by the formulas of :mod:`elastica_reference.wrapping`."""
-        zone, g = self.found.zones[wrap.contact], wrap.sense
+        zone, g = self.evaluation.zones[wrap.contact], wrap.sense
         strip = self.equations.model.strips[wrap.beam]
-        centre = self.found.centres[wrap.contact][:, 0]
+        centre = self.evaluation.centres[wrap.contact][:, 0]
         arm = zone.place[:, 0] - centre
         rho = float(np.hypot(*arm))
         at = np.concatenate([zone.a, s])
@@ -137,12 +137,12 @@ class State:
 
         Compression is positive. The force at a clamped end belongs to the support.
         """
-        zone, g = self.found.zones[wrap.contact], wrap.sense
+        zone, g = self.evaluation.zones[wrap.contact], wrap.sense
         strip = self.equations.model.strips[wrap.beam]
         state = self._wrapped(wrap, np.concatenate([zone.a, s, zone.b]))
         tau = np.stack([np.cos(state[2]), np.sin(state[2])])
         e = g * np.stack([tau[1], -tau[0]])
-        rho = float(np.hypot(*(state[:2, 0] - self.found.centres[wrap.contact][:, 0])))
+        rho = float(np.hypot(*(state[:2, 0] - self.evaluation.centres[wrap.contact][:, 0])))
         N = np.sum(tau * state[4:], axis=0)[1:-1]
         pressure = N / rho - g * bending(strip, g / rho, s)[2]
         begin, end = (zone.before - zone.first)[:, 0] @ e[:, 0], (zone.last - zone.after)[:, 0] @ e[:, -1]

@@ -26,7 +26,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from cprbm_scene import CircleContact
-from elastica_reference.evaluation import Columns, Evaluation, Held
+from elastica_reference.evaluation import Columns, EndAction, Evaluation
 from elastica_reference.layout import Layout
 from elastica_reference.structure import Meeting, Resting, Structure, Wrap
 
@@ -122,4 +122,4 @@ def _release_ends(out: Evaluation, pushed: dict[tuple[str, str], Columns]) -> No
             out.rows += list(force)
         else:
             out.act(out.model.scene.body_of(end.point), held.place, force, held.moment)
-            out.ends[beam, which] = Held(held.place, force, held.moment)
+            out.ends[beam, which] = EndAction(held.place, force, held.moment)

@@ -12,7 +12,7 @@ from cprbm_scene.answer import Array
 from elastica_reference.equations import Equations
 from elastica_reference.model import Model
 from elastica_reference.newton import Condition, LostError, solve
-from elastica_reference.restructure import NotCoveredError, structured
+from elastica_reference.restructure import NotCoveredError, structure_of
 from elastica_reference.settings import Settings
 from elastica_reference.stability import least_curvature
 from elastica_reference.state import Known, Rest, State, start_of
@@ -116,16 +116,16 @@ class Way:
             LostError: there is no equilibrium nearby.
             NotCoveredError: there are no equations for the structure.
         """
-        structure = structured(self.model, touches, places)
+        structure = structure_of(self.model, touches, places)
         equations = Equations(self.model, structure, self.stepped, dict(self.values), self.settings.nodes)
         guesses: dict[Any, float] = {**places, **(forces or {})}
         z = start_of(equations, near, guesses)
         where = equations.layout
         if isinstance(pinned, str):
             z[where.forces[pinned]] = 0.0
-            condition = _held_at(where.forces[pinned], 0.0)
+            condition = _has_value(where.forces[pinned], 0.0)
         elif pinned is not None:
-            condition = _held_at(where.places[pinned], places[pinned])
+            condition = _has_value(where.places[pinned], places[pinned])
         return solve(equations, z, lam, self.settings.iterations, near, condition)
 
     def attempt(self, goal: float) -> State:
@@ -151,9 +151,9 @@ class Way:
         """
         where = self.state.equations.layout
         index = where.forces[which] if isinstance(which, str) else where.places[which]
-        found = solve(self.state.equations, self.state.z, near, self.settings.iterations, self.state,
-                      _held_at(index, value))  # fmt: skip
-        return self.between(found, goal)
+        state = solve(self.state.equations, self.state.z, near, self.settings.iterations, self.state,
+                      _has_value(index, value))  # fmt: skip
+        return self.between(state, goal)
 
     def between(self, state: State, goal: float) -> State:
         """The ``state``, provided that its λ lies between here and ``goal``.
@@ -209,6 +209,6 @@ def places_of(state: State, without: str) -> dict[tuple[str, str], float]:
     return {key: value for key, value in state.places.items() if key[0] != without}
 
 
-def _held_at(index: int, value: float) -> Condition:
+def _has_value(index: int, value: float) -> Condition:
     """Condition for the value of an unknown."""
-    return lambda z, found: z[index] - value
+    return lambda z, evaluation: z[index] - value

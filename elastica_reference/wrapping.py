@@ -22,7 +22,7 @@ import numpy as np
 
 from cprbm_scene import CircleContact
 from cprbm_scene.answer import Array
-from elastica_reference.evaluation import Columns, Evaluation, Held, Part, Zone
+from elastica_reference.evaluation import Columns, EndAction, Evaluation, Part, Zone
 from elastica_reference.layout import Layout
 from elastica_reference.model import Strip
 from elastica_reference.structure import Wrap
@@ -37,13 +37,13 @@ def lie_between(out: Evaluation, where: Layout, wrap: Wrap, before: Part, after:
     tangent_a, e_a = _frame(theta, g)
     (m_a, dm_a), (m_b, dm_b) = _moment(strip, wrap, rho, a), _moment(strip, wrap, rho, b)
     out.rows += [*(place - centre - rho * e_a), before.end[3] - m_a]
-    place_b, theta_b = _round(place, centre, theta, g * (b - a) / rho)
+    place_b, theta_b = _rotated(place, centre, theta, g * (b - a) / rho)
     out.rows += [*(after.start[:2] - place_b), after.start[2] - theta_b, after.start[3] - m_b]
     tangent_b, e_b = _frame(theta_b, g)
     N_a, N_b = _along(before.force, tangent_a), _along(after.force, tangent_b)
     out.rows.append(N_b + g / rho * m_b - N_a - g / rho * m_a)  # (1)
     first, last = N_a * tangent_a + g * dm_a * e_a, N_b * tangent_b + g * dm_b * e_b
-    _note(out, wrap, Zone(a, b, place, theta, before.force, after.force, first, last))
+    _record(out, wrap, Zone(a, b, place, theta, before.force, after.force, first, last))
 
 
 def lie_from_clamp(out: Evaluation, where: Layout, wrap: Wrap, z: Columns) -> None:
@@ -58,7 +58,7 @@ def lie_from_clamp(out: Evaluation, where: Layout, wrap: Wrap, z: Columns) -> No
     assert end.point is not None
     clamp = out.moved(out.model.scene.body_of(end.point), out.model.rest(end.point))
     angle = out.angle(strip.name, which)
-    place, theta = _round(clamp, centre, angle, g * (free - held) / rho)
+    place, theta = _rotated(clamp, centre, angle, g * (free - held) / rho)
     (m_free, dm_free), (m_held, dm_held) = _moment(strip, wrap, rho, free), _moment(strip, wrap, rho, held)
     out.rows += [*(state[:2] - place), state[2] - theta, state[3] - m_free]
     (tangent, e), (tangent_held, e_held) = _frame(theta, g), _frame(angle, g)
@@ -66,11 +66,11 @@ def lie_from_clamp(out: Evaluation, where: Layout, wrap: Wrap, z: Columns) -> No
     inside_free = N * tangent + g * dm_free * e
     inside_held = (N + g / rho * (m_free - m_held)) * tangent_held + g * dm_held * e_held  # (1)
     if wrap.from_start:
-        out.ends[strip.name, which] = Held(clamp, inside_held, m_held)
-        _note(out, wrap, Zone(held, free, clamp, angle, inside_held, part.force, inside_held, inside_free))
+        out.ends[strip.name, which] = EndAction(clamp, inside_held, m_held)
+        _record(out, wrap, Zone(held, free, clamp, angle, inside_held, part.force, inside_held, inside_free))
     else:
-        out.ends[strip.name, which] = Held(clamp, -inside_held, -m_held)
-        _note(out, wrap, Zone(free, held, place, theta, part.force, inside_held, inside_free, inside_held))
+        out.ends[strip.name, which] = EndAction(clamp, -inside_held, -m_held)
+        _record(out, wrap, Zone(free, held, place, theta, part.force, inside_held, inside_free, inside_held))
 
 
 def neutral_radius(out: Evaluation, wrap: Wrap) -> float:
@@ -81,7 +81,7 @@ def neutral_radius(out: Evaluation, wrap: Wrap) -> float:
     return contact.radius / out.model.unit_length + half
 
 
-def _note(out: Evaluation, wrap: Wrap, zone: Zone) -> None:
+def _record(out: Evaluation, wrap: Wrap, zone: Zone) -> None:
     """Record the zone; its force on the beam is F before minus F after."""
     contact = out.model.scene.contacts[wrap.contact]
     assert isinstance(contact, CircleContact)
@@ -106,7 +106,7 @@ def bending(strip: Strip, kappa: float, s: Array) -> tuple[Array, Array, Array]:
     return EI * change, dEI * change - EI * slope, ddEI * change - 2.0 * dEI * slope - EI * second
 
 
-def _round(place: Columns, centre: Columns, angle: Columns, by: Columns) -> tuple[Columns, Columns]:
+def _rotated(place: Columns, centre: Columns, angle: Columns, by: Columns) -> tuple[Columns, Columns]:
     """Position and tangent angle after a rotation ``by`` around the centre."""
     x, y = place - centre
     cos, sin = np.cos(by), np.sin(by)

@@ -33,7 +33,7 @@ def advance(model: Model, z: State, step: Array) -> State:
     return z.moved(way)
 
 
-def carried(model: Model, before: State, now: State, rate: Array) -> Array:
+def transported(model: Model, before: State, now: State, rate: Array) -> Array:
     """Vector ``rate`` (size,) of the state ``before``, transported to ``now``: equal turn and stretch of the chords."""
     same = rate.copy()
     for beam in model.beams:
@@ -45,19 +45,19 @@ def carried(model: Model, before: State, now: State, rate: Array) -> Array:
     return same
 
 
-def bend(model: Model, before: State, now: State, rates: tuple[Array, Array], by: float) -> tuple[Array, Array]:
+def path_terms(model: Model, before: State, now: State, rates: tuple[Array, Array], by: float) -> tuple[Array, Array]:
     """Higher-order terms c₂ and c₃ (size,) of the path between two states, for an increment ``by`` of the parameter.
 
     With u from −1 in the state ``before`` to 0 ``now`` the path is u ``by`` times the last rate + c₂ u² + c₃ u³.
     ``rates`` are the path tangents (size,) at both ends.
     """
     here = by * rates[1]
-    come = way_to(model, now, before) + here
-    turned = by * carried(model, before, now, rates[0]) - here
+    come = step_between(model, now, before) + here
+    turned = by * transported(model, before, now, rates[0]) - here
     return 3.0 * come + turned, 2.0 * come + turned
 
 
-def way_to(model: Model, start: State, end: State) -> Array:
+def step_between(model: Model, start: State, end: State) -> Array:
     """The step (size,) from ``start`` to ``end``, inverse of :func:`advance`."""
     way = (end.values - start.values) + (end.rest - start.rest)
     for beam in model.beams:

@@ -14,7 +14,7 @@ from fea_reference.march import March
 from fea_reference.model import BeamPart
 from fea_reference.recovery import bending_moment, section_force
 from fea_reference.stops import acting_stops
-from fea_reference.supports import held, support
+from fea_reference.supports import joint_reaction, row_reaction
 from fea_reference.touch import Pair, Touch
 
 BESIDE = 1e-12
@@ -73,7 +73,7 @@ def _at_joints(march: March) -> Iterator[PointForce]:
     ends |= {int(model.node_dofs[0, beam.nodes.stop - 1]): (beam.name, beam.length) for beam in model.beams}
     for joint in model.joints:
         beam, s = ends[int(joint.dofs[0])]
-        at, body, (force, moment) = z[joint.dofs[:2]], model.bodies[joint.body], support(joint, z)
+        at, body, (force, moment) = z[joint.dofs[:2]], model.bodies[joint.body], joint_reaction(joint, z)
         yield PointForce(joint.point, beam, s, at, force, moment)
         if body.dofs is not None:
             yield PointForce(joint.point, body.name, np.nan, at, -force, -moment)
@@ -83,7 +83,7 @@ def _on_bodies(scene: Scene, march: March) -> Iterator[PointForce]:
     """Forces of slides, pivots, drives and pins on bodies."""
     model, z = march.model, march.system.z
     for part in (*model.guides, *model.drives):
-        body, (force, moment) = model.bodies[part.body], held(part, z)
+        body, (force, moment) = model.bodies[part.body], row_reaction(part, z)
         owner = scene.bodies.get(part.name)
         source = owner.about if isinstance(owner, TurningBody) else part.name
         yield PointForce(source, body.name, np.nan, model.carried(body, part.arm, z), force, moment)

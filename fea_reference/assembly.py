@@ -54,12 +54,12 @@ def _way(march: March, number: int) -> Array:
 
 def _forbidden(march: March, stop: StopPart, scene: Scene) -> list[Mistake]:
     """A mistake if an assembled end is beyond a limit of its stop; else an empty list."""
-    room, limit = stop.room(march.system.z)
-    if room >= -_BEYOND:
+    margin, limit = stop.margin(march.system.z)
+    if margin >= -_BEYOND:
         return []
     key = f"contacts.{stop.owner}" if stop.owner else f"stops.{stop.name}.{'most' if limit == stop.most else 'least'}"
-    found = (
+    message = (
         f"{limit:g} rad: a stop that forbids the assembly, by which {stop.end[0]!r} comes to "
         f"stand at {stop.angle(march.system.z):.4g} rad"
     )
-    return [Mistake(key, found, "limits that the assembled beam keeps, or other moments", scene.file)]
+    return [Mistake(key, message, "limits that the assembled beam keeps, or other moments", scene.file)]

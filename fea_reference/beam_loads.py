@@ -56,7 +56,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm_scene.answer import Array
-from fea_reference.hermite import Index, NeutralLine, along, by_chord, shape_slopes, shapes, twice_along
+from fea_reference.hermite import (
+    Index,
+    NeutralLine,
+    chord_speed_excess,
+    projected_gradient,
+    projected_hessian,
+    shape_slopes,
+    shapes,
+)
 from fea_reference.leaning import Chain
 from fea_reference.model import BeamLoadPart, BeamMomentPart, Model, OnBeam
 from fea_reference.state import State
@@ -106,7 +114,7 @@ def beam_load(model: Model, part: OnBeam, value: float, z: State) -> BeamLoad:
     placed = _placed(model, part, z)
     place = placed.place
     start = model.loaded.found(model.start, part.name, lambda: _placed(model, part, model.start).place)
-    local, twice = placed.along(force)
+    local, twice = placed.projected_gradient(force)
     done = float((force * (place - start)).sum())
     if not part.distributed:
         bubble = _bubble(placed.line, placed.local, _gives(model, part, placed), force)
@@ -203,7 +211,7 @@ class _Placed:
         """x (2, k)."""
         return self.line.at(self.local + self.at)[0]
 
-    def along(self, f: Array) -> tuple[Array, Array]:
+    def projected_gradient(self, f: Array) -> tuple[Array, Array]:
         """Derivatives (7, k) and (7, 7, k) of f·x(ξ*) for forces (2, k) by the unknowns of the element lines."""
         line, e, H, H1 = self.line, self.local, shapes(self.at), shape_slopes(self.at)
         _, x1, x2 = line.at(e + self.at)
@@ -213,8 +221,8 @@ class _Placed:
         turned[2, 2] = turned[5, 5] = self.second
         turned[2, 5] = turned[5, 2] = -self.second
         speed, speed_twice = _speed(line, e)
-        local, twice = along(f, H, line, e), twice_along(f, H, line, e)
-        by, by1 = _by_nodes(local, speed), _by_nodes(along(f, H1, line, e), speed)
+        local, twice = projected_gradient(f, H, line, e), projected_hessian(f, H, line, e)
+        by, by1 = _by_nodes(local, speed), _by_nodes(projected_gradient(f, H1, line, e), speed)
         both = twice[_LINE - 1][:, None] * speed[None, :]
         by_twice = twice + both + both.transpose(1, 0, 2) + local[_LINE - 1] * speed_twice
         by_twice[_LINE - 1] = by_twice[:, _LINE - 1] = 0.0
@@ -238,7 +246,7 @@ def _speed(line: NeutralLine, e: Index) -> tuple[Array, Array]:
     ends = np.zeros((_LINE, 1))
     ends[2], ends[5] = -1.0, 1.0
     both = stretch[:, None] * ends[None, :]
-    _, by_l, by_turned, by_both, by_turned_twice = by_chord(l, L, turned)
+    _, by_l, by_turned, by_both, by_turned_twice = chord_speed_excess(l, L, turned)
     twice = by_l * l * turn[:, None] * turn[None, :] + by_both * l * (both + both.transpose(1, 0, 2))
     return by_l * l * stretch + by_turned * ends, twice + by_turned_twice * ends[:, None] * ends[None, :]
 
@@ -298,14 +306,14 @@ def load_forces(model: Model, part: OnBeam, z: State) -> Array:
     """Generalised forces (size,) of a unit load, without the bubbles."""
     beam = model.beams[part.beam]
     if isinstance(part, BeamMomentPart):
-        one = _beam_moment(model, part, 1.0, z)
+        unit_load = _beam_moment(model, part, 1.0, z)
         f = np.zeros(model.size)
-        np.add.at(f, one.dofs, one.gradient)
+        np.add.at(f, unit_load.dofs, unit_load.gradient)
         return f
     placed = _placed(model, part, z)
     chain = model.chain_apart(beam, placed.e, z)
     f = np.zeros(model.size)
-    np.add.at(f, chain.dofs, chain.gradient(placed.along(part.forces)[0]))
+    np.add.at(f, chain.dofs, chain.gradient(placed.projected_gradient(part.forces)[0]))
     return f
 
 

@@ -30,7 +30,7 @@ from fea_reference.advance import advance
 from fea_reference.curvature import Mode, softest
 from fea_reference.model import Model
 from fea_reference.settings import Settings
-from fea_reference.sinking import known_depths, sunk
+from fea_reference.sinking import known_depths, with_predicted_depths
 from fea_reference.system import System, assemble, factors, load_direction
 from fea_reference.touch import Contact, Penalty
 
@@ -103,25 +103,25 @@ def place(branch: Branch, value: float, system: System, before: tuple[Array, flo
     return Place(value, system, softest(branch.model, system), way / size, rate / size)
 
 
-def onwards(branch: Branch, start: Place, length: float) -> Place | None:
+def place_at(branch: Branch, start: Place, length: float) -> Place | None:
     """The point at arc ``length`` beyond ``start``; None if Newton's method fails."""
     model, settings = branch.model, branch.settings
     z, value = advance(model, start.system.z, length * start.way), start.value + length * start.rate
-    foreseen = {one.pair: one.foreseen(length * start.way) for one in start.system.touches}
-    pushes = {one.pair: one.pushes for one in start.system.touches if one.closed}
-    known = known_depths(start.system, {one.pair: one.penetration for one in start.system.touches}, pushes)
-    z = sunk(model, branch.penalties, settings.quadrature, start.system, z, foreseen, known)
+    predicted = {contact.pair: contact.predicted_forces(length * start.way) for contact in start.system.touches}
+    pushes = {contact.pair: contact.pushes for contact in start.system.touches if contact.closed}
+    known = known_depths(start.system, {contact.pair: contact.penetration for contact in start.system.touches}, pushes)
+    z = with_predicted_depths(model, branch.penalties, settings.quadrature, start.system, z, predicted, known)
     correction = np.inf
     for _ in range(_ITERATIONS):
         system = assemble(
-            model, branch.penalties, settings.quadrature, branch.at(value), z, branch.acting, {}, foreseen
+            model, branch.penalties, settings.quadrature, branch.at(value), z, branch.acting, {}, predicted
         )
         unbalanced = float(np.abs(system.residual).max())
         if correction <= settings.correction and unbalanced <= max(settings.residual * system.scale, system.floor):
             return place(branch, value, system, (start.way, start.rate))
         f = load_direction(model, branch.load, z, branch.acting)
-        gone = (z.values - start.system.z.values) + (z.rest - start.system.z.rest)
-        missing = length - float(start.way @ (branch.weights * gone))
+        displacement = (z.values - start.system.z.values) + (z.rest - start.system.z.rest)
+        missing = length - float(start.way @ (branch.weights * displacement))
         missing -= branch.weight * start.rate * (value - start.value)
         solved = _solve(branch, system, f, (start.way, start.rate), -system.residual, missing)
         if solved is None:
@@ -130,13 +130,15 @@ def onwards(branch: Branch, start: Place, length: float) -> Place | None:
         correction = max(float(np.abs(step[model.moving]).max()), abs(change) / branch.span)
         if correction > 1.0:
             return None
-        foreseen = {one.pair: one.foreseen(step) for one in system.touches}
-        z = sunk(model, branch.penalties, settings.quadrature, system, advance(model, z, step), foreseen, known)
+        predicted = {contact.pair: contact.predicted_forces(step) for contact in system.touches}
+        z = with_predicted_depths(
+            model, branch.penalties, settings.quadrature, system, advance(model, z, step), predicted, known
+        )
         value += change
     return None
 
 
-def sought(branch: Branch, start: Place, length: float, size: Callable[[Place], float]) -> Place | None:
+def sign_change(branch: Branch, start: Place, length: float, size: Callable[[Place], float]) -> Place | None:
     """The point just behind a sign change of ``size`` from positive to negative, within arc ``length`` of ``start``.
 
     None if Newton's method fails on the way.
@@ -144,13 +146,13 @@ def sought(branch: Branch, start: Place, length: float, size: Callable[[Place], 
     behind: list[tuple[float, Place]] = []
 
     def sized(way: float) -> float:
-        there = onwards(branch, start, way) if way > 0.0 else start
+        there = place_at(branch, start, way) if way > 0.0 else start
         if there is None:
             raise ArithmeticError
-        found = size(there)
-        if found < 0.0:
+        value = size(there)
+        if value < 0.0:
             behind.append((way, there))
-        return found if way > 0.0 else max(found, np.finfo(float).tiny)
+        return value if way > 0.0 else max(value, np.finfo(float).tiny)
 
     near = _NEAR * length
     try:
@@ -159,7 +161,7 @@ def sought(branch: Branch, start: Place, length: float, size: Callable[[Place], 
             sized(root + 2.0 * near)
     except ArithmeticError:
         return None
-    return min(behind, key=lambda one: one[0])[1]
+    return min(behind, key=lambda item: item[0])[1]
 
 
 def _solve(

@@ -19,12 +19,12 @@ def at_ends(places: Array, last: int) -> bool:
     return bool((np.minimum(places, last - places) <= _AT_END).any())
 
 
-def cut_off(zones: Zones, last: int) -> Flags:
+def cut_ends(zones: Zones, last: int) -> Flags:
     """True (k, 2) for interval ends opposite to an end of the second beam, of ``last`` elements."""
     return np.minimum(zones.zeta_m, last - zones.zeta_m) <= _AT_END
 
 
-def shared_out(along_first: Zones, along_second: Zones, last: int, ends: tuple[int, ...]) -> tuple[Zones, Zones]:
+def split_zones(along_first: Zones, along_second: Zones, last: int, ends: tuple[int, ...]) -> tuple[Zones, Zones]:
     """Zones to integrate along either beam, if the second carries the zones at its ``ends``.
 
     A zone of the first is a zone of the second if both share a place of the second. Between beams at an angle, an end
@@ -36,20 +36,20 @@ def shared_out(along_first: Zones, along_second: Zones, last: int, ends: tuple[i
         own |= np.abs(along_second.intervals - end * last) <= _AT_END
     taken = np.isin(number_m, number_m[own.any(axis=1)])
     handed = np.zeros(len(number), dtype=bool)
-    for one in np.unique(number_m[taken]):
-        places = along_second.intervals[number_m == one]
+    for zone in np.unique(number_m[taken]):
+        places = along_second.intervals[number_m == zone]
         shared = (along_first.zeta_m.min(axis=1) <= places.max()) & (along_first.zeta_m.max(axis=1) >= places.min())
         handed |= np.isin(number, number[shared])
     return along_first.chosen(~handed), along_second.chosen(taken)
 
 
-def joined(along_first: Zones, along_second: Zones) -> tuple[Zones, Ints]:
+def merge_zones(along_first: Zones, along_second: Zones) -> tuple[Zones, Ints]:
     """Zones along either beam as zones of the first, in order along it, and their permutation (k,)."""
     turn = np.argsort(along_second.zeta_m, axis=1)
     both = (
         (along_first.intervals, np.take_along_axis(along_second.zeta_m, turn, 1)),
         (along_first.zeta_m, np.take_along_axis(along_second.intervals, turn, 1)),
     )
-    intervals, zeta_m = (np.concatenate(each) for each in both)
+    intervals, zeta_m = (np.concatenate(arrays) for arrays in both)
     order = np.argsort(intervals[:, 0])
     return Zones(intervals[order], zeta_m[order], min(along_first.least, along_second.least)), order

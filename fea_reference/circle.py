@@ -38,12 +38,12 @@ import numpy as np
 from cprbm_scene.answer import Array, Ints
 from cprbm_scene.statement import CircleContact, Scene
 from fea_reference.edge import edge_of
-from fea_reference.hermite import Around, NeutralLine, along, plane, shapes, twice_along
+from fea_reference.hermite import Around, NeutralLine, as_plane, projected_gradient, projected_hessian, shapes
 from fea_reference.model import Model, turned
 from fea_reference.state import Complex, State, squared, summed
-from fea_reference.swept import gone_over
+from fea_reference.swept import swept_over
 from fea_reference.touch import Circle, Penalty, Touch, count_points_per_place, gauss
-from fea_reference.zones import Gap, Zones, negative, stepped
+from fea_reference.zones import Gap, Zones, negative, steps_within
 
 _BETWEEN = np.arange(1, 8) / 8.0  # shares of the way between two states
 _SAGITTA = 0.15  # times the square of a motion along an arc: largest deviation of its chord
@@ -58,7 +58,7 @@ _THINNEST, _STANDARD = 800.0, 1e-4
 
 def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...]:
     """The scene's contacts of a beam with a circle; ``penetration`` as in the settings."""
-    found = []
+    contacts = []
     thinnest = _THINNEST * (_STANDARD / penetration) ** 0.25
     beams = [beam.name for beam in model.beams]
     bodies = [body.name for body in model.bodies]
@@ -73,7 +73,7 @@ def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...
         radius = contact.radius / model.units.length
         h = float(model.elements.length[beam.elements.start])
         layer = max(h, 0.5 * beam.thickness, min(beam.length / _LAYERS, radius))
-        found.append(
+        contacts.append(
             Circle(
                 name,
                 first,
@@ -86,22 +86,24 @@ def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...
                 beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
             )
         )
-    return tuple(found)
+    return tuple(contacts)
 
 
 def zones_of(model: Model, circle: Circle, z: State) -> Zones:
     """Zones of overlap of the beam with the circle in state ``z``."""
-    return model.leads.found(z, (circle, 0.0), lambda: (_find(_seen(model, circle, z), circle, 0.0), {}))[0]
+    return model.leads.found(
+        z, (circle, 0.0), lambda: (_zones_below(_relative_line(model, circle, z), circle, 0.0), {})
+    )[0]
 
 
-def room(model: Model, circle: Circle, z: State) -> float:
+def motion_before_contact(model: Model, circle: Circle, z: State) -> float:
     """Lower bound of the relative motion before the beam may touch the circle."""
-    seen = _seen(model, circle, z)
-    return float(np.abs(seen.away).min()) - circle.radius - circle.edge.farthest - seen.line.longest
+    relative = _relative_line(model, circle, z)
+    return float(np.abs(relative.away).min()) - circle.radius - circle.edge.farthest - relative.line.longest
 
 
-def _seen(model: Model, circle: Circle, z: State) -> _Seen:
-    return _Seen.of(model.line(model.beams[circle.first], z), centre(model, circle, z), circle)
+def _relative_line(model: Model, circle: Circle, z: State) -> _RelativeLine:
+    return _RelativeLine.of(model.line(model.beams[circle.first], z), centre(model, circle, z), circle)
 
 
 def centre(model: Model, circle: Circle, z: State) -> Array:
@@ -109,7 +111,7 @@ def centre(model: Model, circle: Circle, z: State) -> Array:
     return model.carried(model.bodies[circle.body], np.array(circle.arm), z)
 
 
-def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
+def passes_through(model: Model, circle: Circle, before: State, after: State) -> bool:
     """True if a beam, straight from one state to another, sweeps over the circle's centre or cuts its inside.
 
     The beam sweeps over the centre if the closed loop of old line, end's path, new line and start's path winds around
@@ -124,7 +126,7 @@ def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
         return True
     centres = [np.array([complex(*centre(model, circle, z))]) for z in (before, after)]
     lines = [model.line(beam, z) for z in (before, after)]
-    first, last, over = gone_over((lines[0], centres[0]), (lines[1], centres[1]))
+    first, last, over = swept_over((lines[0], centres[0]), (lines[1], centres[1]))
     if (over & (first.d * last.d < 0.0)).any():
         return True  # a circle smaller than the distance between chords and arcs
     way = np.hypot(*(new - old)).max()
@@ -135,9 +137,9 @@ def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
 def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: State) -> Touch:
     """Contact energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[circle.first], model.bodies[circle.body]
-    seen, c = _seen(model, circle, z), centre(model, circle, z)
-    line = seen.line
-    ahead, _ = model.leads.found(z, (circle, penalty.lead), lambda: (_find(seen, circle, penalty.lead), {}))
+    relative, c = _relative_line(model, circle, z), centre(model, circle, z)
+    line = relative.line
+    ahead, _ = model.leads.found(z, (circle, penalty.lead), lambda: (_zones_below(relative, circle, penalty.lead), {}))
     zones = replace(ahead, least=ahead.least + penalty.lead)
 
     points, weights = gauss(quadrature)
@@ -147,13 +149,13 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
     e = there.element
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
-    r, toward, g = _clearance(seen, circle, there, zeta)
-    x, n = plane(line.nodes[e] + there.way), plane(toward)
+    r, toward, g = _clearance(relative, circle, there, zeta)
+    x, n = as_plane(line.nodes[e] + there.way), as_plane(toward)
     tau = np.array([n[1], -n[0]])
 
     H = shapes(zeta - e)
-    g_q, p = along(n, H, line, e), along(tau, H, line, e)
-    own = twice_along(n, H, line, e)
+    g_q, p = projected_gradient(n, H, line, e), projected_gradient(tau, H, line, e)
+    own = projected_hessian(n, H, line, e)
     if body.dofs is not None:
         arm = turned(np.array(circle.arm), z[body.dofs[2]])
         across = np.array([-arm[1], arm[0]])  # ∂(R arm)/∂φ; its derivative is −R arm
@@ -215,7 +217,7 @@ def resting_pressure(model: Model, touch: Touch, circle: Circle, z: State) -> fl
 
 
 @dataclass(frozen=True)
-class _Seen:
+class _RelativeLine:
     """A neutral ``line`` relative to a circle's centre: vectors ``away`` x − c (n+1,) of its nodes.
 
     ``over`` (n+1,) is r² − (R + T)² there, for the least T, without cancellation.
@@ -226,7 +228,7 @@ class _Seen:
     over: Array
 
     @classmethod
-    def of(cls, line: NeutralLine, c: Array, circle: Circle) -> _Seen:
+    def of(cls, line: NeutralLine, c: Array, circle: Circle) -> _RelativeLine:
         """Relative to a circle with centre ``c`` (2,)."""
         away, error = summed(line.nodes, np.full(line.nodes.shape, -complex(*c), dtype=np.complex128))
         rest = error + line.rests
@@ -248,34 +250,34 @@ class _Seen:
         return np.flatnonzero(within)
 
 
-def _clearance(seen: _Seen, circle: Circle, there: Around, zeta: Array) -> tuple[Array, Complex, Array]:
+def _clearance(relative: _RelativeLine, circle: Circle, there: Around, zeta: Array) -> tuple[Array, Complex, Array]:
     """r (k,), n (k,) and g (k,) at places ``zeta`` (k,); g is (r² − (R + T)²)/(r + R + T) for the least T.
 
     The numerator is exact at an element's first node and changes by at most the element's length, with a round-off to
     match.
     """
-    q, d = seen.away[there.element], there.way
+    q, d = relative.away[there.element], there.way
     away = q + d
     r = np.abs(away)
     more = ((2.0 * q + d) * d.conj()).real
-    g = (seen.over[there.element] + more) / (r + (circle.radius + circle.edge.nearest))
+    g = (relative.over[there.element] + more) / (r + (circle.radius + circle.edge.nearest))
     if circle.edge.varies:
         g -= circle.edge.at(zeta) - circle.edge.nearest
     return r, away / r, g
 
 
-def _find(seen: _Seen, circle: Circle, lead: float) -> Zones:
+def _zones_below(relative: _RelativeLine, circle: Circle, lead: float) -> Zones:
     """Intervals with a gap below ``lead``, divided at the knots of a thick beam."""
-    line = seen.line
+    line = relative.line
 
     def at(zeta: Array, none: Array) -> Gap:
         there = line.around(zeta)
-        r, n, g = _clearance(seen, circle, there, zeta)
+        r, n, g = _clearance(relative, circle, there, zeta)
         ahead = n.conj() * there.ahead
         slope = ahead.real - circle.edge.slope(zeta) if circle.edge.varies else ahead.real
         curvature = (n.conj() * there.bent).real + ahead.imag**2 / r
         return Gap(g - lead, slope, curvature, none, np.ones(zeta.shape, dtype=bool))
 
-    zeta, neighbours = stepped(seen.near(circle, lead), circle.edge.inner)
+    zeta, neighbours = steps_within(relative.near(circle, lead), circle.edge.inner)
     floor = float(np.finfo(float).eps) * line.longest
     return negative(at, zeta, at(zeta, np.zeros_like(zeta)), neighbours, circle.edge.inner, floor=floor)

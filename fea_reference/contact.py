@@ -50,11 +50,19 @@ from cprbm_scene.answer import Array, Ints
 from cprbm_scene.clearance import JOINED, overlap_at_rest
 from cprbm_scene.curve_records import MEETING
 from cprbm_scene.statement import BeamContact, BeamEnd, FreeEnd, Scene, SelfContact
-from fea_reference.carrying import cut_off, joined, shared_out
+from fea_reference.carrying import cut_ends, merge_zones, split_zones
 from fea_reference.edge import edge_of
 from fea_reference.facing import Borders, Tapers, borders, lean
-from fea_reference.hermite import NeutralLine, along, apart, plane, shape_slopes, shapes, twice_along
-from fea_reference.itself import seen_itself, unseen
+from fea_reference.hermite import (
+    NeutralLine,
+    as_plane,
+    line_difference,
+    projected_gradient,
+    projected_hessian,
+    shape_slopes,
+    shapes,
+)
+from fea_reference.itself import survey_self, without_known_sides
 from fea_reference.model import BeamPart, Model
 from fea_reference.neighbours import nearest
 from fea_reference.state import State
@@ -63,16 +71,16 @@ from fea_reference.touch import Pair, Penalty, Touch, count_points_per_place, ga
 from fea_reference.zones import (
     Survey,
     Zones,
-    end_apart,
-    ends_over,
+    end_distance,
     gap,
-    nodes_apart,
-    none,
+    has_end_over,
+    no_zones,
+    node_distance,
     one_side,
-    out_of_reach,
     overlap,
-    seen,
+    search_distance,
     side_of,
+    survey_pair,
 )
 
 _AT_END = 1e-6  # elements
@@ -86,14 +94,14 @@ _LAYERS = 32.0  # layers per beam length, for the widest layer
 
 def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
     """The scene's contacts of two beams, with their sides in the undeformed state."""
-    found = []
+    contacts = []
     number = {beam.name: i for i, beam in enumerate(model.beams)}
     for name, contact in scene.contacts.items():
         if not isinstance(contact, BeamContact):
             continue
         i, j = (number[beam] for beam in contact.between)
-        lines = [model.line(model.beams[one], model.start) for one in (i, j)]
-        turned = ends_over(lines[1], lines[0]) and not ends_over(lines[0], lines[1])
+        lines = [model.line(model.beams[index], model.start) for index in (i, j)]
+        turned = has_end_over(lines[1], lines[0]) and not has_end_over(lines[0], lines[1])
         if turned:
             i, j = j, i
         first, second = model.beams[i], model.beams[j]
@@ -102,54 +110,59 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         lines = [model.line(beam, model.start) for beam in (first, second)]
         side, side_m = side_of(lines[0], lines[1]), side_of(lines[1], lines[0])
         distance, scale, measure = (mean, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
-        ends, ends_m = _loose(model, scene, first, second), _loose(model, scene, second, first)
+        ends, ends_m = _contact_ends(model, scene, first, second), _contact_ends(model, scene, second, first)
         thick = 0.5 * contact.thick * sum(beam.record.thickest for beam in (first, second)) / model.units.length
-        free, free_m = (_free(*order, JOINED * thick) for order in ((lines[0], lines[1]), (lines[1], lines[0])))
+        free, free_m = (
+            _contact_range(*order, JOINED * thick) for order in ((lines[0], lines[1]), (lines[1], lines[0]))
+        )
         penalties = [_penalties(model, beam, mean) for beam in (first, second)]
         loosest, stiffness, stiffest = map(min, zip(*penalties, strict=True))
         tapers = _tapers(model, first, second, thick=contact.thick)
         strengths = (loosest, stiffness, stiffest)
         pair = Pair(name, i, j, turned, side, side_m, distance, scale, measure, *strengths, ends, ends_m, tapers=tapers)
-        found.append(replace(pair, free=free, free_m=free_m))
-    return tuple(found)
+        contacts.append(replace(pair, free=free, free_m=free_m))
+    return tuple(contacts)
 
 
-def looked_at(model: Model, pair: Pair, z: State) -> Pair:
+def with_sides(model: Model, pair: Pair, z: State) -> Pair:
     """The pair with order and sides of the beams as they lie apart in state ``z``.
 
     Beams next to each other's ends have no side at rest, and an end of the second may approach the first. The side
     comes from the last state with the beams opposite to each other.
     """
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    away = end_apart(second, first)
-    if away < end_apart(first, second) and away <= nodes_apart(first, second):
+    away = end_distance(second, first)
+    if away < end_distance(first, second) and away <= node_distance(first, second):
         pair, first, second = pair.about(), second, first
     side, side_m = side_of(first, second, pair.side), side_of(second, first, pair.side_m)
     return pair if (side, side_m) == (pair.side, pair.side_m) else replace(pair, side=side, side_m=side_m)
 
 
-def _loose(model: Model, scene: Scene, beam: BeamPart, other: BeamPart) -> tuple[int, ...]:
+def _contact_ends(model: Model, scene: Scene, beam: BeamPart, other: BeamPart) -> tuple[int, ...]:
     """Ends of ``beam`` (0 start, 1 end), except those on the same body as, and beside, an end of ``other``."""
-    mine, theirs = (
+    own_ends, other_ends = (
         [
             (_holder(scene, end), place)
             for end, place in zip(
-                (scene.beams[each.name].start, scene.beams[each.name].end),
-                model.line(each, model.start).nodes[[0, -1]],
+                (scene.beams[part.name].start, scene.beams[part.name].end),
+                model.line(part, model.start).nodes[[0, -1]],
                 strict=True,
             )
         ]
-        for each in (beam, other)
+        for part in (beam, other)
     )
     near = _BESIDE * 0.5 * (beam.thickness + other.thickness)
     return tuple(
         which
-        for which, (holder, place) in enumerate(mine)
-        if not any(holder is not None and holder == its and abs(place - there) < near for its, there in theirs)
+        for which, (holder, place) in enumerate(own_ends)
+        if not any(
+            holder is not None and holder == other_holder and abs(place - there) < near
+            for other_holder, there in other_ends
+        )
     )
 
 
-def _free(line: NeutralLine, other: NeutralLine, joined: float) -> tuple[float, float]:
+def _contact_range(line: NeutralLine, other: NeutralLine, joined: float) -> tuple[float, float]:
     """First and last place ζ with contact, at least ``joined`` from an end shared with the other beam."""
     shared = np.abs(line.nodes[[0, -1], None] - other.nodes[[0, -1]]).min(axis=1) <= MEETING
     first, last = np.where(shared, min(joined / float(line.lengths.min()), line.n), 0.0)
@@ -172,9 +185,9 @@ def _tapers(model: Model, first: BeamPart, second: BeamPart, *, thick: bool) -> 
     return Tapers(edges[0], edges[1])
 
 
-def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
+def self_contacts(scene: Scene, model: Model) -> tuple[Pair, ...]:
     """The scene's self-contacts."""
-    found = []
+    contacts = []
     for name, contact in scene.contacts.items():
         if not isinstance(contact, SelfContact):
             continue
@@ -183,13 +196,13 @@ def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
         least = beam.record.thinnest / model.units.length
         T, scale, measure = (beam.thickness, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
         later = not (_grounded(scene, contact.beam, "end") and not _grounded(scene, contact.beam, "start"))
-        roles = unseen(later=later, ended=contact.thick).renewed(model.line(beam, model.start))
+        roles = without_known_sides(later=later, ended=contact.thick).renewed(model.line(beam, model.start))
         penalties = _penalties(model, beam, beam.thickness)
         tapers = _tapers(model, beam, beam, thick=contact.thick)
-        found.append(
+        contacts.append(
             Pair(name, number, number, later, 0.0, 0.0, T, scale, measure, *penalties, roles=roles, tapers=tapers)
         )
-    return tuple(found)
+    return tuple(contacts)
 
 
 def _grounded(scene: Scene, beam: str, which: Literal["start", "end"]) -> bool:
@@ -208,7 +221,7 @@ def _penalties(model: Model, beam: BeamPart, thickness: float) -> tuple[float, f
 def zones_of(model: Model, pair: Pair, z: State) -> Zones:
     """Zones of overlap of a pair in state ``z``."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    return overlap(first, second, pair.distance, _seen(model, pair, z, pair.distance), 0.0, _rays(pair, second))
+    return overlap(first, second, pair.distance, _survey(model, pair, z, pair.distance), 0.0, _rays(pair, second))
 
 
 def least_at_ends(model: Model, pair: Pair, z: State) -> float:
@@ -228,25 +241,25 @@ def least_at_ends(model: Model, pair: Pair, z: State) -> float:
     return float(there.g[inside & (there.g > -0.5 * pair.scale)].min(initial=np.inf))
 
 
-def room(model: Model, pair: Pair, z: State) -> float:
+def motion_before_facing(model: Model, pair: Pair, z: State) -> float:
     """Lower bound of the relative motion before any place of a beam faces the other."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    return nodes_apart(first, second) - out_of_reach(first, second, pair.distance)
+    return node_distance(first, second) - search_distance(first, second, pair.distance)
 
 
-def ends_apart(model: Model, pair: Pair, z: State) -> float:
+def end_circle_distance(model: Model, pair: Pair, z: State) -> float:
     """Lower bound of the distance between the first beam and the circles about the second's ends."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
     return float(nearest(second.nodes[[0, -1]], first.nodes)[0].min()) - first.longest - pair.distance
 
 
-def _seen(model: Model, pair: Pair, z: State, T: float) -> Survey:
+def _survey(model: Model, pair: Pair, z: State, T: float) -> Survey:
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
 
     def look() -> Survey:
         if pair.roles is None:
-            return seen(first, second, pair.side, T, pair.tapers, pair.free)
-        return seen_itself(first, pair.roles, T, pair.tapers)
+            return survey_pair(first, second, pair.side, T, pair.tapers, pair.free)
+        return survey_self(first, pair.roles, T, pair.tapers)
 
     return model.surveys.found(z, (pair, T), look)
 
@@ -257,28 +270,30 @@ def _rays(pair: Pair, second: NeutralLine) -> list[Borders]:
     return [borders(second, pair.edge_m, side) for side in sides]
 
 
-def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State, held: float | None = None) -> Touch:
+def touch(
+    model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State, held_depth: float | None = None
+) -> Touch:
     """Contact energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval.
 
-    A contact ``held`` at a depth acts, in tension too, where the gap exceeds its minimum by no more than this depth.
+    A contact held at ``held_depth`` acts, in tension too, where the gap exceeds its minimum by no more than this depth.
     Far from equilibrium, a contact that was closed then neither vanishes nor becomes a rigid wall in Newton's method.
     """
     distance = pair.distance + penalty.lead
-    least = _seen(model, pair, z, distance).least
-    level = 0.0 if held is None else least + held
-    zones, zones_m = _overlap(model, pair, z, distance, level), none(np.inf)
+    least = _survey(model, pair, z, distance).least
+    level = 0.0 if held_depth is None else least + held_depth
+    zones, zones_m = _overlap(model, pair, z, distance, level), no_zones(np.inf)
     if pair.carried:
         along_second = _overlap(model, pair.about(), z, distance, level)
-        zones, zones_m = shared_out(zones, along_second, model.line(model.beams[pair.second], z).n, pair.carried)
-    here = _along(model, pair, distance, quadrature, z, zones)
-    missing, missing_share = _missing(model, pair, penalty, z, zones, here)
+        zones, zones_m = split_zones(zones, along_second, model.line(model.beams[pair.second], z).n, pair.carried)
+    here = _gauss_points(model, pair, distance, quadrature, z, zones)
+    missing, missing_share = _missing_force(model, pair, penalty, z, zones, here)
     if zones_m.intervals.size:
         about = pair.about()
-        there = _along(model, about, distance, quadrature, z, zones_m)
-        more, most = _missing(model, about, penalty, z, zones_m, there)
+        there = _gauss_points(model, about, distance, quadrature, z, zones_m)
+        more, most = _missing_force(model, about, penalty, z, zones_m, there)
         missing, missing_share = missing + more, max(missing_share, most)
-        least = min(least, _seen(model, about, z, distance).least)
-        zones, order = joined(zones, zones_m)
+        least = min(least, _survey(model, about, z, distance).least)
+        zones, order = merge_zones(zones, zones_m)
         here = here.with_other(there, (order[:, None] * quadrature + np.arange(quadrature)).ravel())
 
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
@@ -306,12 +321,12 @@ def _overlap(model: Model, pair: Pair, z: State, distance: float, level: float) 
     """Zones along the first beam with a gap below ``level``, for a ``distance`` of the neutral lines."""
     line, line_m = model.line(model.beams[pair.first], z), model.line(model.beams[pair.second], z)
     if level < line_m.longest:
-        return overlap(line, line_m, distance, _seen(model, pair, z, distance), level, _rays(pair, line_m))
-    return overlap(line, line_m, distance + level, _seen(model, pair, z, distance + level), 0.0, _rays(pair, line_m))
+        return overlap(line, line_m, distance, _survey(model, pair, z, distance), level, _rays(pair, line_m))
+    return overlap(line, line_m, distance + level, _survey(model, pair, z, distance + level), 0.0, _rays(pair, line_m))
 
 
 @dataclass(frozen=True, slots=True)
-class _Along:
+class _GaussPoints:
     """Gauss points (k,) along the first beam: elements, places and points of both lines, and the gap.
 
     ``ds`` (k,) is arc length of the first beam. ``by`` (14, k) and ``by_twice`` (14, 14, k) are derivatives of the
@@ -330,13 +345,13 @@ class _Along:
     by_twice: Array
     normal: Array
 
-    def with_other(self, other: _Along, order: Ints) -> _Along:
+    def with_other(self, other: _GaussPoints, order: Ints) -> _GaussPoints:
         """These points and the points of an integral along the second beam, in ``order``."""
 
-        def both(one: Array, its: Array) -> Array:
-            return np.concatenate([one, its], axis=-1)[..., order]
+        def both(own: Array, others: Array) -> Array:
+            return np.concatenate([own, others], axis=-1)[..., order]
 
-        return _Along(
+        return _GaussPoints(
             e=np.concatenate([self.e, other.e_m])[order],
             e_m=np.concatenate([self.e_m, other.e])[order],
             zeta=both(self.zeta, other.zeta_m),
@@ -351,7 +366,7 @@ class _Along:
         )
 
 
-def _along(model: Model, pair: Pair, distance: float, quadrature: int, z: State, zones: Zones) -> _Along:
+def _gauss_points(model: Model, pair: Pair, distance: float, quadrature: int, z: State, zones: Zones) -> _GaussPoints:
     """The gap at the Gauss points of the first beam's ``zones``."""
     line, line_m = model.line(model.beams[pair.first], z), model.line(model.beams[pair.second], z)
     points, weights = gauss(quadrature)
@@ -369,10 +384,10 @@ def _along(model: Model, pair: Pair, distance: float, quadrature: int, z: State,
     zeta_m, across, J = faced.zeta_m, faced.across, faced.c
     e_m, xi_m = line_m.locate(zeta_m)
     x_m = line_m.nodes[across.element] + across.way
-    tau = plane(faced.w)
+    tau = as_plane(faced.w)
     n = np.array([-tau[1], tau[0]])
-    d = (n * plane(apart(line, there, line_m, across))).sum(axis=0)
-    a = (n * plane(across.bent)).sum(axis=0)
+    d = (n * as_plane(line_difference(line, there, line_m, across))).sum(axis=0)
+    a = (n * as_plane(across.bent)).sum(axis=0)
     Z = np.where(faced.fixed, 1.0, J**2 - d * a)
     side = pair.sides(zeta, zeta_m, d)
     g = side * d - distance
@@ -380,16 +395,16 @@ def _along(model: Model, pair: Pair, distance: float, quadrature: int, z: State,
         g += pair.tapers.thinner(zeta, zeta_m)
 
     H, H_m, H_m1 = shapes(xi), shapes(xi_m), shape_slopes(xi_m)
-    d_q = np.concatenate([along(n, H, line, e), -along(n, H_m, line_m, e_m)])
-    p = np.concatenate([along(tau, H, line, e), -along(tau, H_m, line_m, e_m)])
-    k = np.concatenate([np.zeros_like(d_q[:_LINE]), along(n, H_m1, line_m, e_m)])
+    d_q = np.concatenate([projected_gradient(n, H, line, e), -projected_gradient(n, H_m, line_m, e_m)])
+    p = np.concatenate([projected_gradient(tau, H, line, e), -projected_gradient(tau, H_m, line_m, e_m)])
+    k = np.concatenate([np.zeros_like(d_q[:_LINE]), projected_gradient(n, H_m1, line_m, e_m)])
     pk = p[:, None] * k[None, :]
     d_qq = -(a * p[:, None] * p[None, :] + d * k[:, None] * k[None, :] + J * (pk + pk.transpose(1, 0, 2))) / Z
     if faced.fixed.any():
         d_qq = np.where(faced.fixed, p[:, None] * p[None, :] / np.where(d == 0.0, 1.0, d), d_qq)
-    d_qq[:_LINE, :_LINE] += twice_along(n, H, line, e)
-    d_qq[_LINE:, _LINE:] -= twice_along(n, H_m, line_m, e_m)
-    return _Along(e, e_m, zeta, zeta_m, plane(x), plane(x_m), ds, g, side * d_q, side * d_qq, side * n)
+    d_qq[:_LINE, :_LINE] += projected_hessian(n, H, line, e)
+    d_qq[_LINE:, _LINE:] -= projected_hessian(n, H_m, line_m, e_m)
+    return _GaussPoints(e, e_m, zeta, zeta_m, as_plane(x), as_plane(x_m), ds, g, side * d_q, side * d_qq, side * n)
 
 
 def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
@@ -406,7 +421,9 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
     zones = touch.zones.chosen(np.argsort(touch.zones.intervals[:, 0]))  # self-contact loops are not ordered
     intervals, zone = zones.intervals, zones.numbers
     at_end = np.array([intervals[0, 0] <= _AT_END, intervals[-1, 1] >= line.n - _AT_END])
-    widths = [np.ptp(intervals[zone == one]) for one in (zone[[0, -1]][at_end] if at_end.any() else np.unique(zone))]
+    widths = [
+        np.ptp(intervals[zone == number]) for number in (zone[[0, -1]][at_end] if at_end.any() else np.unique(zone))
+    ]
     if min(widths) < _LYING:
         return 0.0
     middle, middle_m = intervals.mean(axis=1), zones.zeta_m.mean(axis=1)
@@ -424,7 +441,9 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
     return max(0.0, float(np.median(pressure[[0, -1]][at_end] if at_end.any() else pressure)))
 
 
-def _missing(model: Model, pair: Pair, penalty: Penalty, z: State, zones: Zones, found: _Along) -> tuple[float, float]:
+def _missing_force(
+    model: Model, pair: Pair, penalty: Penalty, z: State, zones: Zones, gauss_points: _GaussPoints
+) -> tuple[float, float]:
     """The force ½ ε g²/|x'·τ| missing at intervals cut off by an end of the second beam, and its largest share.
 
     The share is relative to the force of the zone; zones with a negligible part of the total force do not count.
@@ -432,23 +451,23 @@ def _missing(model: Model, pair: Pair, penalty: Penalty, z: State, zones: Zones,
     if pair.ended:
         return 0.0, 0.0
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    across = cut_off(zones, second.n)
+    across = cut_ends(zones, second.n)
     if not across.any():
         return 0.0, 0.0
     zeta, zeta_m = zones.intervals[across], zones.zeta_m[across]
     there, there_m = first.around(zeta), second.around(zeta_m)
     back = (there_m.ahead / np.abs(there_m.ahead)).conj()
-    d = (back * apart(first, there, second, there_m)).imag
+    d = (back * line_difference(first, there, second, there_m)).imag
     side = pair.sides(zeta, zeta_m, d)
     if pair.edge_m is not None:
         back = lean(there_m.ahead, pair.edge_m.slope(zeta_m), side).conj()
-        d = (back * apart(first, there, second, there_m)).imag
+        d = (back * line_difference(first, there, second, there_m)).imag
     g = np.minimum(side * d - pair.apart(zeta, zeta_m) - penalty.lead, 0.0)
     ahead = np.abs((back * there.ahead).real) / first.lengths[there.element]
     left_out = 0.5 * penalty.stiffness * g**2 / np.maximum(ahead, 1e-3)
     number = zones.numbers
-    each = (-penalty.stiffness * found.ds * found.g).reshape(len(number), -1).sum(axis=1)
-    pushes = np.abs(np.bincount(number, each))
+    forces = (-penalty.stiffness * gauss_points.ds * gauss_points.g).reshape(len(number), -1).sum(axis=1)
+    pushes = np.abs(np.bincount(number, forces))
     missing = np.bincount(number[np.nonzero(across)[0]], left_out, minlength=pushes.size)
     counts = (missing > _WEIGHTLESS * pushes.sum()) & (pushes > 0.0)
     return float(missing.sum()), float((missing[counts] / pushes[counts]).max(initial=0.0))

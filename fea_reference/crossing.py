@@ -12,7 +12,7 @@ _ROUNDED = 1e-9  # relative to chord lengths: tolerance of distances
 _PARTS = 32  # chords per element: their sagitta is a thousandth of the element's
 
 
-def cross(first: NeutralLine, second: NeutralLine) -> bool:
+def lines_cross(first: NeutralLine, second: NeutralLine) -> bool:
     """True if any two chords of the lines' elements intersect in their interiors."""
     i, j = _near(first, second)
     return bool(
@@ -20,8 +20,8 @@ def cross(first: NeutralLine, second: NeutralLine) -> bool:
     )
 
 
-def crosses_itself(line: NeutralLine, held: Zones) -> bool:
-    """True if a line crosses itself outside the zones ``held``.
+def crosses_itself(line: NeutralLine, contact_zones: Zones) -> bool:
+    """True if a line crosses itself outside the ``contact_zones``.
 
     Coils may be closer than the sagitta of their elements. Where chords of elements intersect, the chords of their
     parts, and of the neighbours' parts, decide. In contact, lines may cross by the penetration, which is held and
@@ -30,20 +30,22 @@ def crosses_itself(line: NeutralLine, held: Zones) -> bool:
     i, j = _near(line, line)
     i, j = i[i < j], j[i < j]
     crossing = _intersect(line.points[:, i], line.points[:, i + 1], line.points[:, j], line.points[:, j + 1])
-    found = np.stack([i[crossing], j[crossing]], axis=1)
-    if held.intervals.size and found.size:
-        places = np.sort(np.stack([held.intervals, held.zeta_m]), axis=0)  # the earlier of both places, then the later
+    candidates = np.stack([i[crossing], j[crossing]], axis=1)
+    if contact_zones.intervals.size and candidates.size:
+        places = np.sort(
+            np.stack([contact_zones.intervals, contact_zones.zeta_m]), axis=0
+        )  # the earlier of both places, then the later
         low, high = (
             side[..., None] + _BESIDE * sign for side, sign in ((places.min(axis=2), -1), (places.max(axis=2), 1))
         )
-        middle = found.T[:, None] + 0.5
-        found = found[~((low < middle) & (middle < high)).all(axis=0).any(axis=0)]
-    if not found.size:
+        middle = candidates.T[:, None] + 0.5
+        candidates = candidates[~((low < middle) & (middle < high)).all(axis=0).any(axis=0)]
+    if not candidates.size:
         return False
     around = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)
-    pairs = np.unique(np.clip((found[:, None] + around).reshape(-1, 2), 0, line.n - 1), axis=0)
+    pairs = np.unique(np.clip((candidates[:, None] + around).reshape(-1, 2), 0, line.n - 1), axis=0)
     fine = line.at(np.arange(_PARTS * line.n + 1) / _PARTS)[0]
-    i, j = (_PARTS * one[:, None] + np.arange(_PARTS) for one in pairs.T)
+    i, j = (_PARTS * element[:, None] + np.arange(_PARTS) for element in pairs.T)
     ends = (fine[:, i, None], fine[:, i + 1, None], fine[:, j][:, :, None], fine[:, j + 1][:, :, None])
     return bool(_intersect(*ends).any())
 

@@ -54,7 +54,7 @@ class Mode:
     direction: Array
 
 
-def positive(model: Model, system: System) -> bool:
+def all_positive(model: Model, system: System) -> bool:
     """True if all μ are positive up to round-off."""
     return _factor(_feasible(model, system).stiffness) is not None
 
@@ -88,7 +88,7 @@ def softest(model: Model, system: System) -> Mode:
     return Mode(sigma, u)
 
 
-def leaning(model: Model, system: System, drag: float) -> Array:
+def moment_mode(model: Model, system: System, drag: float) -> Array:
     """Motion u (size,) under small moments 1 + s per length on all sections, against a ``drag`` (EI per length⁴).
 
     s is the arc length along the beams in the scene's order, in lengths of the longest. At a bifurcation the moments
@@ -99,7 +99,7 @@ def leaning(model: Model, system: System, drag: float) -> Array:
     factor = _factor(on.stiffness + drag * on.inertia)
     lengths = lumped_mass(model)[model.node_dofs[2]]
     moments[model.node_dofs[2]] = lengths * (1.0 + np.cumsum(lengths))
-    return moments if factor is None else _solved(on, factor, moments)
+    return moments if factor is None else _solve(on, factor, moments)
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,23 +152,23 @@ def _directions(model: Model, system: System, K: csr_array) -> csr_array:
     joints = [joint for joint in model.joints if not model.free(joint, system.acting)]
     stops = [stop for stop, _ in acting_stops(model.stops, system.acting)]
     # a row of a joint or stop is the node's motion minus the body's contribution
-    row_of = {int(dof): int(row) for one in joints for dof, row in zip(one.dofs, one.rows, strict=False)}
+    row_of = {int(dof): int(row) for joint in joints for dof, row in zip(joint.dofs, joint.rows, strict=False)}
     row_of |= {stop.theta: stop.row for stop in stops}
     free = np.ones(model.size, dtype=bool)
     free[list(row_of)] = False
     nodes = model.node_dofs.ravel()
-    alone = nodes[free[nodes]]
-    rows, columns, entries = [alone], [np.arange(alone.size)], [np.ones(alone.size)]
-    count = alone.size
+    independent = nodes[free[nodes]]
+    rows, columns, entries = [independent], [np.arange(independent.size)], [np.ones(independent.size)]
+    count = independent.size
     of_bodies: dict[int, tuple[Index, Array]] = {}
-    for group in _together(model):
+    for group in _connected_bodies(model):
         dofs = np.concatenate([dofs for i in group if (dofs := model.bodies[i].dofs) is not None])
-        held = [hold.row for hold in (*model.guides, *model.drives) if hold.body in group]
-        held += [int(row) for hinge in model.hinges if set(hinge.bodies) & group for row in hinge.rows]
-        left = null_space(K[held][:, dofs].toarray()) if held else np.eye(dofs.size)
-        here = count + np.arange(left.shape[1])
+        constrained = [hold.row for hold in (*model.guides, *model.drives) if hold.body in group]
+        constrained += [int(row) for hinge in model.hinges if set(hinge.bodies) & group for row in hinge.rows]
+        free_motions = null_space(K[constrained][:, dofs].toarray()) if constrained else np.eye(dofs.size)
+        here = count + np.arange(free_motions.shape[1])
         count += here.size
-        of_bodies |= {int(dof): (here, line) for dof, line in zip(dofs, left, strict=True)}
+        of_bodies |= {int(dof): (here, line) for dof, line in zip(dofs, free_motions, strict=True)}
     ways = [(dof, dof, 1.0) for dof in of_bodies]
     for dof, row in row_of.items():
         entry = slice(K.indptr[row], K.indptr[row + 1])
@@ -185,7 +185,7 @@ def _directions(model: Model, system: System, K: csr_array) -> csr_array:
     return csr_array((np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns))), (model.size, count))
 
 
-def _together(model: Model) -> list[set[int]]:
+def _connected_bodies(model: Model) -> list[set[int]]:
     """Sets of moving bodies connected by hinges."""
     groups = [{i} for i, body in enumerate(model.bodies) if body.dofs is not None]
     for hinge in model.hinges:
@@ -197,7 +197,7 @@ def _together(model: Model) -> list[set[int]]:
 
 def _bands(place: Index, *matrices: csr_array) -> list[Array]:
     """Lower bands of symmetric matrices (m, m) in the order ``place``, all of the largest width."""
-    entries = [(np.repeat(place, np.diff(one.indptr)), place[one.indices], one.data) for one in matrices]
+    entries = [(np.repeat(place, np.diff(matrix.indptr)), place[matrix.indices], matrix.data) for matrix in matrices]
     width = max(int((rows - columns).max(initial=0)) for rows, columns, _ in entries)
     bands = []
     for rows, columns, data in entries:
@@ -219,7 +219,7 @@ def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
     beside: list[float] = []
     for step in range(_STEPS):
         Q[step] = v
-        w = root * _solved(on, factor, root * v)
+        w = root * _solve(on, factor, root * v)
         diagonal.append(float(v @ w))
         so_far = Q[: step + 1]
         w -= so_far.T @ (so_far @ w)
@@ -237,7 +237,7 @@ def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
     return 1.0 / float(values[-1]), u
 
 
-def _solved(on: _Feasible, factor: Array, forces: Array) -> Array:
+def _solve(on: _Feasible, factor: Array, forces: Array) -> Array:
     """T A⁻¹ T^T times ``forces`` (size,), by the factor of A."""
     right = np.empty(on.place.size)
     right[on.place] = on.back @ forces
@@ -246,14 +246,14 @@ def _solved(on: _Feasible, factor: Array, forces: Array) -> Array:
 
 def _below_zero(factor: Callable[[float], Array | None]) -> float:
     """The largest σ without negative pivot, to a tenth of its value."""
-    none, some = -1.0, 0.0
+    definite, indefinite = -1.0, 0.0
     for _ in range(_TRIALS):
-        if factor(none) is not None:
+        if factor(definite) is not None:
             break
-        none, some = 4.0 * none, none
+        definite, indefinite = 4.0 * definite, definite
     for _ in range(_TRIALS):
-        if some - none <= -0.1 * none:
+        if indefinite - definite <= -0.1 * definite:
             break
-        middle = 0.5 * (none + some)
-        none, some = (none, middle) if factor(middle) is None else (middle, some)
-    return none
+        middle = 0.5 * (definite + indefinite)
+        definite, indefinite = (definite, middle) if factor(middle) is None else (middle, indefinite)
+    return definite

@@ -30,7 +30,7 @@ import numpy as np
 from cprbm_scene.answer import Loss
 from fea_reference.advance import advance
 from fea_reference.contacts import zones_of
-from fea_reference.curvature import leaning
+from fea_reference.curvature import moment_mode
 from fea_reference.energy import penalised_energy, potential_energy
 from fea_reference.following import CriticalPoint
 from fea_reference.march import March
@@ -59,8 +59,8 @@ _SAME = 1e-3  # relative to the larger decrease: equally low senses; Newton's re
 _STRONGEST = 1e12
 
 
-def descended(
-    march: March, load: int, target: float, span: float, lost: CriticalPoint, beside: float = np.inf
+def descend(
+    march: March, load: int, target: float, span: float, critical: CriticalPoint, beside: float = np.inf
 ) -> float | None:
     """Descend from a critical point to a minimum; the dimensionless energy there, or None without a minimum.
 
@@ -69,56 +69,56 @@ def descended(
     saved = march.saved()
     # a contact opening under tight penalties may stay closed under loose ones; a minimum under loose penalties may be
     # none under tight ones
-    energy = _descended(march, load, target, span, lost, beside, loose=lost.loss is not Loss.CONTACT)
+    energy = _descend(march, load, target, span, critical, beside, loose=critical.loss is not Loss.CONTACT)
     if energy is None or march.curvature > 0.0:
         return energy
     march.restore(saved)
-    return _descended(march, load, target, span, lost, beside, loose=False)
+    return _descend(march, load, target, span, critical, beside, loose=False)
 
 
-def _descended(
-    march: March, load: int, target: float, span: float, lost: CriticalPoint, beside: float, *, loose: bool
+def _descend(
+    march: March, load: int, target: float, span: float, critical: CriticalPoint, beside: float, *, loose: bool
 ) -> float | None:
     """Energy after a descent with ``loose`` or with the current penalties; None without a minimum."""
-    beyond, left = _ASIDE if lost.loss is Loss.BIFURCATION else _BEYOND, target - lost.value
-    march.values[load] = lost.value + float(np.sign(left)) * min(beyond * span, abs(left))
+    beyond, remaining = _ASIDE if critical.loss is Loss.BIFURCATION else _BEYOND, target - critical.value
+    march.values[load] = critical.value + float(np.sign(remaining)) * min(beyond * span, abs(remaining))
     if loose:
         march.penalties = {pair: Penalty(pair.stiffness) for pair in march.penalties}
-    march.system = lost.system
+    march.system = critical.system
     march.reassemble()
-    least = 10.0 * abs(lost.left) + 1.0
-    way = leaning(march.model, lost.system, least) if lost.loss is Loss.BIFURCATION else lost.direction
+    least = 10.0 * abs(critical.left) + 1.0
+    way = moment_mode(march.model, critical.system, least) if critical.loss is Loss.BIFURCATION else critical.direction
     size = float(np.abs(way[march.model.moving]).max())
     if not size > 0.0:
         return None
-    known, end = dict(march.closing), lost.value * march.model.stepped[load].unit
+    known, end = dict(march.closing), critical.value * march.model.stepped[load].unit
     iterations, energy = march.iterations, penalised_energy(march.model, march.system, march.values)
     kicks, steps = (_KICKS[:1], _FEW) if np.isfinite(beside) else (_KICKS, _STEPS)
     for kick in kicks:
         ways: list[tuple[float, March, float]] = []
         for sense in (1.0, -1.0):
             trial = march.saved()
-            start = advance(march.model, lost.system.z, sense * kick / size * way)
+            start = advance(march.model, critical.system.z, sense * kick / size * way)
             drag = least
             while drag < _STRONGEST and not _step(trial, load, start, drag, start):
                 drag *= 10.0
             if drag < _STRONGEST:
                 ways.append((energy - penalised_energy(trial.model, trial.system, trial.values), trial, drag))
         most = max((fall for fall, *_ in ways), default=0.0)
-        for _, trial, drag in sorted(ways, key=lambda each: each[0] < most - _SAME * abs(most)):
-            if _fallen(trial, load, drag, lost.system.z, _ASTRAY * beside, steps):
+        for _, trial, drag in sorted(ways, key=lambda item: item[0] < most - _SAME * abs(most)):
+            if _reaches_minimum(trial, load, drag, critical.system.z, _ASTRAY * beside, steps):
                 march.iterations += trial.iterations - iterations
                 march.restore(trial)
                 march.tighten()
                 march.closing = dict.fromkeys(march.closing, end) | known
-                if march.largest_rotation(march.system, lost.system.z) > beside:
+                if march.largest_rotation(march.system, critical.system.z) > beside:
                     return None
                 return potential_energy(march.model, march.system, march.values)
     return None
 
 
-def _fallen(march: March, load: int, drag: float, first: State, farthest: float, steps: int) -> bool:
-    """Descend to a minimum within ``steps``, with a rotation from ``first`` up to ``farthest`` (rad); True on
+def _reaches_minimum(march: March, load: int, drag: float, first: State, farthest: float, steps: int) -> bool:
+    """Descend to a minimum within ``steps`` and a rotation ``farthest`` (rad) from the state ``first``; True on
     success.
     """
     march.reassemble()  # without the drag
@@ -133,7 +133,7 @@ def _fallen(march: March, load: int, drag: float, first: State, farthest: float,
         before, saved = march.system, march.saved()
         energy = penalised_energy(march.model, before, march.values)
         drag = max(drag, -convex * march.curvature)
-        if not _step(march, load, before.z, drag, before.z) or _risen(march, energy):
+        if not _step(march, load, before.z, drag, before.z) or _energy_increased(march, energy):
             march.restore(saved)
             soft = -march.curvature
             little = drag < _RAISED * _CONVEX * soft
@@ -148,20 +148,20 @@ def _fallen(march: March, load: int, drag: float, first: State, farthest: float,
             continue
         saved, energy = march.saved(), penalised_energy(march.model, march.system, march.values)
         at_rest = _step(march, load, march.system.z, 0.0, march.system.z)
-        if at_rest and not _risen(march, energy) and march.curvature > 0.0:
+        if at_rest and not _energy_increased(march, energy) and march.curvature > 0.0:
             return march.largest_rotation(march.system, first) <= farthest
         march.restore(saved)
     return False
 
 
-def _risen(march: March, energy: float) -> bool:
+def _energy_increased(march: March, energy: float) -> bool:
     """True if the energy exceeds ``energy``."""
     return penalised_energy(march.model, march.system, march.values) > energy + _ROUNDED * abs(energy)
 
 
 def _step(march: March, load: int, anchor: State, drag: float, start: State) -> bool:
     """A proximal step from ``anchor``, with Newton's method started at ``start``; True on success."""
-    held = Drag(anchor, drag * lumped_mass(march.model))
+    springs = Drag(anchor, drag * lumped_mass(march.model))
     settings = replace(march.settings, newton_limit=min(_SOON, march.settings.newton_limit))
     for _ in range(_CHANGES):
         solved = equilibrium(
@@ -173,12 +173,12 @@ def _step(march: March, load: int, anchor: State, drag: float, start: State) -> 
             march.acting,
             march.depths(),
             march.pushes(),
-            held if drag > 0.0 else None,
+            springs if drag > 0.0 else None,
         )
         march.iterations += solved.iterations
         if not solved.converged or march.largest_motion(solved.system, anchor) > _FARTHEST:
             return False
-        if not _changes(march, load, solved.system):
+        if not _change_contacts(march, load, solved.system):
             if march.passing_failure(anchor, solved.system, "") is not None:
                 return False
             march.system = solved.system
@@ -186,10 +186,10 @@ def _step(march: March, load: int, anchor: State, drag: float, start: State) -> 
     return False
 
 
-def _changes(march: March, load: int, system: System) -> bool:
+def _change_contacts(march: March, load: int, system: System) -> bool:
     """Close overlapping contacts and switch stops as needed; True if there was any change."""
     closing = [pair for pair in march.open if zones_of(march.model, pair, system.z).least < 0.0]
-    changing = [stop for stop in march.model.stops if march.room(stop, system) < 0.0]
+    changing = [stop for stop in march.model.stops if march.stop_margin(stop, system) < 0.0]
     for pair in closing:
         march.open.remove(pair)
         march.penalties[pair] = Penalty(pair.stiffness)

@@ -29,20 +29,20 @@ _POWERS = (0.25, 4.0)
 
 def taut_at(pulls: Sequence[tuple[float, float]]) -> float | None:
     """v_t from the last of pairs (v, F), in order, and two earlier pairs; None if the pairs do not determine v_t."""
-    told: list[tuple[float, float]] = []
+    samples: list[tuple[float, float]] = []
     for pull in reversed(pulls):
-        if pull[1] < (_MOST if not told else told[-1][1] / _GROWN):
-            told.append(pull)
-    if len(told) < 3:
+        if pull[1] < (_MOST if not samples else samples[-1][1] / _GROWN):
+            samples.append(pull)
+    if len(samples) < 3:
         return None
-    (v3, F3), (v2, F2), (v1, F1) = told[:3]
+    (v3, F3), (v2, F2), (v1, F1) = samples[:3]
     before, step = abs(v2 - v1), abs(v3 - v2)
     if not (F1 > 0.0 and (v2 - v1) * (v3 - v2) > 0.0):
         return None
-    asked = float(np.log(F2 / F1) / np.log(F3 / F2))
+    ratio = float(np.log(F2 / F1) / np.log(F3 / F2))
 
     def off(way: float) -> float:
-        return float(np.log1p(before / (way + step)) / np.log1p(step / way)) - asked
+        return float(np.log1p(before / (way + step)) / np.log1p(step / way)) - ratio
 
     low, high = _NEAR * step, _AFAR * step
     if not off(low) < 0.0 < off(high):

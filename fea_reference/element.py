@@ -106,7 +106,7 @@ def reference(
 
     # for a constant moment Δ = (−1, 1) is a rotation by ∫ ds/(EI)
     turning = flexibility[0, 0] - flexibility[0, 1] - flexibility[1, 0] + flexibility[1, 1]
-    stiff, rigid = (_section_rotation(D, m, one / turning) for one in (shear, 0.0 * shear))
+    stiff, rigid = (_section_rotation(D, m, compliance / turning) for compliance in (shear, 0.0 * shear))
     K = _inverse(flexibility + shear / L**2)
     stretch = np.divide(axial, shear, out=np.zeros_like(L), where=shear > 0.0)  # GA c_N
     slope = np.einsum("kn,akn,abn,bjn->jn", rotation, rigid, G, stiff)  # ∫ w⁰' ds = 0

@@ -26,9 +26,9 @@ _TURNS = 1.0  # rad: largest α
 _BESIDE = 2.0  # times T plus an element: ends farther apart do not interact
 
 
-def ends_through(pair: Pair, before: NeutralLine, after: NeutralLine) -> bool:
+def ends_pass_through(pair: Pair, before: NeutralLine, after: NeutralLine) -> bool:
     """True if one end of a beam in self-contact passes through the other between two states."""
-    if any(_across(pair, before, after, tip) for tip in (0, before.n)):
+    if any(_crosses_line_behind(pair, before, after, tip) for tip in (0, before.n)):
         return True
     if not pair.ended:
         return False  # a line's ends are points and never touch
@@ -40,7 +40,7 @@ def ends_through(pair: Pair, before: NeutralLine, after: NeutralLine) -> bool:
     return abs(v + share * way) < min(touching, abs(v), abs(there)) * float(np.cos(0.5 * _TURNS))
 
 
-def _across(pair: Pair, before: NeutralLine, after: NeutralLine, tip: int) -> bool:
+def _crosses_line_behind(pair: Pair, before: NeutralLine, after: NeutralLine, tip: int) -> bool:
     """True if the end at node ``tip``, next to the other end, crosses the line behind the other end."""
     other, n = before.n - tip, before.n
 

@@ -27,7 +27,7 @@ import numpy as np
 from cprbm_scene.answer import Array
 from fea_reference.circle import centre
 from fea_reference.edge import Edge
-from fea_reference.face import beside
+from fea_reference.face import edge_distances
 from fea_reference.hermite import NeutralLine
 from fea_reference.model import BeamPart, Model
 from fea_reference.recovery import bending_moment
@@ -47,14 +47,16 @@ def ends(model: Model, system: System, touch: Touch) -> Array:
     pressed = np.flatnonzero(force > _NOTHING * force.sum())
     begins, stops = zones.intervals[pressed].T
     outer = int(pressed[np.argmin(begins)]), int(pressed[np.argmax(stops)])
-    found = np.array([_continued(model, system, touch, at, way) for at, way in zip(outer, (-1.0, 1.0), strict=True)])
+    extrapolated = np.array(
+        [_continued(model, system, touch, at, way) for at, way in zip(outer, (-1.0, 1.0), strict=True)]
+    )
     moment = (weight * touch.zeta.reshape(weight.shape)).sum(axis=1)
     order = np.argsort(zones.intervals[:, 0])
     apart = zones.intervals[order[1:], 0] - zones.intervals[order[:-1], 1] > _READ[-1]
     number = np.append(0, np.cumsum(apart))[np.argsort(order)]
     middle = np.array([moment[number == number[at]].sum() / force[number == number[at]].sum() for at in outer])
-    points = np.array([1.0, -1.0]) * (found - middle) > 0.0
-    return np.where(points | (points[::-1] & (number[outer[0]] == number[outer[1]])), middle, found)
+    points = np.array([1.0, -1.0]) * (extrapolated - middle) > 0.0
+    return np.where(points | (points[::-1] & (number[outer[0]] == number[outer[1]])), middle, extrapolated)
 
 
 def _continued(model: Model, system: System, touch: Touch, at: int, outwards: float) -> float:
@@ -95,7 +97,7 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
         # where the surface lies along the circle, the neutral line leans by the angle with sine T' by arc length
         return np.asarray(turning * own + _level(pair.edge, line, zeta) / (pair.radius + pair.edge.at(zeta)))
     if isinstance(pair, Face):
-        near = beside(model, pair, system.z, zeta)
+        near = edge_distances(model, pair, system.z, zeta)
         turning = np.sign(tangent[0] * near.normal[1] - tangent[1] * near.normal[0])
         return None if near.corner.any() else np.asarray(turning * own + near.bend)
     other = model.beams[pair.second]
@@ -111,8 +113,8 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
     levels = [np.ones_like(zeta), np.ones_like(zeta)]
     if pair.tapers is not None:
         # as on a circle, with the lean of the other surface in addition
-        both = ((pair.tapers.first, line, zeta), (pair.tapers.second, line_m, zeta_m))
-        levels = [_level(*one) for one in both]
+        surfaces = ((pair.tapers.first, line, zeta), (pair.tapers.second, line_m, zeta_m))
+        levels = [_level(*surface) for surface in surfaces]
     apart = pair.apart(zeta, zeta_m)
     lying = across * levels[0] / (levels[1] - side * apart * across)
     if faced.fixed.any():  # around a corner of the surface

@@ -32,5 +32,5 @@ def potential_energy(model: Model, system: System, values: Array) -> float:
 
 def penalised_energy(model: Model, system: System, values: Array) -> float:
     """Potential energy including the energy of penalties, minimal in an equilibrium."""
-    stored = sum(0.5 * float((one.stiffness * one.gap**2).sum()) for one in system.touches)
+    stored = sum(0.5 * float((contact.stiffness * contact.gap**2).sum()) for contact in system.touches)
     return potential_energy(model, system, values) + stored

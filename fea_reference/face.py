@@ -49,14 +49,14 @@ from cprbm_scene.statement import EdgeContact, Scene
 from fea_reference import swept
 from fea_reference.edge import edge_of
 from fea_reference.element import layer
-from fea_reference.hermite import Around, Index, NeutralLine, along, plane, shapes, twice_along
+from fea_reference.hermite import Around, Index, NeutralLine, as_plane, projected_gradient, projected_hessian, shapes
 from fea_reference.model import BodyPart, Model, turned
 from fea_reference.outline import Near, Outline
-from fea_reference.own_pins import held_on
+from fea_reference.own_pins import ends_on_edge
 from fea_reference.state import Complex, State, summed
-from fea_reference.swept import Beside, gone_over
+from fea_reference.swept import ClosestPlaces, swept_over
 from fea_reference.touch import THINNEST, Face, Penalty, Touch, count_points_per_place, gauss
-from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, none
+from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, no_zones
 
 _SLENDER = 0.01  # lengths of the longest beam: substitute for the thickness of a beam in contact as a line
 _LAYERS = 32.0  # layers per beam length, for the first penalty
@@ -76,7 +76,7 @@ _PARTS = 4  # subdivision of an element for the crossing check
 
 def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
     """The scene's contacts of a beam with an edge; ``penetration`` as in the settings."""
-    found = []
+    contacts = []
     thinnest = _THINNEST * (_STANDARD / penetration) ** 0.25
     beams = [beam.name for beam in model.beams]
     bodies = [body.name for body in model.bodies]
@@ -90,11 +90,15 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
         edge = edge_of(beam.record, elements, units.length, thick=contact.thick)
         h = float(model.elements.length[beam.elements.start])
         width = max(h, 0.5 * beam.thickness, beam.length / _LAYERS)
-        outline, own = held_on(scene, contact, units.origin + units.length * model.bodies[body].centre, units.length)
+        outline, own = ends_on_edge(
+            scene, contact, units.origin + units.length * model.bodies[body].centre, units.length
+        )
         joints = own if outline.straight else {}
         sides = (layer(model.elements, e) for e in (beam.elements.start, beam.elements.stop - 1))
-        begins, stops = (one if which in joints else 0.0 for which, one in zip(("start", "end"), sides, strict=True))
-        found.append(
+        begins, stops = (
+            extent if which in joints else 0.0 for which, extent in zip(("start", "end"), sides, strict=True)
+        )
+        contacts.append(
             Face(
                 name,
                 first,
@@ -109,7 +113,7 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
                 beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
             )
         )
-    return tuple(found)
+    return tuple(contacts)
 
 
 def sharpness(outline: Outline) -> float:
@@ -118,7 +122,7 @@ def sharpness(outline: Outline) -> float:
     The overlap of a wedge goes with the cube of the sine of half its angle.
     """
     corners = outline.corners
-    before, behind = (one[:, corners.jutting] for one in corners.normals)
+    before, behind = (normals[:, corners.jutting] for normals in corners.normals)
     # half of the angle between both sides; their normals turn by the supplement
     sine = np.sqrt(np.maximum(0.5 * (1.0 + (before * behind).sum(axis=0)), 0.0))
     return float(np.clip((_BLUNT / max(float(sine.min(initial=1.0)), 1e-9)) ** 3, 1.0, _SHARPEST))
@@ -126,20 +130,20 @@ def sharpness(outline: Outline) -> float:
 
 def zones_of(model: Model, face: Face, z: State) -> Zones:
     """Zones of overlap of the beam with the edge in state ``z``."""
-    return model.leads.found(z, (face, 0.0), lambda: _Seen(model, face, z).zones())[0]
+    return model.leads.found(z, (face, 0.0), lambda: _View(model, face, z).zones())[0]
 
 
-def passed(model: Model, face: Face, before: State, after: State) -> bool:
+def passes_through(model: Model, face: Face, before: State, after: State) -> bool:
     """True if the beam passed through the edge on the straight way between two states.
 
     A point of the beam that crosses from the free side must overlap the edge afterwards.
     """
     chain = face.outline.chain
-    seen = [_Seen(model, face, z) for z in (before, after)]
-    even = np.arange(_PARTS * seen[0].line.n + 1) / _PARTS
-    old, new = (one.place(even) for one in seen)
-    found = face.outline.near(new)
-    inside = (found.distance < 0.0) & (found.distance > -face.outline.extent)
+    views = [_View(model, face, z) for z in (before, after)]
+    even = np.arange(_PARTS * views[0].line.n + 1) / _PARTS
+    old, new = (view.place(even) for view in views)
+    near = face.outline.near(new)
+    inside = (near.distance < 0.0) & (near.distance > -face.outline.extent)
     apart = ~np.isin(even, face.own)
     for a, b in zip(chain.T[:-1], chain.T[1:], strict=True):
         along = b - a
@@ -148,19 +152,19 @@ def passed(model: Model, face: Face, before: State, after: State) -> bool:
         way = new - old
         from_a, from_b = (way[0] * (at[1] - old[1]) - way[1] * (at[0] - old[0]) for at in (a, b))
         through = (old_side > 0.0) & (new_side < 0.0) & (from_a * from_b < 0.0) & apart & ~inside
-        if through.any() and not _slid_along(seen[0], seen[1], even[through], way[:, through]).all():
+        if through.any() and not _slid_along(views[0], views[1], even[through], way[:, through]).all():
             return True
-    return _gone_over_a_tip(face, *seen)
+    return _swept_over_tip(face, *views)
 
 
-def _slid_along(before: _Seen, after: _Seen, zeta: Array, way: Array) -> Flags:
+def _slid_along(before: _View, after: _View, zeta: Array, way: Array) -> Flags:
     """True for places ``zeta`` (k,) that slid along the beam over a pressing tip.
 
     ``way`` (2, k) are the paths of the places in the body frame. A tip that presses before and after has penetrated
     the beam: neighbouring places enter on one side and leave on the other.
     """
-    tips = [one.tips() for one in (before, after)]
-    there = [swept.beside(one.line, at) for one, (at, _) in zip((before, after), tips, strict=True)]
+    tips = [view.tips() for view in (before, after)]
+    there = [swept.closest_places(view.line, at) for view, (at, _) in zip((before, after), tips, strict=True)]
     pressed = there[0].found & before.pressed_at(there[0], tips[0][1])
     pressed &= there[1].found & after.pressed_at(there[1], tips[1][1])
     low, high = (choose(there[0].zeta, there[1].zeta) for choose in (np.minimum, np.maximum))
@@ -170,12 +174,12 @@ def _slid_along(before: _Seen, after: _Seen, zeta: Array, way: Array) -> Flags:
     return np.asarray((near & (across < _ALONG * np.abs(ahead)[:, None])).any(axis=1))
 
 
-def _gone_over_a_tip(face: Face, before: _Seen, after: _Seen) -> bool:
+def _swept_over_tip(face: Face, before: _View, after: _View) -> bool:
     """True if the beam passed over a tip between two samples and does not press on the tip any more."""
-    tips = [one.tips() for one in (before, after)]
+    tips = [view.tips() for view in (before, after)]
     if tips[0][0].size == 0:
         return False
-    first, last, over = gone_over((before.line, tips[0][0]), (after.line, tips[1][0]))
+    first, last, over = swept_over((before.line, tips[0][0]), (after.line, tips[1][0]))
     for end in face.own:
         over &= np.abs(first.zeta - end) > 1.0
     over &= last.seen_along(tips[1][1]) < 0.0
@@ -187,25 +191,25 @@ def _gone_over_a_tip(face: Face, before: _Seen, after: _Seen) -> bool:
 
 def tip_depth(model: Model, face: Face, z: State) -> float:
     """Largest depth of a pressing tip in the beam; on a slender tip a small overlap means a deep cut."""
-    seen = _Seen(model, face, z)
-    tips, out = seen.tips()
+    view = _View(model, face, z)
+    tips, out = view.tips()
     if tips.size == 0:
         return 0.0
-    there = swept.beside(seen.line, tips)
+    there = swept.closest_places(view.line, tips)
     depth = face.edge.at(there.zeta) - there.seen_along(out)
     deep = there.found & (depth > 0.0)
     for end in face.own:
         deep &= np.abs(there.zeta - end) > 1.0
     if not deep.any():
         return 0.0
-    return float(depth[deep & seen.pressed_at(there, out)].max(initial=0.0))
+    return float(depth[deep & view.pressed_at(there, out)].max(initial=0.0))
 
 
-def beside(model: Model, face: Face, z: State, zeta: Array) -> Near:
+def edge_distances(model: Model, face: Face, z: State, zeta: Array) -> Near:
     """Distance data of the edge at places ``zeta`` (k,) of the beam, with current normals."""
-    seen = _Seen(model, face, z)
-    near = face.outline.near(seen.place(zeta))
-    return Near(near.distance, seen.turned(near.normal), near.bend, near.corner)
+    view = _View(model, face, z)
+    near = face.outline.near(view.place(zeta))
+    return Near(near.distance, view.turned(near.normal), near.bend, near.corner)
 
 
 def corners_of(model: Model, face: Face, z: State) -> Complex:
@@ -218,10 +222,10 @@ def corners_of(model: Model, face: Face, z: State) -> Complex:
 def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State) -> Touch:
     """Contact energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[face.first], model.bodies[face.body]
-    seen = _Seen(model, face, z)
-    ahead, kinks = model.leads.found(z, (face, penalty.lead), lambda: seen.zones(penalty.lead))
+    view = _View(model, face, z)
+    ahead, kinks = model.leads.found(z, (face, penalty.lead), lambda: view.zones(penalty.lead))
     zones = replace(ahead, least=ahead.least + penalty.lead)
-    line = seen.line
+    line = view.line
 
     points, weights = gauss(quadrature)
     width = zones.intervals[:, 1] - zones.intervals[:, 0]
@@ -230,28 +234,28 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
     x = line.at(zeta)[0]
-    near = face.outline.near(seen.place(zeta))
-    n = seen.turned(near.normal)
+    near = face.outline.near(view.place(zeta))
+    n = view.turned(near.normal)
     tau = np.array([n[1], -n[0]])
-    r = x - seen.centre[:, None]
+    r = x - view.centre[:, None]
     # the contact force needs the unrounded gap; for the interval ends rounded points suffice
-    g = face.outline.kept(*seen.place_and_rest(zeta)) - face.edge.at(zeta) - penalty.lead
+    g = face.outline.kept(*view.place_and_rest(zeta)) - face.edge.at(zeta) - penalty.lead
 
     H = shapes(xi)
     moves = body.dofs is not None
-    g_q = seen.by(n, H, e, r, moves=moves)
-    p = seen.by(tau, H, e, r, moves=moves)
+    g_q = view.by(n, H, e, r, moves=moves)
+    p = view.by(tau, H, e, r, moves=moves)
     g_qq = near.bend * p[:, None] * p[None, :]
-    g_qq[:7, :7] += twice_along(n, H, line, e)
+    g_qq[:7, :7] += projected_hessian(n, H, line, e)
     if moves:
         across = np.array([-n[1], n[0]])  # across·w = −n·k × w
-        turning = np.concatenate([along(across, H, line, e), -across])
+        turning = np.concatenate([projected_gradient(across, H, line, e), -across])
         g_qq[:9, 9] += turning
         g_qq[9, :9] += turning
         g_qq[9, 9] -= (n * r).sum(axis=0)
 
     ends = np.isin(zones.intervals, [end for end in (0.0, float(line.n)) if end not in face.own])
-    bent = _bent(seen, zones, kinks, penalty, quadrature, moves=moves)
+    bent = _corner_terms(view, zones, kinks, penalty, quadrature, moves=moves)
     points_per_place = count_points_per_place(quadrature, e)
     weight = penalty.stiffness * ds
     return Touch(
@@ -273,8 +277,8 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     )
 
 
-def _bent(
-    seen: _Seen, zones: Zones, kinks: dict[float, np.int64], penalty: Penalty, quadrature: int, *, moves: bool
+def _corner_terms(
+    view: _View, zones: Zones, kinks: dict[float, np.int64], penalty: Penalty, quadrature: int, *, moves: bool
 ) -> Array | None:
     """Second-derivative terms (m, m, k) of the moving places at corners; None without corners."""
     bends = [(i, float(end)) for i, end in enumerate(zones.intervals[:, 1]) if float(end) in kinks]
@@ -285,26 +289,26 @@ def _bent(
     more = np.zeros((size, size, len(zones.intervals) * quadrature))
     for i, end in bends:
         # the element that contains the interval: at a node the next interval has the same term
-        e = np.array([min(int(zones.intervals[i].mean()), seen.line.n - 1)])
+        e = np.array([min(int(zones.intervals[i].mean()), view.line.n - 1)])
         xi = np.array([end]) - e
         corner = kinks[end]
-        normals = [side[:, corner] for side in seen.face.outline.corners.normals]
-        x, x1, _ = seen.line.at(np.array([end]))
-        steeper = [float((seen.turned(n[:, None])[:, 0] * x1[:, 0]).sum()) for n in normals]
+        normals = [side[:, corner] for side in view.face.outline.corners.normals]
+        x, x1, _ = view.line.at(np.array([end]))
+        steeper = [float((view.turned(n[:, None])[:, 0] * x1[:, 0]).sum()) for n in normals]
         # at a convex corner d is the larger of both distances behind the corner, else the smaller
-        first = int(np.argmin(steeper) if seen.face.outline.corners.jutting[corner] else np.argmax(steeper))
+        first = int(np.argmin(steeper) if view.face.outline.corners.jutting[corner] else np.argmax(steeper))
         before, behind = normals[first], normals[1 - first]
-        difference = seen.turned((before - behind)[:, None])
+        difference = view.turned((before - behind)[:, None])
         slope = steeper[first] - steeper[1 - first]
-        gap = float(seen.gap(np.array([end]))[0]) - penalty.lead
-        by = seen.by(difference, shapes(xi), e, x - seen.centre[:, None], moves=moves)[:, 0]
+        gap = float(view.gap(np.array([end]))[0]) - penalty.lead
+        by = view.by(difference, shapes(xi), e, x - view.centre[:, None], moves=moves)[:, 0]
         more[:, :, (i + 1) * quadrature - 1] = (
-            -penalty.stiffness * gap / slope * float(seen.line.lengths[e[0]]) * np.outer(by, by)
+            -penalty.stiffness * gap / slope * float(view.line.lengths[e[0]]) * np.outer(by, by)
         )
     return more
 
 
-class _Seen:
+class _View:
     """A beam in front of an edge: places in the frame of the edge's body."""
 
     def __init__(self, model: Model, face: Face, z: State) -> None:
@@ -321,13 +325,13 @@ class _Seen:
 
     def place(self, zeta: Array) -> Array:
         """Points y (2, k)."""
-        return plane(self._place(self.line.around(zeta)))
+        return as_plane(self._place(self.line.around(zeta)))
 
     def place_and_rest(self, zeta: Array) -> tuple[Array, Array]:
         """Points y (2, k) and their round-off."""
         there = self.line.around(zeta)
         value, error = summed(self.nodes[there.element], self.back * there.way)
-        return plane(value), plane(error + self.rests[there.element])
+        return as_plane(value), as_plane(error + self.rests[there.element])
 
     def _place(self, there: Around) -> Complex:
         """Points y (k,) as complex numbers."""
@@ -343,17 +347,17 @@ class _Seen:
 
     def by(self, v: Array, H: Array, e: Index, r: Array, *, moves: bool) -> Array:
         """Derivatives of v·δu (m, k) by the line's element, and by the body's three unknowns if it ``moves``."""
-        own = along(v, H, self.line, e)
+        own = projected_gradient(v, H, self.line, e)
         if not moves:
             return own
         return np.concatenate([own, -v, -(v[1] * r[0] - v[0] * r[1])[None]])
 
     def tips(self) -> tuple[Complex, Complex]:
         """Current positions of tips and mean directions of their contact force, (t,) both, as complex numbers."""
-        points, out = (one[0] + 1j * one[1] for one in self.face.outline.tips)
+        points, out = (vectors[0] + 1j * vectors[1] for vectors in self.face.outline.tips)
         return complex(*self.centre) + self.back.conjugate() * points, self.back.conjugate() * out
 
-    def pressed_at(self, there: Beside, out: Complex) -> Flags:
+    def pressed_at(self, there: ClosestPlaces, out: Complex) -> Flags:
         """True if the contact pushes the beam away from tips (t,), of current direction ``out``, within an element."""
         zones, _ = self.zones()
         pressed = np.zeros(out.size, dtype=bool)
@@ -392,9 +396,13 @@ class _Seen:
         for end in own:
             # a joint makes the gap zero there, with a random nearest point: continue the values beside
             here, beside = (0, 1) if end == 0.0 else (-1, -2)
-            there.g[here], there.slope[here], there.curvature[here] = 0.0, there.slope[beside], there.curvature[beside]
+            there.g[here], there.slope[here], there.curvature[here] = (
+                0.0,
+                there.slope[beside],
+                there.curvature[beside],
+            )
         if not there.found.any():
-            return none(float(np.abs(there.g).min())), {}
+            return no_zones(float(np.abs(there.g).min())), {}
         neighbours = there.found[:-1] & there.found[1:]
         if not there.found.all():
             keep = there.found
@@ -407,7 +415,7 @@ class _Seen:
     def _at(self, zeta: Array, none_m: Array) -> Gap:
         face = self.face
         there = self.line.around(zeta)
-        near = face.outline.near(plane(self._place(there)))
+        near = face.outline.near(as_plane(self._place(there)))
         # of a product with the rotated conjugate normal, the real part is n·v and the imaginary part −τ·v
         back = (near.normal[0] - 1j * near.normal[1]) * self.back
         ahead = back * there.ahead
@@ -433,7 +441,7 @@ class _Seen:
         start = even[apart[near].argmin(axis=1)]
         P = corners.points[:, near]
         across = (corners.halving, *corners.tangents)
-        t = np.concatenate([one[:, near] for one in across], axis=1)
+        t = np.concatenate([tangents[:, near] for tangents in across], axis=1)
         every, crosses = self._crossing(np.tile(P, len(across)), t, np.tile(start, len(across)))
         zeta, through = every[: near.size], crosses[: near.size]
         d = self.face.outline.near(self.place(zeta)).distance

@@ -21,29 +21,29 @@ FAR = 0.1  # lengths of the longest beam: gap without any contact
 _RUNS = 8  # discs per beam
 
 
-def least_apart(model: Model, what: Contact, z: State) -> float:
+def gap_lower_bound(model: Model, pair: Contact, z: State) -> float:
     """A lower bound of the gap in state ``z``; −∞ for self-contact."""
-    c, r = _discs(model, what.first, z)
-    match what:
+    c, r = _discs(model, pair.first, z)
+    match pair:
         case Pair(roles=None):
-            c_m, r_m = _discs(model, what.second, z)
-            return float((np.abs(c[:, None] - c_m) - r[:, None] - r_m).min()) - what.distance
+            c_m, r_m = _discs(model, pair.second, z)
+            return float((np.abs(c[:, None] - c_m) - r[:, None] - r_m).min()) - pair.distance
         case Pair():
             return -np.inf
         case Circle():
-            x, y = model.carried(model.bodies[what.body], np.array(what.arm), z)
-            return float((np.abs(c - complex(x, y)) - r).min()) - what.radius - what.edge.farthest
+            x, y = model.carried(model.bodies[pair.body], np.array(pair.arm), z)
+            return float((np.abs(c - complex(x, y)) - r).min()) - pair.radius - pair.edge.farthest
         case Face():
-            r = r + what.edge.farthest
-            y = _in_frame(model, model.bodies[what.body], c, z)
-            y_0, d_0 = model.distances.found(model.start, what, lambda: _distances(model, what, model.start))
+            r = r + pair.edge.farthest
+            y = _in_frame(model, model.bodies[pair.body], c, z)
+            y_0, d_0 = model.distances.found(model.start, pair, lambda: _distances(model, pair, model.start))
             apart = float((d_0 - np.abs(y - y_0) - r).min())
-            return apart if apart > FAR else float((_distance(what, y) - r).min())
+            return apart if apart > FAR else float((_distance(pair, y) - r).min())
 
 
-def kept_apart(model: Model, what: Rigid, gaps: tuple[float, float], before: State, after: State) -> bool:
+def cannot_touch(model: Model, pair: Rigid, gaps: tuple[float, float], before: State, after: State) -> bool:
     """True if a beam with these ``gaps`` in two states cannot have touched on the straight way in between."""
-    beam, body = model.beams[what.first], model.bodies[what.body]
+    beam, body = model.beams[pair.first], model.bodies[pair.body]
     dofs = model.node_dofs[:2, beam.nodes]
     moved = float(np.hypot(*(after.values[dofs] - before.values[dofs])).max())
     line = model.line(beam, before)

@@ -31,15 +31,15 @@ import numpy as np
 
 from cprbm_scene.answer import Array, Loss
 from fea_reference.advance import advance
-from fea_reference.branch import Branch, Place, onwards, place, sought
+from fea_reference.branch import Branch, Place, place, place_at, sign_change
 from fea_reference.curvature import Mode, softest
 from fea_reference.energy import potential_energy
 from fea_reference.march import March
 from fea_reference.mass import lumped_mass
-from fea_reference.off_a_corner import Stretch, cut_short, left_a_corner, slips
-from fea_reference.slipping import gone_past, left_to_go
-from fea_reference.system import System, assemble, stiffened
-from fea_reference.taut import Turn, beyond
+from fea_reference.off_a_corner import Segment, cut_short, find_slip, leaves_corner
+from fea_reference.slipping import distance_to_end, passed_end
+from fea_reference.system import System, assemble, with_stiffness_factor
+from fea_reference.taut import TurningPoint, continue_beyond
 from fea_reference.touch import Touch
 
 WEAKER = 0.6  # times the curvature under tight penalties: below, penalties are tightened again
@@ -115,14 +115,14 @@ def follow_branch(march: March, load: int, target: float, span: float) -> Critic
         march.restore(saved)
         march.tighten()
         critical = _follow(march, load, target, span, tight=True)
-    if isinstance(critical, Turn) and not beyond(march, critical, target):
+    if isinstance(critical, TurningPoint) and not continue_beyond(march, critical, target):
         march.restore(saved)
     return critical if isinstance(critical, CriticalPoint) else None
 
 
 def _follow(
     march: March, load: int, target: float, span: float, *, tight: bool
-) -> CriticalPoint | Turn | CutShort | None:
+) -> CriticalPoint | TurningPoint | CutShort | None:
     """Critical point, turning point, or None; stops where a zone is cut short that loose penalties widen."""
     march.update_sides()
     if march.loosened:
@@ -143,7 +143,7 @@ def _follow(
     first, least, steps_past_minimum, tight_curvature = here, here.curvature, 0, here.curvature
     length = _FIRST
     known, turn = (here.curvature, length), None
-    segments: list[Stretch] = []
+    segments: list[Segment] = []
     uncertain: tuple[CriticalPoint, March] | None = None
     for tried in range(_STEPS):
         if tried % _LOOK == 0 and tried > 0:
@@ -152,15 +152,15 @@ def _follow(
                 return turn
             known = here.curvature, length
         length = min(length, _MOST / max(float(np.abs(here.way[march.model.moving]).max()), _MOST))
-        there = onwards(branch, here, length)
+        there = place_at(branch, here, length)
         other_branch = there is not None and length > _SHARP and not _same_branch(branch, here, there, length)
-        if there is None or other_branch or left_a_corner(march.model, here.system, there.system):
+        if there is None or other_branch or leaves_corner(march.model, here.system, there.system):
             length *= 0.25
             if length < _LEAST:
-                segments = [*segments, Stretch(branch, here, 0.0)]
+                segments = [*segments, Segment(branch, here, 0.0)]
                 return _corner_slip(march, load, segments, here) or _restore_uncertain_end(march, uncertain) or turn
             continue
-        if any(gone_past(march.model, contact, here.system.z, there.system.z) for contact in here.system.touches):
+        if any(passed_end(march.model, contact, here.system.z, there.system.z) for contact in here.system.touches):
             critical = _end_slip(march, load, target, span)
             length *= 0.25
             if critical is not None or length < _LEAST:
@@ -183,7 +183,7 @@ def _follow(
             if not tight and cut_short(march.model, there.system):
                 return CutShort()
             critical = _critical_between(march, branch, first, here, there, length)
-            slipped = critical and _corner_slip(march, load, [*segments, Stretch(branch, here, length)], critical)
+            slipped = critical and _corner_slip(march, load, [*segments, Segment(branch, here, length)], critical)
             known_well = critical is not None and critical.uncertainty <= _WIDE * span
             if slipped is not None or (
                 critical is not None and known_well and (critical.value - target) * sense <= 0.0
@@ -215,12 +215,12 @@ def _follow(
             here, least, steps_past_minimum = restarted, min(least, restarted.curvature), 0
             continue
         if turn is None and here.rate * sense > 0.0 > there.rate * sense:
-            turn = Turn(branch, here, length)
+            turn = TurningPoint(branch, here, length)
         steps_past_minimum = steps_past_minimum + 1 if there.curvature > _GROWN * least else 0
         least = min(least, there.curvature)
         if steps_past_minimum >= _PAST:
             return turn
-        segments = [*segments[-_KEPT:], Stretch(branch, here, length)]
+        segments = [*segments[-_KEPT:], Segment(branch, here, length)]
         here, length = there, 1.5 * length
     return turn
 
@@ -236,18 +236,18 @@ def _restore_uncertain_end(march: March, uncertain: tuple[CriticalPoint, March] 
     return uncertain[0]
 
 
-def _corner_slip(march: March, load: int, segments: list[Stretch], end: CriticalPoint | Place) -> CriticalPoint | None:
+def _corner_slip(march: March, load: int, segments: list[Segment], end: CriticalPoint | Place) -> CriticalPoint | None:
     """Critical point where an end slips off a corner, after the ``segments``; None if no end does.
 
     Called where the branch is lost to the penalty before the slip, or cannot be continued.
     """
-    slip = slips(march.model, segments, end.system)
+    slip = find_slip(march.model, segments, end.system)
     if slip is None:
         return None
     march.values, march.system = segments[-1].branch.at(slip.place.value), slip.place.system
-    mode_without = softest(march.model, _without(march, slip.one))
+    mode_without = softest(march.model, _without(march, slip.contact))
     critical = _extrapolated_end(
-        march, load, slip.value - slip.place.value, Loss.SLIP, slip.one, slip.place.curvature, mode_without
+        march, load, slip.value - slip.place.value, Loss.SLIP, slip.contact, slip.place.curvature, mode_without
     )
     return replace(critical, uncertainty=float(abs(slip.value - end.value)))
 
@@ -273,12 +273,12 @@ def _distance(branch: Branch, here: Place, there: Place) -> float:
 
 def _next_change(march: March, branch: Branch, here: Place, length: float) -> Place | None:
     """Point just behind the first change of a contact or stop within ``length``."""
-    return sought(branch, here, length, lambda there: march.least_gap(there.system))
+    return sign_change(branch, here, length, lambda there: march.least_gap(there.system))
 
 
 def _apply_change(march: March, load: int, event: Place) -> CriticalPoint | None:
     """Close contacts and switch stops at ``event``; the critical point if an opening stop leaves an unstable state."""
-    changing = [stop for stop in march.model.stops if march.room(stop, event.system) < 0.0]
+    changing = [stop for stop in march.model.stops if march.stop_margin(stop, event.system) < 0.0]
     march.values[load], march.system = event.value, event.system
     march.close_touching(load)
     march.switch_stops(load, changing)
@@ -353,7 +353,7 @@ def _end_at_zero_force(march: March, load: int, contact: Touch, way: float, mode
 
     None if the state is unstable with a rigid contact, too.
     """
-    mode_with = softest(march.model, stiffened(march.model, march.system, contact, _RIGID))
+    mode_with = softest(march.model, with_stiffness_factor(march.model, march.system, contact, _RIGID))
     if not mode_with.curvature > 0.0:
         return None
     return _extrapolated_end(march, load, way, Loss.CONTACT, contact, mode_with.curvature, mode_without)
@@ -429,8 +429,8 @@ def _next_slip(march: March, load: int, ahead: float) -> tuple[Touch, float] | N
     moved_state = advance(march.model, march.system.z, step * march.rate(load))
     first_slip: tuple[Touch, float] | None = None
     for contact in march.system.touches:
-        here = left_to_go(march.model, contact, march.system.z)
-        there = None if here is None else left_to_go(march.model, contact, moved_state)
+        here = distance_to_end(march.model, contact, march.system.z)
+        there = None if here is None else distance_to_end(march.model, contact, moved_state)
         if here is None or there is None or not there < here:
             continue
         way = step * here / (here - there)
@@ -476,7 +476,7 @@ def _force_vanished(
     """True if the force of a contact has vanished, where the rigid contact would give the ``curvature``."""
     if contact.push < _NOTHING * initial_contact.push:
         return True
-    change = float(initial_contact.foreseen(first.way).sum()) - initial_contact.push
+    change = float(initial_contact.predicted_forces(first.way).sum()) - initial_contact.push
     soon = (
         change < 0.0
         and initial_contact.push * abs(first.rate) < -change * _SOON * branch.span
@@ -486,7 +486,8 @@ def _force_vanished(
         return False
     return (
         curvature
-        > _AS_HELD * softest(march.model, stiffened(march.model, first.system, initial_contact, _RIGID)).curvature
+        > _AS_HELD
+        * softest(march.model, with_stiffness_factor(march.model, first.system, initial_contact, _RIGID)).curvature
     )
 
 
@@ -495,7 +496,7 @@ def _next_vanishing(march: March, load: int, sense: float) -> tuple[Touch, float
     rate = march.rate(load)
     first_part: tuple[Touch, float] | None = None
     for part in (part for contact in march.system.touches if contact.closed for part in _parts(contact)):
-        change = float(part.foreseen(sense * rate).sum()) - part.push
+        change = float(part.predicted_forces(sense * rate).sum()) - part.push
         if change >= 0.0:
             continue
         way = float(-part.push / change)
@@ -507,7 +508,7 @@ def _next_vanishing(march: March, load: int, sense: float) -> tuple[Touch, float
 def _without(march: March, contact: Touch) -> System:
     """The current state without a contact, or without a zone of a contact."""
     if all(contact is not other for other in march.system.touches):
-        return stiffened(march.model, march.system, contact, 0.0)
+        return with_stiffness_factor(march.model, march.system, contact, 0.0)
     others = {pair: penalty for pair, penalty in march.penalties.items() if pair != contact.pair}
     return assemble(march.model, others, march.settings.quadrature, march.values, march.system.z, march.acting)
 
@@ -530,7 +531,7 @@ def _critical_between(
         above, below = weights[0] * before.curvature, weights[1] * behind.curvature
         share = min(max(above / (above - below), 0.02), 0.98)
         # near a singular tangent there may be no solution
-        tried = ((part, onwards(branch, here, s + part * (t - s))) for part in (share, 0.5 * share, 0.5 + 0.5 * share))
+        tried = ((part, place_at(branch, here, s + part * (t - s))) for part in (share, 0.5 * share, 0.5 + 0.5 * share))
         share, middle = next(
             ((part, place_found) for part, place_found in tried if place_found is not None), (share, None)
         )
@@ -550,12 +551,12 @@ def _critical_between(
     march.values, march.system = branch.at(before.value), before.system
     energy = potential_energy(march.model, march.system, march.values)
     for initial_contact, contact in _contact_parts_since(first.system, before.system):
-        curvature = softest(march.model, stiffened(march.model, before.system, contact, _RIGID)).curvature
+        curvature = softest(march.model, with_stiffness_factor(march.model, before.system, contact, _RIGID)).curvature
         if curvature > _HELD * first.curvature and _force_vanished(
             march, branch, first, initial_contact, contact, curvature
         ):
             # the other zones stay in contact
-            mode_without = softest(march.model, stiffened(march.model, before.system, contact, 0.0))
+            mode_without = softest(march.model, with_stiffness_factor(march.model, before.system, contact, 0.0))
             lets_go = Loss.CONTACT, contact.pair.name, curvature, mode_without.curvature
             return CriticalPoint(value, uncertainty, *lets_go, energy, before.system, mode_without.direction)
     mass = lumped_mass(march.model)

@@ -100,7 +100,7 @@ class NeutralLine:
     def at(self, zeta: Array) -> tuple[Array, Array, Array]:
         """Position, first and second derivative by ζ, (2, k) all."""
         there = self.around(zeta)
-        return plane(self.nodes[there.element] + there.way), plane(there.ahead), plane(there.bent)
+        return as_plane(self.nodes[there.element] + there.way), as_plane(there.ahead), as_plane(there.bent)
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,12 +120,12 @@ class Around:
         return Around(self.element, self.way + by * self.ahead, self.ahead + by * self.bent, self.bent)
 
 
-def plane(number: Complex) -> Array:
+def as_plane(number: Complex) -> Array:
     """x + i y as (2, k)."""
     return np.array([number.real, number.imag])
 
 
-def apart(first: NeutralLine, at: Around, second: NeutralLine, at_m: Around) -> Complex:
+def line_difference(first: NeutralLine, at: Around, second: NeutralLine, at_m: Around) -> Complex:
     """Vectors x + i y (k,) from places of the second line to places of the first, without cancellation."""
     e, e_m = at.element, at_m.element
     value, error = summed(first.nodes[e], -second.nodes[e_m])
@@ -133,7 +133,7 @@ def apart(first: NeutralLine, at: Around, second: NeutralLine, at_m: Around) -> 
     return np.asarray(nodes + (at.way - at_m.way))
 
 
-def by_chord(l: Array, L: Array, turned: Array) -> tuple[Array, Array, Array, Array, Array]:  # noqa: E741 - the chord's length
+def chord_speed_excess(l: Array, L: Array, turned: Array) -> tuple[Array, Array, Array, Array, Array]:  # noqa: E741 - the chord's length
     """Excess of the speed l (1 + t²/16) of a chord l that turns by t over the unstretched speed L (1 + t²/48).
 
     The excess (k,) and its derivatives by l, by t, by both, and twice by t.
@@ -166,7 +166,7 @@ def _turned_by(v: Array, H: Array, line: NeutralLine, e: Index) -> tuple[Complex
     return H[1] * (fixed * backs[e]), H[3] * (fixed * backs[e + 1])
 
 
-def along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
+def projected_gradient(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
     """Derivative (7, k) of v·x by (x₁, y₁, θ₁, x₂, y₂, θ₂, N) for constant vectors ``v`` (2, k)."""
     before, behind = _turned_by(v, H, line, e)
     ahead = before.real + behind.real
@@ -177,7 +177,7 @@ def along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
     )
 
 
-def twice_along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
+def projected_hessian(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
     """Second derivatives (7, 7, k) of v·x by the same unknowns, for constant vectors ``v`` (2, k).
 
     Only m (H₂ t₁ + H₄ t₂) is nonlinear, in θ₁, θ₂ and N.

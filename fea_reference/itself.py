@@ -37,9 +37,9 @@ from scipy.spatial import KDTree
 from cprbm_scene.answer import Array, Ints
 from fea_reference.edge import Edge
 from fea_reference.facing import Tapers, borders
-from fea_reference.hermite import NeutralLine, plane
+from fea_reference.hermite import NeutralLine, as_plane
 from fea_reference.neighbours import nearest
-from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Survey, gap, one_side, rounded, survey
+from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Survey, gap, gap_round_off, one_side, survey
 
 _ALIKE = 0.5  # share of the distance of two places along the beam: largest deviation from a pair of known side
 _FOLLOWS = 2.0  # elements: largest difference between partners of consecutive places
@@ -65,14 +65,12 @@ class Roles:
     side: Array = field(compare=False)
 
     def sides(self, zeta: Array, zeta_m: Array, d: Array) -> Array:
-        """Sides (k,) of places ``zeta`` (k,) against ``zeta_m`` (k,); the sign of ``d`` (k,) if no known pair is
-        near.
-        """
-        seen = np.where(d < 0.0, -1.0, 1.0)
+        """Sides (k,) of places ``zeta`` (k,) against ``zeta_m`` (k,), from known pairs or the sign of ``d`` (k,)."""
+        present = np.where(d < 0.0, -1.0, 1.0)
         if not self.side.size or not zeta.size:
-            return seen
+            return present
         far, which = nearest(zeta + 1j * zeta_m, self.across[:, 0] + 1j * self.across[:, 1])
-        return np.asarray(np.where(far <= _ALIKE * np.abs(zeta - zeta_m), self.side[which], seen))
+        return np.asarray(np.where(far <= _ALIKE * np.abs(zeta - zeta_m), self.side[which], present))
 
     def renewed(self, line: NeutralLine) -> Roles:
         """The roles with pairs and sides of the present ``line``, one per node and partner."""
@@ -85,12 +83,12 @@ class Roles:
         return Roles(self.later, self.ended, np.stack([zeta, zeta_m], axis=1), self.sides(zeta, zeta_m, d))
 
 
-def unseen(*, later: bool, ended: bool) -> Roles:
+def without_known_sides(*, later: bool, ended: bool) -> Roles:
     """Roles without known sides."""
     return Roles(later, ended, np.empty((0, 2)), np.empty(0))
 
 
-def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None) -> Survey:
+def survey_self(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None) -> Survey:
     """Self-contact gap survey, wherever the gap is below a few elements."""
 
     def at(where: Array, guess: Array) -> Gap:
@@ -108,7 +106,7 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None
     if not places.size:
         return Survey(at, places, there, np.empty(0, dtype=bool), (), reach - T)
     order, follows = _sequences(i, there.zeta_m)
-    return survey(at, places[order], there.chosen(order), follows, knots, floor=rounded(line, line, T))
+    return survey(at, places[order], there.chosen(order), follows, knots, floor=gap_round_off(line, line, T))
 
 
 def _elements_near(line: NeutralLine, x: Array, reach: float) -> tuple[Ints, Ints]:
@@ -118,7 +116,7 @@ def _elements_near(line: NeutralLine, x: Array, reach: float) -> tuple[Ints, Int
         pairs = np.concatenate([near["i"] * (line.n + 1) + near["j"], near["i"] * (line.n + 1) + near["j"] - 1])
         i, j = np.divmod(np.unique(pairs), line.n + 1)
         return i[j < line.n], j[j < line.n]
-    away_x, away_y = (np.subtract.outer(one, its) for one, its in zip(x, line.points, strict=True))
+    away_x, away_y = (np.subtract.outer(own, nodes) for own, nodes in zip(x, line.points, strict=True))
     near = away_x * away_x + away_y * away_y <= reach**2
     i, j = np.nonzero(near[:, :-1] | near[:, 1:])
     return i, j
@@ -167,9 +165,9 @@ def _samples(line: NeutralLine, tapers: Tapers | None, reach: float) -> Array:
     more = [even]
     sides = (1.0,) if tapers is None else (1.0, -1.0)
     rays = [borders(line, None if tapers is None else tapers.second, side) for side in sides]
-    for one, end in product(rays, (0, line.n)):
-        at = one.zeta == end
-        point, tangent = plane(one.points[at]), plane(one.w[at])
+    for border, end in product(rays, (0, line.n)):
+        at = border.zeta == end
+        point, tangent = as_plane(border.points[at]), as_plane(border.w[at])
         ahead = ((x - point) * tangent).sum(axis=0)
         near = np.hypot(*(x - point)) < reach
         left = np.flatnonzero(near[:-1] & near[1:] & (ahead[:-1] * ahead[1:] < 0.0))

@@ -10,7 +10,7 @@ K = TypeVar("K", bound=Hashable)
 V = TypeVar("V")
 
 
-class Known(Generic[K, V]):
+class Memory(Generic[K, V]):
     """Values by state and by a key of the function's other arguments."""
 
     def __init__(self) -> None:

@@ -82,8 +82,9 @@ class Chain:
         return every
 
     def hessian(self, local: Array, gradient: Array) -> Array:
-        """Second derivatives (M, M, k) by all unknowns, from ``local`` (m, m, k) and ``gradient`` (m, k) by the
-        lines' own.
+        """Second derivatives (M, M, k) by all unknowns from those by the lines' unknowns.
+
+        ``local`` (m, m, k) and ``gradient`` (m, k) are second and first derivatives by the lines' unknowns.
         """
         m, size = len(gradient), self.dofs.shape
         half = np.zeros((m, *size))
@@ -118,7 +119,7 @@ def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index
     shares = [(i, _LINE * i, e) for i, (_, e) in enumerate(lines)]
     leaning = [(i, line) for i, line in enumerate(lines) if elements.slip[:, line[0].part].any()]
     if not leaning:
-        return _upright(own, tuple(shares))
+        return _plain_chain(own, tuple(shares))
     size, k = len(own) + 12 * len(leaning), own.shape[1]
     rows, beside = [], [own]
     by, twice = np.zeros((2 * len(leaning), size, k)), np.zeros((2 * len(leaning), size, size, k))
@@ -128,7 +129,7 @@ def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index
         slip = shear(elements, span.part.start + near.ravel(), span.dofs[:, near.ravel()], z)
         slip_by, slip_twice = slip.by.reshape(6, 3, k), slip.by_twice.reshape(6, 6, 3, k)
         for tangent in (0, 1):
-            one = 2 * number + tangent
+            number_of_tangent = 2 * number + tangent
             rows.append(_LINE * i + _TANGENTS[tangent])
             neighbour = near[2 * tangent]
             share = np.where(neighbour == e, 0.0, 0.5)
@@ -138,26 +139,26 @@ def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index
             shares.append((i, row, neighbour))
             for begin, where, weight in ((_LINE * i, 1, own_share), (row, 2 * tangent, share)):
                 here = slice(begin, begin + 6)
-                by[one, here] = weight * slip_by[:, where]
-                twice[one, here, here] = weight * slip_twice[:, :, where]
+                by[number_of_tangent, here] = weight * slip_by[:, where]
+                twice[number_of_tangent, here, here] = weight * slip_twice[:, :, where]
     return Chain(np.concatenate(beside), tuple(rows), by, twice, tuple(shares))
 
 
 def own_chain(span: Span, e: Index) -> Chain:
     """Chain rule of elements (k,) of a beam with the sections' rotations as tangents."""
-    return _upright(span.dofs[:, e], ((0, 0, e),))
+    return _plain_chain(span.dofs[:, e], ((0, 0, e),))
 
 
 def sheared_chain(elements: Elements, span: Span, e: Index, z: State) -> Chain:
     """Chain rule of separate elements (k,) of a beam, tangent at both ends by their own shear angle."""
     own = span.dofs[:, e]
     if not elements.slip[:, span.part].any():
-        return _upright(own, ((0, 0, e),))
+        return _plain_chain(own, ((0, 0, e),))
     slip = shear(elements, span.part.start + e, own, z)
     by, twice = np.zeros(own.shape), np.zeros((_LINE, *own.shape))
     by[:6], twice[:6, :6] = slip.by, slip.by_twice
     return Chain(own, _TANGENTS, np.stack([by, by]), np.stack([twice, twice]), ((0, 0, e),))
 
 
-def _upright(own: Index, shares: tuple[tuple[int, int, Index], ...]) -> Chain:
+def _plain_chain(own: Index, shares: tuple[tuple[int, int, Index], ...]) -> Chain:
     return Chain(own, (), np.empty((0, *own.shape)), np.empty((0, len(own), *own.shape)), shares)

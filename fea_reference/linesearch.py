@@ -21,7 +21,7 @@ _OVERSHOT = 0.5  # times the initial slope: accepted slope at the end
 _TRIALS = 6
 
 
-def searched(after: Callable[[float], System], slope: Callable[[System], float], start: float) -> System:
+def line_search(after: Callable[[float], System], slope: Callable[[System], float], start: float) -> System:
     """System near the energy minimum along a step: at the full step unless this overshoots.
 
     Args:

@@ -15,37 +15,37 @@ from scipy.optimize import brentq
 from cprbm_scene.answer import Array, Critical, Ending, GoneOver
 from cprbm_scene.frozendict import frozendict
 from fea_reference.acting import Acting
-from fea_reference.advance import advance, bend, way_to
+from fea_reference.advance import advance, path_terms, step_between
 from fea_reference.carrying import at_ends
 from fea_reference.contact import least_at_ends
 from fea_reference.contacts import (
     CLOSED,
-    against,
-    clear,
     least_gap,
-    looked_at,
-    open_in,
+    motion_before_contact,
+    motion_before_overlap,
+    open_contact,
     passed_through,
+    relative_motion,
     resting_pressure,
-    room,
     touch,
+    with_current_sides,
     zones_of,
 )
-from fea_reference.curvature import positive, softest
+from fea_reference.curvature import all_positive, softest
 from fea_reference.face import tip_depth
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.off_a_corner import slipped_off
 from fea_reference.onward import PathTangent, path_tangent
-from fea_reference.poised import poised
+from fea_reference.poised import without_gap_round_off
 from fea_reference.settings import Settings
-from fea_reference.sinking import Depth, known_depths, sunk
-from fea_reference.slipping import gone_past
+from fea_reference.sinking import Depth, known_depths, with_predicted_depths
+from fea_reference.slipping import passed_end
 from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import LACKING, Circle, Contact, Face, Pair, Penalty, Rigid, Touch
-from fea_reference.yielding import FELT, POINT, ROUNDED, felt, in_points
+from fea_reference.yielding import POINT, ROUND_OFF_DEPTH, SIGNIFICANT, is_point_contact, penetration_effects
 
 # rad (and lengths): largest difference between equilibrium and prediction; a larger one means another branch
 _CORRECTED = 0.2
@@ -138,14 +138,17 @@ class March:
         critical: critical points passed on request.
         bypassed: critical points passed without request.
         iterations: Newton iterations since the last station.
-        zones_far: True if zones moved too far between the last stations for tight penalties; the next one starts with loose
+        zones_far: True if zones moved too far between the last stations for tight penalties; the next one starts with
+            loose
             ones.
         loosened: True if penalties were loosened after the last tightening.
         known_curvature: last system with a computed smallest curvature, and this curvature.
         last_step: the last step, if the branch continued along it.
-        previous_point: parameter number, value and curvature one step before, with tight penalties, while critical points
+        previous_point: parameter number, value and curvature one step before, with tight penalties, while critical
+            points
             count.
-        least_penalties: lower bounds of penalties up to the next station, by contact, above the bound from the penetration.
+        least_penalties: lower bounds of penalties up to the next station, by contact, above the bound from the
+            penetration.
     """
 
     model: Model
@@ -184,7 +187,7 @@ class March:
     def minimum(self) -> bool:
         """True if the smallest curvature is positive."""
         if self.known_curvature is None or self.known_curvature[0] is not self.system:
-            return positive(self.model, self.system)
+            return all_positive(self.model, self.system)
         return self.known_curvature[1] > 0.0
 
     @property
@@ -254,7 +257,7 @@ class March:
         return (
             solved.system
             if solved.converged
-            else self._without_pulling_contact(values, way_to(self.model, self.system.z, z))
+            else self._without_pulling_contact(values, step_between(self.model, self.system.z, z))
         )
 
     def _without_pulling_contact(self, values: Array, predicted: Array) -> System | None:
@@ -264,7 +267,9 @@ class March:
         contact is accepted if it has no overlap.
         """
         for contact in (
-            contact for contact in self.system.touches if contact.closed and contact.foreseen(predicted).sum() <= 0.0
+            contact
+            for contact in self.system.touches
+            if contact.closed and contact.predicted_forces(predicted).sum() <= 0.0
         ):
             remaining = {pair: penalty for pair, penalty in self.penalties.items() if pair is not contact.pair}
             solved = equilibrium(
@@ -304,7 +309,7 @@ class March:
                 f"beyond {self.described(load, start)} the nearest equilibrium is on another branch",
             )
         touched = self.least_gap(system) < 0.0
-        changing = [stop for stop in self.model.stops if self.room(stop, system) < 0.0]
+        changing = [stop for stop in self.model.stops if self.stop_margin(stop, system) < 0.0]
         if touched:
             known = {start: self.system, value: system}
             first_touch = self._first_touch(load, known)
@@ -344,9 +349,9 @@ class March:
         pairs = (pair for pair in self.open if isinstance(pair, Pair) and pair.roles is None)
         if not any(least_gap(self.model, pair, known[value].z) < -pair.scale for pair in pairs):
             return None
-        clear = [lam for lam in known if self.least_gap(known[lam]) >= 0.0]
-        last = min(clear, key=lambda lam: abs(lam - value), default=value)
-        sides_differ = [open_in(self.model, pair, known[last].z) for pair in self.open] != self.open
+        without_overlap = [lam for lam in known if self.least_gap(known[lam]) >= 0.0]
+        last = min(without_overlap, key=lambda lam: abs(lam - value), default=value)
+        sides_differ = [open_contact(self.model, pair, known[last].z) for pair in self.open] != self.open
         return last if sides_differ and last != value else None
 
     def _with_point_forces(
@@ -359,11 +364,11 @@ class March:
         model, quadrature, way = self.model, self.settings.quadrature, step * tangent.rate
         pressing = [contact for contact in self.system.touches if contact.push > 0.0]
         known = known_depths(self.system, {contact.pair: contact.penetration for contact in pressing}, self.pushes())
-        foreseen = {contact.pair: contact.foreseen(way) for contact in pressing}
+        predicted = {contact.pair: contact.predicted_forces(way) for contact in pressing}
         for pair, push in tangent.pushes.items():
             known[pair] = Depth(self.settings.penetration * pair.scale, push * step)
-            foreseen[pair] = np.array([push * step])
-        z = sunk(model, penalties, quadrature, tangent.system, z, foreseen, known)
+            predicted[pair] = np.array([push * step])
+        z = with_predicted_depths(model, penalties, quadrature, tangent.system, z, predicted, known)
         starting_contacts = (touch(model, pair, penalties[pair], quadrature, z) for pair in tangent.pushes)
         return z, {contact.pair: contact for contact in starting_contacts if contact.closed}
 
@@ -373,7 +378,7 @@ class March:
         Both states have the penalties of the step: motions due to a later tightening do not belong to the path.
         """
         by = float(self.values[load] - before.values[load])
-        second, third = bend(self.model, before.system.z, self.system.z, (rate, ahead), by)
+        second, third = path_terms(self.model, before.system.z, self.system.z, (rate, ahead), by)
         return LastStep(load, by, second, third, before.acting, frozenset(before.penalties))
 
     def stiffer(self, system: System) -> dict[Contact, Penalty]:
@@ -383,7 +388,9 @@ class March:
         """
         deep = {contact: self.penalties[contact].stiffness for contact in _too_deep(self.model, system)}
         wide = {
-            contact.pair for contact in system.touches if isinstance(contact.pair, Circle) and not in_points(contact)
+            contact.pair
+            for contact in system.touches
+            if isinstance(contact.pair, Circle) and not is_point_contact(contact)
         }
         limits = {contact: contact.stiffest if contact in wide else np.inf for contact in deep}
         return {
@@ -440,26 +447,26 @@ class March:
         for contact in self.system.touches:
             if slipped_off(self.model, contact, self.system.z, system.z):
                 return Ending.STEP_TOO_SMALL, f"{where} a beam's end slips off a corner in contact {contact.pair.name}"
-            if gone_past(self.model, contact, self.system.z, system.z):
+            if passed_end(self.model, contact, self.system.z, system.z):
                 return (
                     Ending.STEP_TOO_SMALL,
                     f"{where} a beam's end slips off the other beam in contact {contact.pair.name}",
                 )
         return None
 
-    def room(self, stop: StopPart, system: System) -> float:
+    def stop_margin(self, stop: StopPart, system: System) -> float:
         """Margin (rad) of an open stop to its limit, or dimensionless margin of a closed stop to its opening."""
         if not self.acting.stopping:
             return np.inf
         limit = self.acting.limits.get(stop.name)
         if limit is None:
-            return stop.room(system.z)[0] + _AT_LIMIT
+            return stop.margin(system.z)[0] + _AT_LIMIT
         # the largest force may be the stop's own, which vanishes where the stop opens
         return stop.press(system.z, limit) / max(1.0, system.scale) + _PULLS
 
     def switch_stops(self, load: int, changing: Iterable[StopPart]) -> None:
         """Close or open the stops among ``changing`` that have reached their margin."""
-        arrived = [stop for stop in changing if self.room(stop, self.system) <= _SWITCHED]
+        arrived = [stop for stop in changing if self.stop_margin(stop, self.system) <= _SWITCHED]
         for stop in arrived:
             self.switched[stop.name] = float(self.values[load])
             self.toggle_stop(stop, load, self.system)
@@ -471,7 +478,7 @@ class March:
         if stop.name in self.acting.limits:
             self.acting = self.acting.released(stop.name)
         else:
-            self.acting = self.acting.stopped(stop.name, stop.room(system.z)[1])
+            self.acting = self.acting.stopped(stop.name, stop.margin(system.z)[1])
             self.closing.setdefault(stop.known_as, self.value(load))
 
     def constrain(self, acting: Acting) -> None:
@@ -488,8 +495,8 @@ class March:
     def update_sides(self) -> None:
         """Update the sides of all open contacts, and the sides of self-contacts, from the current state."""
         model, z = self.model, self.system.z
-        self.open = [open_in(model, pair, z) for pair in self.open]
-        self.penalties = {looked_at(model, pair, z): penalty for pair, penalty in self.penalties.items()}
+        self.open = [open_contact(model, pair, z) for pair in self.open]
+        self.penalties = {with_current_sides(model, pair, z): penalty for pair, penalty in self.penalties.items()}
 
     def value(self, load: int) -> float:
         """Value of a stepped parameter in SI units."""
@@ -509,7 +516,7 @@ class March:
         deepest = least - _DEEPER * self._shortest_element if least < 0.0 else 0.0
         thick = min(pair.distance, pair.scale) if isinstance(pair, Pair) else 0.0
         parts = max(2, int(np.ceil(largest_motion / max(self._shortest_element, _THROUGH * thick))))
-        pace = against(self.model, pair, before, after) / parts
+        pace = relative_motion(self.model, pair, before, after) / parts
 
         def overlaps(first: int, last: int) -> bool:
             """Recursive bisection between two subdivision points; a gap larger than the motion excludes overlap."""
@@ -517,11 +524,11 @@ class March:
                 return False
             middle = (first + last) // 2
             state = State.of(before.values + middle / parts * way)
-            if room(self.model, pair, state) > pace * (last - middle):
+            if motion_before_contact(self.model, pair, state) > pace * (last - middle):
                 return False
             if zones_of(self.model, pair, state).least < deepest:
                 return True
-            if clear(self.model, pair, state) > pace * (last - middle):
+            if motion_before_overlap(self.model, pair, state) > pace * (last - middle):
                 return False
             return overlaps(first, middle) or overlaps(middle, last)
 
@@ -576,7 +583,7 @@ class March:
         (start, before), (end, after) = low, high
         rates = self.rate(load, before), self.rate(load, after)
         u = (value - end) / (end - start)
-        second, third = bend(self.model, before.z, after.z, rates, end - start)
+        second, third = path_terms(self.model, before.z, after.z, rates, end - start)
         return advance(self.model, after.z, (value - end) * rates[1] + u**2 * second + u**3 * third)
 
     def _close_tightly(self, load: int, way: float) -> None:
@@ -604,7 +611,7 @@ class March:
     def gaps(self, system: System) -> list[float]:
         """Gaps of all open contacts, then margins of all stops."""
         gaps = [least_gap(self.model, pair, system.z) for pair in self.open]
-        return [*gaps, *(self.room(stop, system) for stop in self.model.stops)]
+        return [*gaps, *(self.stop_margin(stop, system) for stop in self.model.stops)]
 
     def least_gap(self, system: System) -> float:
         """The least value of :meth:`gaps`."""
@@ -781,7 +788,9 @@ class March:
                     held_depths[contact.pair] = depths[contact.pair]
             pushes = self.pushes()
             known = known_depths(self.system, depths, pushes)
-            z = sunk(self.model, tighter, self.settings.quadrature, self.system, self.system.z, pushes, known)
+            z = with_predicted_depths(
+                self.model, tighter, self.settings.quadrature, self.system, self.system.z, pushes, known
+            )
             solved = equilibrium(self.model, self.settings, tighter, self.values, z, self.acting, held_depths, pushes)
             self.iterations += solved.iterations
             near = solved.converged and self.largest_motion(solved.system, self.system.z) <= _CORRECTED
@@ -834,7 +843,7 @@ class March:
             self.tighten()
             if self._close_what_overlaps(load):
                 continue
-            changing = [stop for stop in self.model.stops if self.room(stop, self.system) < 0.0]
+            changing = [stop for stop in self.model.stops if self.stop_margin(stop, self.system) < 0.0]
             if not changing:
                 return
             before, closing = self.acting, dict(self.closing)
@@ -883,7 +892,7 @@ class March:
         """Remove the round-off of gaps times a stiff penalty from the residual, if the forces exceed round-off."""
         accepted = self.settings.residual * self.system.scale
         if self.system.significant and float(np.abs(self.system.residual).max()) > accepted:
-            self.system = poised(self.model, self.values, self.system, accepted)
+            self.system = without_gap_round_off(self.model, self.values, self.system, accepted)
 
     def allowed(self) -> dict[Contact, float]:
         """Allowed penetration by contact, from the requested penetration or from the effect on other forces.
@@ -891,8 +900,8 @@ class March:
         For contacts with smooth rigid surfaces only the effect counts; a contact without an entry has no bound.
         """
         system, settings = self.system, self.settings
-        effects = felt(self.model, system, self.penalties, self.open, settings.quadrature)
-        felt_at_most = min(_FELT * settings.penetration, FELT)
+        effects = penetration_effects(self.model, system, self.penalties, self.open, settings.quadrature)
+        felt_at_most = min(_FELT * settings.penetration, SIGNIFICANT)
         depths: dict[Contact, float] = {}
         for contact in system.touches:
             if not contact.closed:
@@ -902,7 +911,7 @@ class March:
             )
             if (share := effects.get(contact.pair, 0.0)) > 0.0:
                 reduced_depth = contact.penetration * max(felt_at_most / share, 1.0 / _TIGHTEN)
-                depth = min(depth, max(reduced_depth, ROUNDED))
+                depth = min(depth, max(reduced_depth, ROUND_OFF_DEPTH))
             if np.isfinite(depth):
                 depths[contact.pair] = depth
         return depths
@@ -939,7 +948,7 @@ class March:
         return tries >= _POLISHINGS and enough and stiff
 
     def _penetration_exponents(self, system: System, tighter: Mapping[Contact, Penalty]) -> dict[Contact, float]:
-        """Exponents of the penetration, −Δln ε/Δln depth, between the current penalties and ``tighter`` ones of
+        """Exponents of the penetration, −Δln ε/Δln depth, from the current to the ``tighter`` penalties of
         ``system``.
         """
         before = {contact.pair: contact.penetration for contact in self.system.touches}

@@ -37,8 +37,8 @@ from cprbm_scene.statement import (
 from fea_reference.acting import Acting
 from fea_reference.curves import length, sample
 from fea_reference.element import ElementForces, Elements, Shear, forces, reference, shear, shear_angle
-from fea_reference.hermite import Index, NeutralLine, by_chord
-from fea_reference.known import Known
+from fea_reference.hermite import Index, NeutralLine, chord_speed_excess
+from fea_reference.known import Memory
 from fea_reference.leaning import Chain, Span, chain, own_chain, sheared_chain, tangent_angles
 from fea_reference.own_pins import own_pins
 from fea_reference.pattern import Patterns
@@ -47,7 +47,7 @@ from fea_reference.settings import Settings
 from fea_reference.state import Complex, State
 from fea_reference.stops import StopPart, stops_of
 from fea_reference.touch import Contact, Penalty, Touch
-from fea_reference.upright import upright
+from fea_reference.upright import shear_layers
 from fea_reference.zones import Survey, Zones
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # Gauss points per element: the neutral line is a cubic there
@@ -277,15 +277,17 @@ class Model:
     stiffest: float
     moving: Index
     patterns: Patterns = field(repr=False)
-    bends: Known[None, ElementForces] = field(default_factory=Known, repr=False)
-    lines: Known[str | tuple[str, bytes], NeutralLine] = field(default_factory=Known, repr=False)
-    discs: Known[str, tuple[Complex, Array]] = field(default_factory=Known, repr=False)
-    distances: Known[Contact, tuple[Complex, Array]] = field(default_factory=Known, repr=False)
-    surveys: Known[tuple[Contact, float], Survey] = field(default_factory=Known, repr=False)
-    overlaps: Known[Contact, Zones] = field(default_factory=Known, repr=False)
-    leads: Known[tuple[Contact, float], tuple[Zones, dict[float, np.int64]]] = field(default_factory=Known, repr=False)
-    touches: Known[tuple[Contact, Penalty, int, float | None], Touch] = field(default_factory=Known, repr=False)
-    loaded: Known[str, Array] = field(default_factory=Known, repr=False)
+    bends: Memory[None, ElementForces] = field(default_factory=Memory, repr=False)
+    lines: Memory[str | tuple[str, bytes], NeutralLine] = field(default_factory=Memory, repr=False)
+    discs: Memory[str, tuple[Complex, Array]] = field(default_factory=Memory, repr=False)
+    distances: Memory[Contact, tuple[Complex, Array]] = field(default_factory=Memory, repr=False)
+    surveys: Memory[tuple[Contact, float], Survey] = field(default_factory=Memory, repr=False)
+    overlaps: Memory[Contact, Zones] = field(default_factory=Memory, repr=False)
+    leads: Memory[tuple[Contact, float], tuple[Zones, dict[float, np.int64]]] = field(
+        default_factory=Memory, repr=False
+    )
+    touches: Memory[tuple[Contact, Penalty, int, float | None], Touch] = field(default_factory=Memory, repr=False)
+    loaded: Memory[str, Array] = field(default_factory=Memory, repr=False)
 
     @property
     def stepped(self) -> tuple[LoadPart | OnBeam | DrivePart | SharePart, ...]:
@@ -305,7 +307,7 @@ class Model:
 
     def free(self, joint: JointPart, acting: Acting) -> bool:
         """True if the joint is inactive because its end is not assembled yet."""
-        return acting.ways is None and any(one.joint is joint for one in self.apart)
+        return acting.ways is None and any(part.joint is joint for part in self.apart)
 
     def beam(self, name: str) -> BeamPart:
         """The beam of the given name."""
@@ -351,7 +353,7 @@ class Model:
         gamma = shear_angle(self.elements, beam.elements, self.element_dofs[:, beam.elements], z)[e]
         angles, lengths = z[dofs[2]] + np.repeat(gamma, 2), np.repeat(self.elements.length[beam.elements][e], 2)[:-1]
         dx, dy = z.difference(dofs[:2, 1:], dofs[:2, :-1])
-        more, *_ = by_chord(np.hypot(dx, dy), lengths, np.diff(angles))
+        more, *_ = chord_speed_excess(np.hypot(dx, dy), lengths, np.diff(angles))
         return NeutralLine.through(z[dofs[:2]], angles, lengths, z.rest[dofs[:2]], 1.0 / lengths, more)
 
     def chain_apart(self, beam: BeamPart, e: Index, z: State) -> Chain:
@@ -428,7 +430,7 @@ def build(scene: Scene, settings: Settings) -> Model:
         points.append((where - units.origin) / units.length)
         tangents.append(angle)
         cells.append(node + np.stack([np.arange(n), np.arange(1, n + 1)]))
-        compliances.append(compliance(beam, material, lengths[name], n, upright(scene, name)))
+        compliances.append(compliance(beam, material, lengths[name], n, shear_layers(scene, name)))
         t = beam.thickest / units.length
         nodes_here, elements_here = slice(node, node + n + 1), slice(cell, cell + n)
         beams.append(BeamPart(name, nodes_here, elements_here, own_length, t, beam, material, units.bending))
@@ -443,9 +445,11 @@ def build(scene: Scene, settings: Settings) -> Model:
         mesh,
         nodes,
         angles,
-        np.concatenate([one.bending for one in compliances], axis=2) * units.moment,
-        np.concatenate([one.axial for one in compliances]) * (stretches * units.force / units.length),
-        np.concatenate([one.shear for one in compliances]) * (shears * units.force / units.length),
+        np.concatenate([part_compliance.bending for part_compliance in compliances], axis=2) * units.moment,
+        np.concatenate([part_compliance.axial for part_compliance in compliances])
+        * (stretches * units.force / units.length),
+        np.concatenate([part_compliance.shear for part_compliance in compliances])
+        * (shears * units.force / units.length),
     )
     node_dofs = np.asarray(basis.nodal_dofs, dtype=np.int64)
     size = int(basis.N)
@@ -476,9 +480,12 @@ def build(scene: Scene, settings: Settings) -> Model:
 
     hinges: list[HingePart] = []
     for both in scene.pins.values():
-        one, other = (number[scene.body_of(point)] for point in both.points)
-        arms = [bodies[i].points[point] - bodies[i].centre for i, point in zip((one, other), both.points, strict=True)]
-        hinges.append(HingePart(both.points, (one, other), (arms[0], arms[1]), np.arange(size, size + 2)))
+        part_compliance, other = (number[scene.body_of(point)] for point in both.points)
+        arms = [
+            bodies[i].points[point] - bodies[i].centre
+            for i, point in zip((part_compliance, other), both.points, strict=True)
+        ]
+        hinges.append(HingePart(both.points, (part_compliance, other), (arms[0], arms[1]), np.arange(size, size + 2)))
         size += 2
 
     loads: list[LoadPart | OnBeam] = []

@@ -48,8 +48,8 @@ class _Runs:
         self.all = nodes
         self.length = int(np.sqrt(nodes.size))
         starts = np.arange(0, nodes.size, self.length)
-        self.low = [np.minimum.reduceat(one, starts) for one in (nodes.real, nodes.imag)]
-        self.high = [np.maximum.reduceat(one, starts) for one in (nodes.real, nodes.imag)]
+        self.low = [np.minimum.reduceat(coordinates, starts) for coordinates in (nodes.real, nodes.imag)]
+        self.high = [np.maximum.reduceat(coordinates, starts) for coordinates in (nodes.real, nodes.imag)]
 
     def apart(self, other: _Runs) -> Array:
         """Least distance between boxes, (runs, other runs)."""

@@ -24,10 +24,10 @@ from cprbm_scene.answer import Array
 from fea_reference.acting import Acting
 from fea_reference.advance import advance
 from fea_reference.hermite import Index
-from fea_reference.linesearch import searched
+from fea_reference.linesearch import line_search
 from fea_reference.model import Model
 from fea_reference.settings import Settings
-from fea_reference.sinking import known_depths, sunk
+from fea_reference.sinking import known_depths, with_predicted_depths
 from fea_reference.state import State
 from fea_reference.system import Drag, System, assemble
 from fea_reference.touch import Contact, Penalty, Touch
@@ -75,20 +75,22 @@ def equilibrium(
     correction, last, iteration, far = np.inf, np.inf, 0, 0
     longest = 0.0
     small: list[float] = []
-    foreseen = dict(before)
-    system = assemble(model, penalties, settings.quadrature, values, z, acting, {}, foreseen, drag)
-    held = {one.pair: depths[one.pair] for one in system.touches if _to_hold(one, depths, before)}
-    if held:
-        system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
+    predicted = dict(before)
+    system = assemble(model, penalties, settings.quadrature, values, z, acting, {}, predicted, drag)
+    held_depths = {
+        contact.pair: depths[contact.pair] for contact in system.touches if _needs_holding(contact, depths, before)
+    }
+    if held_depths:
+        system = assemble(model, penalties, settings.quadrature, values, z, acting, held_depths, predicted, drag)
     known = known_depths(system, depths, before)
 
     def settled_at(system: System, z: State) -> State:
-        return sunk(model, penalties, settings.quadrature, system, z, foreseen, known)
+        return with_predicted_depths(model, penalties, settings.quadrature, system, z, predicted, known)
 
     while True:
         unbalanced = float(np.abs(system.residual).max())
         accepted = max(settings.residual * system.scale, system.floor)
-        if not held and correction <= settings.correction and unbalanced <= accepted:
+        if not held_depths and correction <= settings.correction and unbalanced <= accepted:
             return Solved(system, converged=True, iterations=iteration)
         if iteration >= settings.newton_limit and not unbalanced <= _FALLING * last:
             return Solved(system, converged=False, iterations=iteration)
@@ -97,58 +99,68 @@ def equilibrium(
         if step is None:
             return Solved(system, converged=False, iterations=iteration + 1)
         correction = float(np.abs(step[moving]).max())
-        if not held and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING * accepted:
+        if not held_depths and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING * accepted:
             return Solved(system, converged=True, iterations=iteration)  # this step is not needed
         far += correction > _TURN
         longest = max(longest, correction)
         small = [*small[1 - _STALLED :], correction] if correction < _SMALL * min(1.0, longest) else []
-        stalled = not held and len(small) == _STALLED and min(small) > 0.5 * small[0]
+        stalled = not held_depths and len(small) == _STALLED and min(small) > 0.5 * small[0]
         if far >= _LOST or stalled:
             return Solved(system, converged=False, iterations=iteration + 1)
         step *= min(1.0, _TURN / max(correction, _TURN))
-        foreseen = {one.pair: one.foreseen(step) for one in system.touches}
-        if penalties and not held and unbalanced > accepted:
-            system = _along(model, settings, penalties, values, system, step, moving, foreseen, drag, settled_at)
+        predicted = {contact.pair: contact.predicted_forces(step) for contact in system.touches}
+        if penalties and not held_depths and unbalanced > accepted:
+            system = _line_searched(
+                model, settings, penalties, values, system, step, moving, predicted, drag, settled_at
+            )
             z = system.z
         else:
             z = settled_at(system, advance(model, z, step))
-            system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
+            system = assemble(model, penalties, settings.quadrature, values, z, acting, held_depths, predicted, drag)
         settled = iteration >= _HELD or correction < _SETTLED
-        lost = [one.pair for one in system.touches if _lost(one, depths, foreseen) and one.pair not in held]
-        if lost and not settled:
-            held = {**held, **{pair: depths[pair] for pair in lost}}
-            system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
-        free = [
-            one.pair
-            for one in system.touches
-            if one.pair in held
-            and (settled or _near(one, held[one.pair]) or (iteration > 0 and foreseen[one.pair].sum() < 0.0))
+        opened = [
+            contact.pair
+            for contact in system.touches
+            if _opened_unexpectedly(contact, depths, predicted) and contact.pair not in held_depths
         ]
-        if free:
-            held = {pair: depth for pair, depth in held.items() if pair not in free}
-            system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
+        if opened and not settled:
+            held_depths = {**held_depths, **{pair: depths[pair] for pair in opened}}
+            system = assemble(model, penalties, settings.quadrature, values, z, acting, held_depths, predicted, drag)
+        released = [
+            contact.pair
+            for contact in system.touches
+            if contact.pair in held_depths
+            and (
+                settled
+                or _near_depth(contact, held_depths[contact.pair])
+                or (iteration > 0 and predicted[contact.pair].sum() < 0.0)
+            )
+        ]
+        if released:
+            held_depths = {pair: depth for pair, depth in held_depths.items() if pair not in released}
+            system = assemble(model, penalties, settings.quadrature, values, z, acting, held_depths, predicted, drag)
         iteration += 1
 
 
-def _to_hold(one: Touch, depths: Mapping[Contact, float], before: Mapping[Contact, Array]) -> bool:
+def _needs_holding(contact: Touch, depths: Mapping[Contact, float], before: Mapping[Contact, Array]) -> bool:
     """True if a contact has to be held; a contact without force or overlap stays as it was."""
-    if one.pair not in depths or _near(one, depths[one.pair]):
+    if contact.pair not in depths or _near_depth(contact, depths[contact.pair]):
         return False
-    pressed = one.pair in before and float(before[one.pair].sum()) > 0.0
-    return pressed or one.penetration > _TOUCHING * one.pair.scale
+    pressed = contact.pair in before and float(before[contact.pair].sum()) > 0.0
+    return pressed or contact.penetration > _TOUCHING * contact.pair.scale
 
 
-def _lost(one: Touch, depths: Mapping[Contact, float], foreseen: Mapping[Contact, Array]) -> bool:
+def _opened_unexpectedly(contact: Touch, depths: Mapping[Contact, float], predicted: Mapping[Contact, Array]) -> bool:
     """True if a contact opened although its predicted force is positive."""
-    return one.pair in depths and not one.closed and float(foreseen[one.pair].sum()) > 0.0
+    return contact.pair in depths and not contact.closed and float(predicted[contact.pair].sum()) > 0.0
 
 
-def _near(one: Touch, depth: float) -> bool:
+def _near_depth(contact: Touch, depth: float) -> bool:
     """True if the penetration is within reach of Newton's method from ``depth``."""
-    return depth / _NEAR < one.penetration < _NEAR * depth
+    return depth / _NEAR < contact.penetration < _NEAR * depth
 
 
-def _along(
+def _line_searched(
     model: Model,
     settings: Settings,
     penalties: Mapping[Contact, Penalty],
@@ -156,7 +168,7 @@ def _along(
     system: System,
     step: Array,
     moving: Index,
-    foreseen: Mapping[Contact, Array],
+    predicted: Mapping[Contact, Array],
     drag: Drag | None,
     settled_at: Callable[[System, State], State],
 ) -> System:
@@ -169,9 +181,9 @@ def _along(
         z = advance(model, system.z, forces + fraction * motions)
         if fraction == 1.0:
             z = settled_at(system, z)
-        return assemble(model, penalties, settings.quadrature, values, z, system.acting, {}, foreseen, drag)
+        return assemble(model, penalties, settings.quadrature, values, z, system.acting, {}, predicted, drag)
 
     def slope(there: System) -> float:
         return float(motions @ there.residual)
 
-    return searched(after, slope, float(motions @ (system.residual + system.tangent @ forces)))
+    return line_search(after, slope, float(motions @ (system.residual + system.tangent @ forces)))

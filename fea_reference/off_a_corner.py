@@ -20,10 +20,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea_reference.advance import advance
-from fea_reference.branch import Branch, Place, onwards
+from fea_reference.branch import Branch, Place, place_at
 from fea_reference.face import corners_of
 from fea_reference.model import Model
-from fea_reference.slipping import along_line
+from fea_reference.slipping import arc_length_at
 from fea_reference.state import State
 from fea_reference.system import System
 from fea_reference.touch import Face, Touch
@@ -37,7 +37,7 @@ _DIFFERENCE = 1e-7  # arc length increment of finite differences
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class Segment:
     """A segment of a branch: its first point and its arc ``length``."""
 
     branch: Branch
@@ -47,122 +47,124 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class Slip:
-    """Slip of an end at ``value``, extrapolated from ``place``, where the contact ``one`` has a complete zone."""
+    """Slip of an end at ``value``, extrapolated from ``place``, where the ``contact`` has a complete zone."""
 
     value: float
-    one: Touch
+    contact: Touch
     place: Place
 
 
-def left_of_side(model: Model, one: Touch, z: State) -> float | None:
+def distance_to_end(model: Model, contact: Touch, z: State) -> float | None:
     """ℓ in state ``z``; None unless a single corner presses on the side within an element of an end."""
-    seen = _corner(model, one, z)
-    if seen is None or np.abs(one.zeta - seen[1]).max() > _NEAR:
+    corner_and_end = _corner(model, contact, z)
+    if corner_and_end is None or np.abs(contact.zeta - corner_and_end[1]).max() > _NEAR:
         return None
-    return _left(model, one, z, *seen)
+    return _distance(model, contact, z, *corner_and_end)
 
 
-def slipped_off(model: Model, one: Touch, before: State, after: State) -> bool:
+def slipped_off(model: Model, contact: Touch, before: State, after: State) -> bool:
     """True if a corner that presses on a side in state ``before`` lies beyond the end in ``after``."""
-    seen = _corner(model, one, before)
-    return seen is not None and _left(model, one, before, *seen) > 0.0 > _left(model, one, after, *seen)
+    corner_and_end = _corner(model, contact, before)
+    return corner_and_end is not None and _distance(model, contact, before, *corner_and_end) > 0.0 > _distance(
+        model, contact, after, *corner_and_end
+    )
 
 
-def left_a_corner(model: Model, before: System, after: System) -> bool:
+def leaves_corner(model: Model, before: System, after: System) -> bool:
     """True if a pressing corner came past an end of the side, and the end is not in contact with it."""
-    for one in before.touches:
-        if slipped_off(model, one, before.z, after.z):
-            now, seen = _named(after, one.pair.name), _corner(model, one, before.z)
+    for contact in before.touches:
+        if slipped_off(model, contact, before.z, after.z):
+            now, corner_and_end = _closed_contact(after, contact.pair.name), _corner(model, contact, before.z)
             there = None if now is None else _corner(model, now, after.z)
-            if seen is None or there is None or there[0] != seen[0]:
+            if corner_and_end is None or there is None or there[0] != corner_and_end[0]:
                 return True
     return False
 
 
 def cut_short(model: Model, system: System) -> bool:
     """True if a corner's zone beside an end is cut short, so that the penalty shifts the end of the branch."""
-    pressing = (one for one in system.touches if left_of_side(model, one, system.z) is not None)
-    return any(_cut_short(model, one, _BESIDE) for one in pressing)
+    pressing = (contact for contact in system.touches if distance_to_end(model, contact, system.z) is not None)
+    return any(_cut_short(model, contact, _BESIDE) for contact in pressing)
 
 
-def slips(model: Model, gone: Sequence[Stretch], end: System) -> Slip | None:
-    """The slip beyond the segments ``gone`` of a branch that penalties end early, at ``end``; None without a slip."""
+def find_slip(model: Model, segments: Sequence[Segment], end: System) -> Slip | None:
+    """The slip beyond the ``segments`` of a branch that penalties end early, at ``end``; None without a slip."""
     for last in end.touches:
-        if left_of_side(model, last, end.z) is None or not _cut_short(model, last, _BESIDE):
+        if distance_to_end(model, last, end.z) is None or not _cut_short(model, last, _BESIDE):
             continue
-        name, place = last.pair.name, gone[-1].begin
-        for stretch in reversed(gone):
-            before = _named(stretch.begin.system, name)
+        name, place = last.pair.name, segments[-1].begin
+        for stretch in reversed(segments):
+            before = _closed_contact(stretch.begin.system, name)
             if before is None or _corner(model, before, stretch.begin.system.z) is None:
                 break
             place = stretch.begin
             if not _cut_short(model, before):
-                place = _whole(model, name, stretch)
+                place = _last_complete(model, name, stretch)
                 break
-        return _foreseen(model, name, place)
+        return _extrapolated_slip(model, name, place)
     return None
 
 
-def _foreseen(model: Model, name: str, place: Place) -> Slip | None:
+def _extrapolated_slip(model: Model, name: str, place: Place) -> Slip | None:
     """The slip extrapolated from a ``place`` with a complete zone of the named contact; None if ℓ does not decrease."""
-    one, z = _named(place.system, name), place.system.z
-    seen = None if one is None else _corner(model, one, z)
-    if one is None or seen is None:
+    contact, z = _closed_contact(place.system, name), place.system.z
+    corner_and_end = None if contact is None else _corner(model, contact, z)
+    if contact is None or corner_and_end is None:
         return None
-    here = _left(model, one, z, *seen)
-    nearer = here - _left(model, one, advance(model, z, _DIFFERENCE * place.way), *seen)
+    here = _distance(model, contact, z, *corner_and_end)
+    nearer = here - _distance(model, contact, advance(model, z, _DIFFERENCE * place.way), *corner_and_end)
     if not nearer > 0.0:
         return None
-    return Slip(float(place.value + place.rate * _DIFFERENCE * here / nearer), one, place)
+    return Slip(float(place.value + place.rate * _DIFFERENCE * here / nearer), contact, place)
 
 
-def _whole(model: Model, name: str, stretch: Stretch) -> Place:
+def _last_complete(model: Model, name: str, stretch: Segment) -> Place:
     """The last point of a segment with a complete zone; the zone is complete at its beginning."""
-    found, low, high = stretch.begin, 0.0, stretch.length
+    complete, low, high = stretch.begin, 0.0, stretch.length
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        there = onwards(stretch.branch, stretch.begin, middle)
-        one = None if there is None else _named(there.system, name)
-        if there is None or one is None or not there.curvature > 0.0 or _cut_short(model, one):
+        there = place_at(stretch.branch, stretch.begin, middle)
+        contact = None if there is None else _closed_contact(there.system, name)
+        if there is None or contact is None or not there.curvature > 0.0 or _cut_short(model, contact):
             high = middle
         else:
-            low, found = middle, there
-    return found
+            low, complete = middle, there
+    return complete
 
 
-def _named(system: System, name: str) -> Touch | None:
+def _closed_contact(system: System, name: str) -> Touch | None:
     """The closed contact with this name; None if there is none."""
-    return next((one for one in system.touches if one.pair.name == name and one.closed), None)
+    return next((contact for contact in system.touches if contact.pair.name == name and contact.closed), None)
 
 
-def _cut_short(model: Model, one: Touch, within: float = 0.0) -> bool:
+def _cut_short(model: Model, contact: Touch, within: float = 0.0) -> bool:
     """True if a zone reaches an end of the beam, or comes as near as a share ``within`` of its length."""
-    elements = model.beams[one.pair.first].elements
-    first, last = float(one.zones.intervals.min()), float(one.zones.intervals.max())
+    elements = model.beams[contact.pair.first].elements
+    first, last = float(contact.zones.intervals.min()), float(contact.zones.intervals.max())
     return bool(min(first, elements.stop - elements.start - last) <= within * (last - first))
 
 
-def _corner(model: Model, one: Touch, z: State) -> tuple[int, int] | None:
+def _corner(model: Model, contact: Touch, z: State) -> tuple[int, int] | None:
     """Number of the only corner that presses on the beam, and the nearer end ζ; None without such a corner."""
-    face = one.pair
-    if not isinstance(face, Face) or not one.closed:
+    face = contact.pair
+    if not isinstance(face, Face) or not contact.closed:
         return None
     corners = corners_of(model, face, z)
     n = model.line(model.beams[face.first], z).n
-    end = 0 if 2.0 * float(np.median(one.zeta)) < n else n
+    end = 0 if 2.0 * float(np.median(contact.zeta)) < n else n
     if corners.size == 0 or end in face.own:
         return None
-    places = one.x_m[0] + 1j * one.x_m[1]
+    places = contact.x_m[0] + 1j * contact.x_m[1]
     number = int(np.argmin(np.abs(corners - places.mean())))
-    if np.abs(places - corners[number]).max() > _AT * one.penetration + _ROUNDED:
+    if np.abs(places - corners[number]).max() > _AT * contact.penetration + _ROUNDED:
         return None
     return number, end
 
 
-def _left(model: Model, one: Touch, z: State, number: int, end: int) -> float:
+def _distance(model: Model, contact: Touch, z: State, number: int, end: int) -> float:
     """ℓ of the given corner and end in state ``z``."""
-    face = one.pair
+    face = contact.pair
     assert isinstance(face, Face)
     P, line = corners_of(model, face, z)[number], model.line(model.beams[face.first], z)
-    s = along_line(line, np.array([[P.real], [P.imag]]), float(np.median(one.zeta)))
+    s = arc_length_at(line, np.array([[P.real], [P.imag]]), float(np.median(contact.zeta)))
     return s if end == 0 else float(line.lengths.sum()) - s

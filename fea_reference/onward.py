@@ -40,34 +40,37 @@ def path_tangent(
     model: Model, system: System, penalties: Mapping[Contact, Penalty], quadrature: int, rate: Array, sense: float
 ) -> PathTangent:
     """Path tangent in ``sense`` (±1) of λ with the new contacts; ``rate`` (size,) is the tangent without them."""
-    found = []
-    for one in system.touches:
-        if one.push > 0.0 or zones_of(model, one.pair, system.z).least > CLOSED * one.pair.scale:
+    new_contacts = []
+    for contact in system.touches:
+        if contact.push > 0.0 or zones_of(model, contact.pair, system.z).least > CLOSED * contact.pair.scale:
             continue
-        if isinstance(one.pair, Face) and one.pair.own:
+        if isinstance(contact.pair, Face) and contact.pair.own:
             continue  # beside an end jointed to the edge every place is near
-        near = Penalty(penalties[one.pair].stiffness, _LEAD * one.pair.scale)
-        there = touch(model, one.pair, near, quadrature, system.z)
+        near = Penalty(penalties[contact.pair].stiffness, _LEAD * contact.pair.scale)
+        there = touch(model, contact.pair, near, quadrature, system.z)
         gradient = np.zeros(model.size)
         if there.stiffness.any():
             np.add.at(gradient, there.dofs, there.mean)
             opened = system.solve(gradient)
             if opened is not None and sense * float(gradient @ rate) < 0.0:
-                found.append((there, gradient, opened))
-    while found:
-        C, moved = np.stack([one for _, one, _ in found], axis=1), np.stack([one for _, _, one in found], axis=1)
+                new_contacts.append((there, gradient, opened))
+    while new_contacts:
+        C, moved = (
+            np.stack([contact for _, contact, _ in new_contacts], axis=1),
+            np.stack([contact for _, _, contact in new_contacts], axis=1),
+        )
         G = C.T @ moved
         if not np.linalg.svd(G, compute_uv=False).min() > _NOTHING * np.abs(moved).max():
             break
         p = -np.linalg.solve(G, C.T @ rate)
         pushing = sense * p > 0.0
         if pushing.all():
-            touches = {each[0].pair: each[0] for each in found}
-            others = tuple(touches.get(one.pair, one) for one in system.touches)
+            touches = {item[0].pair: item[0] for item in new_contacts}
+            others = tuple(touches.get(contact.pair, contact) for contact in system.touches)
             return PathTangent(
                 rate + moved @ p,
                 {pair: float(push) for pair, push in zip(touches, p, strict=True)},
                 replace(system, touches=others),
             )
-        found = [each for each, pushes in zip(found, pushing, strict=True) if pushes]
+        new_contacts = [item for item, pushes in zip(new_contacts, pushing, strict=True) if pushes]
     return PathTangent(rate, {}, system)

@@ -198,8 +198,8 @@ class Broken:
         return np.asarray(np.where(near.corner, round_it, _across(self._normals.take(side, axis=1), y, rest, begins)))
 
     def _foot(self, y: Array) -> tuple[Ints, Array, Array]:
-        """Closest side (k,) of points (2, k), closest distance (k,) along the side, and the vector from
-        there (2, k).
+        """Closest side (k,) of points (2, k), distance (k,) along the side, and vector (2, k) from the
+        closest point.
         """
         tangents, first, low, high = self._sides
         begins, back = self._complex
@@ -243,15 +243,15 @@ class Broken:
     @cached_property
     def _back(self) -> Array:
         """Lengths (2,) of the backward sides at both ends of the edge."""
-        each = self._met_each_other
+        common = self._met_each_other
         tau, ends = -_left(self._tangents[:, [0, -1]]), self.points[:, [0, -1]]
         length = np.hypot(*np.diff(self.points, axis=1))
-        found = []
+        lengths = []
         for i in (0, 1):
             far, along = _crossing(ends[:, i], tau[:, i], self.points[:, :-1], self._tangents)
             meets = (far > _SAME) & (along >= 0.0) & (along <= length)
-            found.append(min(float(far[meets].min(initial=np.inf)), float(each[i])))
-        return np.array(found)
+            lengths.append(min(float(far[meets].min(initial=np.inf)), float(common[i])))
+        return np.array(lengths)
 
     @property
     def _met_each_other(self) -> Array:
@@ -396,7 +396,7 @@ class Graph:
     @cached_property
     def _falling(self) -> list[float]:
         """Coefficients of f, the highest first."""
-        return [float(one) for one in self.f.coef[::-1]]
+        return [float(coefficient) for coefficient in self.f.coef[::-1]]
 
     @property
     def _forwards(self) -> bool:

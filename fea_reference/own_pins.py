@@ -35,7 +35,7 @@ _OPEN = 1.5 * np.pi  # free angle beside an edge that ends at the pin
 _SAME = 1e-6  # beam lengths or units: tolerance of coinciding points in a scene
 
 
-def held_on(scene: Scene, contact: EdgeContact, origin: Array, unit: float) -> tuple[Outline, dict[Which, Array]]:
+def ends_on_edge(scene: Scene, contact: EdgeContact, origin: Array, unit: float) -> tuple[Outline, dict[Which, Array]]:
     """Outline of an edge, and the beam's ends held on it with their places (2,).
 
     Args:
@@ -45,7 +45,7 @@ def held_on(scene: Scene, contact: EdgeContact, origin: Array, unit: float) -> t
         unit: unit of length, m.
     """
     beam = scene.beams[contact.beam]
-    outline, held = outline_of(contact, origin, unit), dict[Which, Array]()
+    outline, ends_held = outline_of(contact, origin, unit), dict[Which, Array]()
     half = 0.5 * beam.thickness_at(np.array([0.0, 1.0])) / unit if contact.thick else np.zeros(2)
     ends: tuple[tuple[Which, BeamEnd], ...] = (("start", beam.start), ("end", beam.end))
     for (which, end), T in zip(ends, half, strict=True):
@@ -53,23 +53,23 @@ def held_on(scene: Scene, contact: EdgeContact, origin: Array, unit: float) -> t
             continue
         place = (np.array(scene.place_of(end.point)) - origin) / unit
         if abs(float(outline.near(place[:, None]).distance[0]) - T) <= _SAME:
-            held[which] = place
-    on_it = [] if contact.thick else list(held.values())
-    return outline_of(contact, origin, unit, on_it), held
+            ends_held[which] = place
+    on_it = [] if contact.thick else list(ends_held.values())
+    return outline_of(contact, origin, unit, on_it), ends_held
 
 
 def own_pins(
     scene: Scene, bodies: dict[str, tuple[int, Index | None]], ends: dict[tuple[str, str], tuple[int, float]], row: int
 ) -> tuple[StopPart, ...]:
     """Stops of pinned ends at contact edges; arguments as for :func:`fea_reference.stops.stops_of`."""
-    found: list[StopPart] = []
+    stops: list[StopPart] = []
     for name, contact in scene.contacts.items():
         if not isinstance(contact, EdgeContact):
             continue
         beam = scene.beams[contact.beam]
-        outline, held = held_on(scene, contact, *own_frame(beam))
+        outline, ends_held = ends_on_edge(scene, contact, *beam_frame(beam))
         number, dofs = bodies[contact.body]
-        for which, place in held.items():
+        for which, place in ends_held.items():
             end = beam.start if which == "start" else beam.end
             if not isinstance(end, PinnedEnd):
                 continue
@@ -79,23 +79,23 @@ def own_pins(
             limits: tuple[float | None, float | None]
             if ahead is not None:
                 widest = None if back is None else float(np.remainder(_angle(back) - _angle(ahead), 2.0 * np.pi))
-                angle = _about(along - _angle(ahead), 0.5 * (_OPEN if widest is None else widest))
+                angle = _angle_near(along - _angle(ahead), 0.5 * (_OPEN if widest is None else widest))
                 limits = 0.0, widest
             elif back is not None:
-                angle, limits = _about(along - _angle(back), -0.5 * _OPEN), (None, 0.0)
+                angle, limits = _angle_near(along - _angle(back), -0.5 * _OPEN), (None, 0.0)
             else:
                 continue
             least, most = limits
             beyond = max(0.0, 0.0 if least is None else least - angle, 0.0 if most is None else angle - most)
             phi = None if dofs is None else int(dofs[2])
-            found.append(
+            stops.append(
                 StopPart(
                     f"{name}.{which}",
                     end.point,
                     number,
                     theta,
                     phi,
-                    row + len(found),
+                    row + len(stops),
                     angle - drawn,
                     least,
                     most,
@@ -104,10 +104,10 @@ def own_pins(
                     beyond,
                 )
             )
-    return tuple(found)
+    return tuple(stops)
 
 
-def own_frame(beam: Beam) -> tuple[Array, float]:
+def beam_frame(beam: Beam) -> tuple[Array, float]:
     """Origin (2,) and unit (m) of a beam's own frame, independent of the scene's units."""
     start = np.array(beam.curve.start)
     return start, float(max(np.hypot(*(np.array(beam.curve.end) - start)), beam.thickest))
@@ -120,13 +120,13 @@ def _moves_with(scene: Scene, point: str, body: str) -> bool:
         if point in pin.points:
             points.update(pin.points)
     frame = frame_of(scene, body)
-    return any(frame_of(scene, scene.body_of(each)) == frame for each in points)
+    return any(frame_of(scene, scene.body_of(name)) == frame for name in points)
 
 
 def _angle(vector: Array) -> float:
     return float(np.arctan2(vector[1], vector[0]))
 
 
-def _about(angle: float, middle: float) -> float:
+def _angle_near(angle: float, middle: float) -> float:
     """The angle within π of ``middle``."""
     return middle + math.remainder(angle - middle, 2.0 * np.pi)

@@ -60,15 +60,15 @@ class Single:
 
 @dataclass(frozen=True, slots=True)
 class _Pattern:
-    """Position ``place`` (k,) of every entry among the data of the matrix ``found``."""
+    """Position ``place`` (k,) of every entry among the data of the matrix ``template``."""
 
     place: Index
-    found: csc_matrix
+    template: csc_matrix
 
     def filled(self, values: Array) -> csc_matrix:
         """The matrix with other values (k,)."""
-        matrix = copy(self.found)  # shares the sorted structure
-        matrix.data = np.bincount(self.place, values, self.found.nnz)
+        matrix = copy(self.template)  # shares the sorted structure
+        matrix.data = np.bincount(self.place, values, self.template.nnz)
         return matrix
 
 
@@ -87,16 +87,16 @@ class Patterns:
         if known is not None:
             return known.filled(values)
         rows, columns = (np.concatenate([getattr(block, of) for block in blocks]) for of in ("rows", "columns"))
-        found = csc_matrix((values, (rows, columns)), (self._size, self._size))
+        assembled = csc_matrix((values, (rows, columns)), (self._size, self._size))
         if len(self._known) >= _KNOWN:
             self._known.clear()
         # a pattern is kept from its second use on
-        self._known[key] = _pattern(found, rows, columns) if key in self._known else None
-        return found
+        self._known[key] = _pattern(assembled, rows, columns) if key in self._known else None
+        return assembled
 
 
-def _pattern(found: csc_matrix, rows: Index, columns: Index) -> _Pattern:
+def _pattern(matrix: csc_matrix, rows: Index, columns: Index) -> _Pattern:
     """Pattern of entries at ``rows`` and ``columns`` (k,) in their assembled matrix."""
-    size = found.shape[0]
-    standing = np.repeat(np.arange(size), np.diff(found.indptr)) * size + found.indices
-    return _Pattern(np.searchsorted(standing, columns * size + rows), found)
+    size = matrix.shape[0]
+    standing = np.repeat(np.arange(size), np.diff(matrix.indptr)) * size + matrix.indices
+    return _Pattern(np.searchsorted(standing, columns * size + rows), matrix)

@@ -17,28 +17,28 @@ import numpy as np
 from cprbm_scene.answer import Array
 from fea_reference.advance import advance
 from fea_reference.model import Model
-from fea_reference.system import System, pushed
+from fea_reference.system import System, with_point_forces
 
 _STEPS = 4
 _FAR = 1e-9  # relative to the longest beam, or rad: states as near as this have the same contacts
 _BETTER = 0.1  # times the initial residual
 
 
-def poised(model: Model, values: Array, system: System, accepted: float) -> System:
+def without_gap_round_off(model: Model, values: Array, system: System, accepted: float) -> System:
     """Equilibrium under ``values`` near ``system``, with a residual of at most ``accepted``.
 
     Without success ``system`` is returned, or the last state if its residual is much smaller.
     """
-    found, z = system, system.z
-    pushes = {one.pair: one.pushes for one in system.touches}
+    corrected, z = system, system.z
+    pushes = {contact.pair: contact.pushes for contact in system.touches}
     for _ in range(_STEPS):
-        step = found.solve(-found.residual)
+        step = corrected.solve(-corrected.residual)
         if step is None or not float(np.abs(step[model.moving]).max()) <= _FAR:
             return system
-        pushes = {one.pair: one.foreseen(step) for one in found.touches}
+        pushes = {contact.pair: contact.predicted_forces(step) for contact in corrected.touches}
         z = advance(model, z, step)
-        found = pushed(model, system, values, z, pushes)
-        if float(np.abs(found.residual).max()) <= accepted:
-            return found
-    better = float(np.abs(found.residual).max()) <= _BETTER * float(np.abs(system.residual).max())
-    return found if better else system
+        corrected = with_point_forces(model, system, values, z, pushes)
+        if float(np.abs(corrected.residual).max()) <= accepted:
+            return corrected
+    better = float(np.abs(corrected.residual).max()) <= _BETTER * float(np.abs(system.residual).max())
+    return corrected if better else system

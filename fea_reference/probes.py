@@ -10,7 +10,7 @@ from fea_reference.march import March
 from fea_reference.model import Model
 from fea_reference.recovery import bending_moment, normal_force
 from fea_reference.stops import StopPart, acting_stops
-from fea_reference.supports import grounded, held, support
+from fea_reference.supports import ground_reaction, joint_reaction, row_reaction
 from fea_reference.touch import Pair, Touch
 
 _NOTHING = 1e-9  # of the largest force
@@ -59,8 +59,8 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
             touch = _touch(march, probe.of)
             return frozen_array([] if touch is None else _centre(march, touch) * units.length)
         case "ends":
-            touch, held = _touch(march, probe.of), _holding_ends(march, probe.of)
-            places = [*held, *([] if touch is None else _ends(march, touch))]
+            touch, pinned_ends = _touch(march, probe.of), _holding_ends(march, probe.of)
+            places = [*pinned_ends, *([] if touch is None else _ends(march, touch))]
             return frozen_array(np.array([min(places), max(places)]) * units.length if places else [])
 
 
@@ -78,19 +78,21 @@ def shapes(march: March) -> dict[str, Shape]:
 def touching(march: March) -> dict[str, Array]:
     """Midpoints between the surfaces at the Gauss points of closed contacts, (k, 2) in metres."""
     model, places = march.model, {}
-    for one in march.system.touches:
-        if one.closed:
-            if isinstance(one.pair, Pair):
+    for contact in march.system.touches:
+        if contact.closed:
+            if isinstance(contact.pair, Pair):
                 # from a neutral line to its own surface; lines have none
-                own, other = (model.beams[i].thickness for i in (one.pair.first, one.pair.second))
-                to_surfaces = np.asarray(one.pair.distance / (own + other) * (other - own))
-                if one.pair.tapers is not None:
-                    to_surfaces = one.pair.tapers.second.at(one.zeta_m) - one.pair.tapers.first.at(one.zeta)
+                own, other = (model.beams[i].thickness for i in (contact.pair.first, contact.pair.second))
+                to_surfaces = np.asarray(contact.pair.distance / (own + other) * (other - own))
+                if contact.pair.tapers is not None:
+                    to_surfaces = contact.pair.tapers.second.at(contact.zeta_m) - contact.pair.tapers.first.at(
+                        contact.zeta
+                    )
             else:
                 # points of a rigid body are on its surface already
-                to_surfaces = -one.pair.edge.at(one.zeta)
-            middle = 0.5 * (one.x + one.x_m + to_surfaces * one.normal)
-            places[one.pair.name] = frozen_array((middle * model.units.length + model.units.origin[:, None]).T)
+                to_surfaces = -contact.pair.edge.at(contact.zeta)
+            middle = 0.5 * (contact.x + contact.x_m + to_surfaces * contact.normal)
+            places[contact.pair.name] = frozen_array((middle * model.units.length + model.units.origin[:, None]).T)
     return places
 
 
@@ -103,21 +105,21 @@ def _moment(march: March, name: str) -> float:
     model, z = march.model, march.system.z
     stops = [stop for stop in model.stops if stop.known_as == name]
     moment = sum(stop.moment(z) for stop in stops)
-    for one in march.system.touches:
-        if one.pair.name == name and stops:
+    for contact in march.system.touches:
+        if contact.pair.name == name and stops:
             pin = model.line(model.beam(stops[0].end[0]), z).points[:, 0 if stops[0].end[1] == "start" else -1]
-            arm = one.x - pin[:, None]
-            moment += float((arm[0] * one.force[1] - arm[1] * one.force[0]).sum())
+            arm = contact.x - pin[:, None]
+            moment += float((arm[0] * contact.force[1] - arm[1] * contact.force[0]).sum())
     return moment
 
 
 def _holding_ends(march: March, name: str) -> list[float]:
     """Arc lengths of the pinned ends that the named contact holds by a moment."""
-    model, found = march.model, []
+    model, ends_held = march.model, []
     for stop, _ in acting_stops(model.stops, march.acting):
         if stop.owner == name:
-            found.append(0.0 if stop.end[1] == "start" else model.beam(stop.end[0]).length)
-    return found
+            ends_held.append(0.0 if stop.end[1] == "start" else model.beam(stop.end[0]).length)
+    return ends_held
 
 
 def _holding(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]:
@@ -128,13 +130,13 @@ def _holding(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]
     model, z = march.model, march.system.z
     turning = {key for key, body in scene.bodies.items() if isinstance(body, TurningBody) and body.about == name}
     joints = [joint for joint in model.joints if model.bodies[joint.body].dofs is None]
-    hinges = [found for hinge in model.hinges if (found := grounded(model, hinge, z)) is not None]
+    hinges = [reaction for hinge in model.hinges if (reaction := ground_reaction(model, hinge, z)) is not None]
     return [
-        *(support(joint, z) for joint in joints if joint.point == name),
+        *(joint_reaction(joint, z) for joint in joints if joint.point == name),
         *((force, 0.0) for point, force in hinges if point == name),
-        *(held(part, z) for part in model.guides if part.name in turning or part.name == name),
+        *(row_reaction(part, z) for part in model.guides if part.name in turning or part.name == name),
         *((np.zeros(2), stop.moment(z)) for stop in model.stops if stop.phi is None and stop.point == name),
-        *(held(part, z) for part in model.drives if _driven(scene, part.name) == name),
+        *(row_reaction(part, z) for part in model.drives if _driven(scene, part.name) == name),
     ]
 
 
@@ -146,9 +148,13 @@ def _driven(scene: Scene, drive: str) -> str:
 
 def _touch(march: March, name: str) -> Touch | None:
     """The closed contact of this name; None if open, or if its force is round-off."""
-    for one in march.system.touches:
-        if one.pair.name == name and one.closed and np.hypot(*one.force).sum() > _NOTHING * march.system.scale:
-            return one
+    for contact in march.system.touches:
+        if (
+            contact.pair.name == name
+            and contact.closed
+            and np.hypot(*contact.force).sum() > _NOTHING * march.system.scale
+        ):
+            return contact
     return None
 
 

@@ -34,7 +34,7 @@ _ROUNDED = 1e-9  # relative to the energies: Newton's residual and an edge's cor
 _NOTHING = 1e-13  # energy of an unloaded mechanism: no branch ends there
 
 
-def released(
+def releases_energy(
     model: Model, load: int, acting: Acting, ends: tuple[tuple[System, Array, Array], tuple[System, Array, Array]]
 ) -> bool:
     """True if a step's second end has less energy than the branch from the first end leads to.

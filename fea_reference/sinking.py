@@ -53,51 +53,51 @@ def known_depths(
     system: System, depths: Mapping[Contact, float], before: Mapping[Contact, Array]
 ) -> dict[Contact, Depth]:
     """Depths of all contacts with known ``depths`` and point forces ``before`` (k,)."""
-    found = {}
-    for one in system.touches:
-        push = float(before[one.pair].sum()) if one.pair in before else 0.0
-        deep = depths.get(one.pair, 0.0) > _TOUCHING * one.pair.scale
+    known = {}
+    for contact in system.touches:
+        push = float(before[contact.pair].sum()) if contact.pair in before else 0.0
+        deep = depths.get(contact.pair, 0.0) > _TOUCHING * contact.pair.scale
         if deep and push > 0.0:
-            found[one.pair] = Depth(depths[one.pair], push)
-    return found
+            known[contact.pair] = Depth(depths[contact.pair], push)
+    return known
 
 
-def sunk(
+def with_predicted_depths(
     model: Model,
     penalties: Mapping[Contact, Penalty],
     quadrature: int,
     system: System,
     z: State,
-    foreseen: Mapping[Contact, Array],
+    predicted: Mapping[Contact, Array],
     known: dict[Contact, Depth],
 ) -> State:
-    """State near ``z``, after a step from ``system``, in which point contacts have the ``foreseen`` forces.
+    """State near ``z``, after a step from ``system``, in which point contacts have the ``predicted`` forces.
 
     The depths ``known`` are updated.
     """
-    for one in system.touches:
-        if one.pair not in known or not one.closed or np.ptp(one.zones.intervals) > _WIDE:
+    for contact in system.touches:
+        if contact.pair not in known or not contact.closed or np.ptp(contact.zones.intervals) > _WIDE:
             continue
-        push = min(float(foreseen[one.pair].sum()), _MOST * known[one.pair].push)
+        push = min(float(predicted[contact.pair].sum()), _MOST * known[contact.pair].push)
         opening = None
         for _ in range(_ROUNDS if push > 0.0 else 0):
-            there = touch(model, one.pair, penalties[one.pair], quadrature, z)
+            there = touch(model, contact.pair, penalties[contact.pair], quadrature, z)
             pushing = there.push if there.closed else 0.0
             if abs(pushing - push) <= _EVEN * push or (there.closed and np.ptp(there.zones.intervals) > _WIDE):
                 break
             if pushing > 0.0 and there.penetration > _TOUCHING * there.pair.scale:
-                known[one.pair] = Depth(there.penetration, pushing)
-            opening = _opening(model, system, one) if opening is None else opening
+                known[contact.pair] = Depth(there.penetration, pushing)
+            opening = _opening(model, system, contact) if opening is None else opening
             if opening is None:
                 break
-            z = advance(model, z, (-there.zones.least - known[one.pair].at(push)) * opening)
+            z = advance(model, z, (-there.zones.least - known[contact.pair].at(push)) * opening)
     return z
 
 
-def _opening(model: Model, system: System, one: Touch) -> Array | None:
+def _opening(model: Model, system: System, contact: Touch) -> Array | None:
     """v (size,); None where the opening needs large motions."""
     c = np.zeros(model.size)
-    np.add.at(c, one.dofs, one.mean)
+    np.add.at(c, contact.dofs, contact.mean)
     v = system.solve(c)
     if v is None:
         return None

@@ -25,30 +25,33 @@ from fea_reference.touch import Pair, Touch
 _NEAR = 1.0  # elements: largest distance of a zone from its end
 
 
-def left_to_go(model: Model, one: Touch, z: State) -> float | None:
+def distance_to_end(model: Model, contact: Touch, z: State) -> float | None:
     """The smaller of l_m − s_m and s_m in state ``z``; None unless a single end presses on a side."""
-    pair = one.pair
-    if not isinstance(pair, Pair) or pair.roles is not None or not one.closed:
+    pair = contact.pair
+    if not isinstance(pair, Pair) or pair.roles is not None or not contact.closed:
         return None
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    near = [end for end in (0, first.n) if np.abs(one.zeta - end).max() <= _NEAR]
+    near = [end for end in (0, first.n) if np.abs(contact.zeta - end).max() <= _NEAR]
     if len(near) != 1:
         return None
     inwards = first.tangents[:, near[0]] * (1.0 if near[0] == 0 else -1.0)
-    if pair.distance > 0.0 and float(inwards @ one.normal.mean(axis=1)) < 0.0:
+    if pair.distance > 0.0 and float(inwards @ contact.normal.mean(axis=1)) < 0.0:
         return None
-    s_m, total = along_line(second, first.points[:, near], float(np.median(one.zeta_m))), float(second.lengths.sum())
+    s_m, total = (
+        arc_length_at(second, first.points[:, near], float(np.median(contact.zeta_m))),
+        float(second.lengths.sum()),
+    )
     return min(s_m, total - s_m)
 
 
-def gone_past(model: Model, one: Touch, before: State, after: State) -> bool:
+def passed_end(model: Model, contact: Touch, before: State, after: State) -> bool:
     """True if a pressing end came past the end of the other beam between two states."""
-    here = left_to_go(model, one, before)
-    there = None if here is None else left_to_go(model, one, after)
+    here = distance_to_end(model, contact, before)
+    there = None if here is None else distance_to_end(model, contact, after)
     return here is not None and there is not None and here > 0.0 > there
 
 
-def along_line(line: NeutralLine, x: Array, near: float) -> float:
+def arc_length_at(line: NeutralLine, x: Array, near: float) -> float:
     """s_m of a point ``x`` (2, 1) on a neutral line, with the initial guess ``near`` of the closest place."""
     zeta = project(line, x, np.array([near]))[0]
     arcs = np.append(0.0, np.cumsum(line.lengths))

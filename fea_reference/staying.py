@@ -27,7 +27,7 @@ def frame_of(scene: Scene, body: str) -> str:
     """Name of a body's frame: the body, or an empty string for the ground and for fully constrained bodies."""
     if isinstance(scene.bodies[body], FixedBody):
         return ""
-    barred = tuple(_barred(scene, body))
+    barred = tuple(_constraints(scene, body))
     first = np.array(next(iter(scene.bodies[body].points.values())))
     arms = [np.array(at) - first for at, _ in barred if at is not None]
     size = max((float(np.hypot(*arm)) for arm in arms), default=0.0) or 1.0
@@ -41,7 +41,7 @@ def frame_of(scene: Scene, body: str) -> str:
     return "" if np.linalg.matrix_rank(C, tol=_BARRED) == 3 else body
 
 
-def _barred(scene: Scene, body: str) -> Iterator[tuple[tuple[float, float] | None, Array]]:
+def _constraints(scene: Scene, body: str) -> Iterator[tuple[tuple[float, float] | None, Array]]:
     """Place and direction (2,) of every constraint on a body; None and zero for a constrained rotation."""
     turning = None, np.zeros(2)
     record = scene.bodies[body]

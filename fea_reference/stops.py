@@ -65,13 +65,13 @@ class StopPart:
         """m, dimensionless."""
         return -float(z.values[self.row])
 
-    def room(self, z: State) -> tuple[float, float]:
+    def margin(self, z: State) -> tuple[float, float]:
         """Distance (rad) from the nearest limit, negative beyond, and that limit (rad)."""
-        angle, found = self.angle(z), (np.inf, np.nan)
+        angle, nearest = self.angle(z), (np.inf, np.nan)
         for limit, sign in ((self.least, 1.0), (self.most, -1.0)):
-            if limit is not None and sign * (angle - limit) + self.beyond < found[0]:
-                found = (sign * (angle - limit) + self.beyond, limit)
-        return found
+            if limit is not None and sign * (angle - limit) + self.beyond < nearest[0]:
+                nearest = (sign * (angle - limit) + self.beyond, limit)
+        return nearest
 
     def press(self, z: State, limit: float) -> float:
         """Moment of a closed stop in the direction of pressing; negative in tension."""
@@ -89,7 +89,7 @@ def stops_of(
         ends: unknown of the rotation and θ⁰ (rad) at the ends of the beams, by beam and end.
         row: of the first stop.
     """
-    found = []
+    stops = []
     for i, (name, stop) in enumerate(scene.stops.items()):
         beam = scene.beams[stop.beam]
         end = beam.start if stop.end == "start" else beam.end
@@ -102,10 +102,10 @@ def stops_of(
         number, dofs = bodies[scene.body_of(end.point)]
         phi = None if dofs is None else int(dofs[2])
         ends_of = (stop.beam, stop.end)
-        found.append(
+        stops.append(
             StopPart(name, end.point, number, theta, phi, row + i, angle - drawn, stop.least, stop.most, ends_of)
         )
-    return tuple(found)
+    return tuple(stops)
 
 
 def acting_stops(stops: tuple[StopPart, ...], acting: Acting) -> tuple[tuple[StopPart, float], ...]:

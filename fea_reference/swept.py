@@ -28,7 +28,7 @@ _PLACES = 4  # per element: samples for the initial guess of the closest place
 
 
 @dataclass(frozen=True, slots=True)
-class Beside:
+class ClosestPlaces:
     """Closest places of k points: ζ (k,), ``found`` (k,), d (k,) and n (k,) as complex numbers."""
 
     zeta: Array
@@ -45,7 +45,7 @@ class Beside:
         return np.asarray(self.d * np.where((self.n.conj() * out).real < 0.0, -1.0, 1.0))
 
 
-def beside(line: NeutralLine, points: Complex, guess: Array | None = None) -> Beside:
+def closest_places(line: NeutralLine, points: Complex, guess: Array | None = None) -> ClosestPlaces:
     """Closest places of a line to points x + i y (k,), from ``guess`` (k,) or from the nearest sample."""
     if guess is None:
         even = np.arange(_PLACES * line.n + 1) / _PLACES
@@ -53,15 +53,17 @@ def beside(line: NeutralLine, points: Complex, guess: Array | None = None) -> Be
         guess = even[nearest(points, line.nodes[there.element] + there.way)[1]]
     zeta, found, there = closest(line, points, guess)
     n = 1j * there.ahead / np.abs(there.ahead)
-    return Beside(zeta, found, (n.conj() * (line.nodes[there.element] + there.way - points)).real, n)
+    return ClosestPlaces(zeta, found, (n.conj() * (line.nodes[there.element] + there.way - points)).real, n)
 
 
-def gone_over(before: tuple[NeutralLine, Complex], after: tuple[NeutralLine, Complex]) -> tuple[Beside, Beside, Flags]:
+def swept_over(
+    before: tuple[NeutralLine, Complex], after: tuple[NeutralLine, Complex]
+) -> tuple[ClosestPlaces, ClosestPlaces, Flags]:
     """Closest places of points (k,) in two states, and True (k,) for points that may have been swept over."""
     (old, c_0), (new, c_1) = before, after
-    first = beside(old, c_0)
-    last = beside(new, c_1, first.zeta)
-    ways = [np.abs(_at(new, one.zeta) - c_1 - _at(old, one.zeta) + c_0) for one in (first, last)]
+    first = closest_places(old, c_0)
+    last = closest_places(new, c_1, first.zeta)
+    ways = [np.abs(_at(new, places.zeta) - c_1 - _at(old, places.zeta) + c_0) for places in (first, last)]
     near = np.abs(last.d - first.d) <= _WAY * np.maximum(*ways)
     return first, last, first.found & last.found & near
 

@@ -90,10 +90,12 @@ class Drag:
     weights: Array
 
 
-def stiffened(model: Model, system: System, one: Touch, factor: float) -> System:
+def with_stiffness_factor(model: Model, system: System, contact: Touch, factor: float) -> System:
     """The system with a contact ``factor`` times as stiff at unchanged force; only the tangent changes."""
-    more = replace(one, stiffness=factor * one.stiffness).hessian(one.pushes) - one.hessian(one.pushes)
-    return replace(system, tangent=system.tangent + model.patterns.matrix([Block(one.dofs, more)]))
+    more = replace(contact, stiffness=factor * contact.stiffness).hessian(contact.pushes) - contact.hessian(
+        contact.pushes
+    )
+    return replace(system, tangent=system.tangent + model.patterns.matrix([Block(contact.dofs, more)]))
 
 
 def assemble(
@@ -103,8 +105,8 @@ def assemble(
     values: Array,
     z: State,
     acting: Acting,
-    held: Mapping[Contact, float] = _NONE_HELD,
-    foreseen: Mapping[Contact, Array] = _NOTHING_FORESEEN,
+    held_depths: Mapping[Contact, float] = _NONE_HELD,
+    predicted: Mapping[Contact, Array] = _NOTHING_FORESEEN,
     drag: Drag | None = None,
 ) -> System:
     """Residual and tangent in state ``z``.
@@ -116,35 +118,39 @@ def assemble(
         values: dimensionless values of all stepped parameters, in the model's order.
         z: the unknowns.
         acting: the active constraints.
-        held: depths of contacts forced active, see :func:`~fea_reference.contact.touch`.
-        foreseen: predicted point forces (k,) of contacts, used in the tangent, see :mod:`fea_reference.newton`.
+        held_depths: depths of contacts forced active, see :func:`~fea_reference.contact.touch`.
+        predicted: predicted point forces (k,) of contacts, used in the tangent, see :mod:`fea_reference.newton`.
         drag: additional springs.
     """
-    touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
-    rounded = sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
-    return _summed(model, touches, rounded, values, z, acting, foreseen, drag)
+    touches = tuple(
+        touch(model, pair, penalty, quadrature, z, held_depths.get(pair)) for pair, penalty in penalties.items()
+    )
+    rounded = sum(_ROUND_OFF * _round_off(model, contact, penalties[contact.pair].stiffness) for contact in touches)
+    return _assembled(model, touches, rounded, values, z, acting, predicted, drag)
 
 
-def pushed(model: Model, system: System, values: Array, z: State, pushes: Mapping[Contact, Array]) -> System:
+def with_point_forces(model: Model, system: System, values: Array, z: State, pushes: Mapping[Contact, Array]) -> System:
     """The system with given contact point forces ``pushes`` (k,), in a state ``z`` with nearly the same contacts.
 
     The forces then are free of the round-off of gaps.
     """
     touches = tuple(
-        replace(one, gap=-pushes[one.pair] / np.where(one.stiffness > 0.0, one.stiffness, 1.0)) if one.closed else one
-        for one in system.touches
+        replace(contact, gap=-pushes[contact.pair] / np.where(contact.stiffness > 0.0, contact.stiffness, 1.0))
+        if contact.closed
+        else contact
+        for contact in system.touches
     )
-    return _summed(model, touches, 0.0, values, z, system.acting, _NOTHING_FORESEEN, None)
+    return _assembled(model, touches, 0.0, values, z, system.acting, _NOTHING_FORESEEN, None)
 
 
-def _summed(
+def _assembled(
     model: Model,
     touches: tuple[Touch, ...],
     rounded: float,
     values: Array,
     z: State,
     acting: Acting,
-    foreseen: Mapping[Contact, Array],
+    predicted: Mapping[Contact, Array],
     drag: Drag | None,
 ) -> System:
     """The system with contacts of a given round-off."""
@@ -152,10 +158,10 @@ def _summed(
     residual, rigid = _rigid(model, values, z, acting)
     parts = [(model.element_dofs, elements.gradient)]
     entries: list[Block | Single] = [rigid, Block(model.element_dofs, elements.hessian)]
-    pressing = [(one, one.gradient) for one in touches if one.closed]
-    for one, gradient in pressing:
-        parts.append((one.dofs, gradient))
-        entries.append(Block(one.dofs, one.hessian(_pushes(one, foreseen.get(one.pair)))))
+    pressing = [(contact, contact.gradient) for contact in touches if contact.closed]
+    for contact, gradient in pressing:
+        parts.append((contact.dofs, gradient))
+        entries.append(Block(contact.dofs, contact.hessian(_pushes(contact, predicted.get(contact.pair)))))
     loads = tuple(
         beam_load(model, part, float(value), z)
         for part, value in zip(model.loads, values[: len(model.loads)], strict=True)
@@ -173,7 +179,7 @@ def _summed(
     tangent = model.patterns.matrix(entries)
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values[: len(model.loads)]).max(initial=0.0)]
     balanced += [np.abs(gradient).max() for _, gradient in pressing]
-    balanced += [abs(values[model.stepped.index(MOMENTS)] * one.moment) for one in model.apart]
+    balanced += [abs(values[model.stepped.index(MOMENTS)] * contact.moment) for contact in model.apart]
     largest = float(max(balanced))
     angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
     floor = _ROUND_OFF * model.stiffest * float(np.spacing(angle))
@@ -184,17 +190,17 @@ def _summed(
     )
 
 
-def _pushes(one: Touch, foreseen: Array | None) -> Array:
+def _pushes(contact: Touch, predicted: Array | None) -> Array:
     """Predicted point forces (k,) of a contact for the tangent.
 
     If the points have changed, the current forces are scaled down to the predicted sum.
     """
-    if foreseen is None:
-        return one.pushes
-    if foreseen.size == one.pushes.size:
-        return foreseen
-    share = float(foreseen.sum()) / one.push if one.push != 0.0 else 0.0
-    return min(1.0, max(-1.0, share)) * one.pushes
+    if predicted is None:
+        return contact.pushes
+    if predicted.size == contact.pushes.size:
+        return predicted
+    share = float(predicted.sum()) / contact.push if contact.push != 0.0 else 0.0
+    return min(1.0, max(-1.0, share)) * contact.pushes
 
 
 def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
@@ -227,11 +233,11 @@ def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
     if isinstance(part, OnBeam):
         return load_forces(model, part, z)
     if isinstance(part, SharePart):
-        for i, one in enumerate(model.apart):
+        for i, end in enumerate(model.apart):
             if part is MOMENTS:
-                f[one.joint.dofs[2]] = one.moment
+                f[end.joint.dofs[2]] = end.moment
             elif acting.ways is not None:
-                f[one.joint.rows] = -acting.ways[i]
+                f[end.joint.rows] = -acting.ways[i]
         return f
     body = model.bodies[part.body]
     if isinstance(part, DrivePart):
@@ -253,8 +259,8 @@ def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array
     ways: dict[int, Array] = {}
     if acting.ways is not None:
         share = values[model.stepped.index(WAY)] if model.apart else 1.0
-        for one, way in zip(model.apart, acting.ways, strict=True):
-            ways[int(one.joint.rows[0])] = (1.0 - share) * way
+        for end, way in zip(model.apart, acting.ways, strict=True):
+            ways[int(end.joint.rows[0])] = (1.0 - share) * way
     rows: list[int] = []
     columns: list[int] = []
     entries: list[float] = []

@@ -22,7 +22,7 @@ import numpy as np
 from scipy.sparse.linalg import splu
 
 from cprbm_scene.answer import Array
-from fea_reference.branch import Branch, Place, bordered, sought
+from fea_reference.branch import Branch, Place, bordered, sign_change
 from fea_reference.march import March
 from fea_reference.system import load_direction
 
@@ -31,7 +31,7 @@ _CUTS = 6  # cuts of a step, to a quarter
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
+class TurningPoint:
     """A turning point on a branch of minima, within an arc ``length`` from the point ``before``.
 
     τ has the opposite sign at the end of the arc.
@@ -42,10 +42,10 @@ class Turn:
     length: float
 
 
-def beyond(march: March, turn: Turn, target: float) -> bool:
+def continue_beyond(march: March, turn: TurningPoint, target: float) -> bool:
     """Step on beyond a turning point; True on success, else the state is unchanged."""
-    branch, there = turn.branch, _turned(turn)
-    rate = None if there is None else _rate(branch, there)
+    branch, there = turn.branch, _turning_place(turn)
+    rate = None if there is None else _tangent_beyond(branch, there)
     if there is None or rate is None:
         return False
     saved, load = march.saved(), branch.load
@@ -63,13 +63,13 @@ def beyond(march: March, turn: Turn, target: float) -> bool:
     return False
 
 
-def _turned(turn: Turn) -> Place | None:
+def _turning_place(turn: TurningPoint) -> Place | None:
     """The point with τ = 0."""
     sense = np.sign(turn.before.rate)
-    return sought(turn.branch, turn.before, turn.length, lambda there: float(sense * there.rate))
+    return sign_change(turn.branch, turn.before, turn.length, lambda there: float(sense * there.rate))
 
 
-def _rate(branch: Branch, there: Place) -> Array | None:
+def _tangent_beyond(branch: Branch, there: Place) -> Array | None:
     """r without component along φ; None if a motion other than φ is free."""
     f = load_direction(branch.model, branch.load, there.system.z, there.system.acting)
     along = branch.weights * there.way

@@ -223,16 +223,16 @@ class Touch:
 
     ``stiffness`` (k,) is the penalty times the length of a point, and ``gap`` (k,) the gap minus the lead. ``gap_by``
     (m, k) and ``gap_by_twice`` (m, m, k) are the gap's derivatives by the element unknowns of the first line, then of
-    the second or a moving body. ``chain`` continues to all unknowns, at c = k/points_per_place places, as ``points_per_place`` consecutive
-    points lie in the same elements.
+    the second or a moving body. ``chain`` continues to all unknowns, at c = k/points_per_place places, as
+    ``points_per_place`` consecutive points lie in the same elements.
 
     ``zeta`` (k,) and ``zeta_m`` (k,) are places on the first and second beam, the latter empty for a rigid body.
     ``x`` and ``x_m`` (2, k) are points of the first neutral line and of the second or the edge. ``normal`` (2, k)
     points to the first beam.
 
-    ``missing`` is the force left out at ends of the second beam, and ``missing_share`` its largest share of a zone's force.
-    ``bent`` (m, m, k) are further second derivatives of the energy at some points. ``sharp`` is True for a contact at
-    a tip or end.
+    ``missing`` is the force left out at ends of the second beam, and ``missing_share`` its largest share of a zone's
+    force. ``bent`` (m, m, k) are further second derivatives of the energy at some points. ``sharp`` is True for a
+    contact at a tip or end.
     """
 
     pair: Contact
@@ -285,7 +285,7 @@ class Touch:
             local += self.bent
         return self.chain.hessian(self._summed(local), self._summed(-pushes * self.gap_by))
 
-    def foreseen(self, step: Array) -> Array:
+    def predicted_forces(self, step: Array) -> Array:
         """Point forces (k,) after a ``step`` (size,) of the unknowns, to first order."""
         local = np.repeat(self.chain.local(step, len(self.gap_by)), self.points_per_place, axis=1)
         return np.asarray(self.pushes - self.stiffness * (self.gap_by * local).sum(axis=0))

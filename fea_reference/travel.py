@@ -24,12 +24,12 @@ from typing import Literal
 import numpy as np
 
 from cprbm_scene.answer import Array, Critical, Ending, GoneOver, Loss
-from fea_reference.descent import descended
+from fea_reference.descent import descend
 from fea_reference.drawn import taut_at
 from fea_reference.following import WEAKER, CriticalPoint, follow_branch, force_about_to_vanish
 from fea_reference.march import BypassedPoint, March, StoppedError, Trouble
 from fea_reference.model import SharePart
-from fea_reference.released import released
+from fea_reference.released import releases_energy
 from fea_reference.touch import Circle, Face, Pair
 
 _PREDICTED = 0.3  # rad (and lengths): largest predicted motion of a load step
@@ -195,12 +195,12 @@ def _step_to(march: March, course: Course, target: float, *, watched: bool) -> b
         rate = tangent.rate
         speed = float(np.abs(rate[march.model.moving]).max())
         way = target - march.values[load]
-        foreseen = _HALF * _distance_to_zero(known)
+        predicted = _HALF * _distance_to_zero(known)
         size = min(abs(way), stride, _PREDICTED / max(speed, 1e-300))
         minimum = not watched or known[-1][1] > 0.0
         stable = bool(known) and known[-1][1] > 0.0
-        close = stable and foreseen < size and foreseen < _NEAR * course.span
-        size = min(size, foreseen)
+        close = stable and predicted < size and predicted < _NEAR * course.span
+        size = min(size, predicted)
         value = target if size >= abs(way) else march.values[load] + np.copysign(size, way)
         if value == march.values[load]:
             raise _taut_ending(march, load, pulls) or StoppedError(*reason)
@@ -326,7 +326,7 @@ def _released_energy(saved: March, march: March, load: int, rate: Array, ahead: 
     if any(march.penalties.get(pair) != penalty for pair, penalty in saved.penalties.items()):
         return False
     here, there = (saved.system, saved.values, rate), (march.system, march.values, ahead)
-    return released(march.model, load, march.acting, (here, there))
+    return releases_energy(march.model, load, march.acting, (here, there))
 
 
 def _off_branch(saved: March, march: March, load: int, rate: Array, ahead: Array) -> bool:
@@ -421,10 +421,10 @@ def _continue_beyond(march: March, course: Course, target: float, critical: Crit
     after = None
     leads_on = _descent_possible(march, load, target, critical)
     if course.beyond == "jump" and leads_on:
-        after = descended(march, load, target, course.span, critical)
+        after = descend(march, load, target, course.span, critical)
     elif course.beyond not in ("stop", "jump") and leads_on and _may_bypass(march, course, critical):
         before = march.saved()
-        energy = descended(march, load, target, course.span, critical, _BESIDE)
+        energy = descend(march, load, target, course.span, critical, _BESIDE)
         if energy is not None:
             turned = march.largest_rotation(march.system, critical.system.z)
             march.bypassed.append(BypassedPoint(sentence, GoneOver(_record(march, course, critical, energy), turned)))

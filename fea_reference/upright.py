@@ -47,7 +47,7 @@ from cprbm_scene.statement import (
     Scene,
     WeldedEnd,
 )
-from fea_reference.own_pins import held_on, own_frame
+from fea_reference.own_pins import beam_frame, ends_on_edge
 from fea_reference.section import SHEAR_FACTOR
 from fea_reference.staying import frame_of
 
@@ -55,10 +55,10 @@ Which = Literal["start", "end"]
 _REACHED = 0.1  # rad: shear angle beyond any material
 
 
-def upright(scene: Scene, beam: str) -> tuple[float, float]:
+def shear_layers(scene: Scene, beam: str) -> tuple[float, float]:
     """Layer widths a (m) at a beam's start and end, where held on a surface in contact; zero elsewhere."""
-    found = {which for contact in scene.contacts.values() for which in _held(scene, beam, contact)}
-    start, end = (_layer(scene, beam, which) if which in found else 0.0 for which in ("start", "end"))
+    held_ends = {which for contact in scene.contacts.values() for which in _held_ends(scene, beam, contact)}
+    start, end = (_layer(scene, beam, which) if which in held_ends else 0.0 for which in ("start", "end"))
     return start, end
 
 
@@ -72,7 +72,7 @@ def _thickness(scene: Scene, beam: str, which: str) -> float:
     return float(scene.beams[beam].thickness_at(np.array([0.0 if which == "start" else 1.0]))[0])
 
 
-def _held(scene: Scene, beam: str, contact: Contact) -> Iterator[Which]:
+def _held_ends(scene: Scene, beam: str, contact: Contact) -> Iterator[Which]:
     """Ends of a beam held on the surface of a contact; none for straight edges."""
     if isinstance(contact, CircleContact) and contact.beam == beam:
         for which, place, holder in _welded(scene, beam):
@@ -81,14 +81,14 @@ def _held(scene: Scene, beam: str, contact: Contact) -> Iterator[Which]:
             if holder == frame_of(scene, contact.body) and _reached(scene, gap, (beam, which)):
                 yield which
     elif isinstance(contact, EdgeContact) and contact.beam == beam:
-        outline, own = held_on(scene, contact, *own_frame(scene.beams[beam]))
+        outline, own = ends_on_edge(scene, contact, *beam_frame(scene.beams[beam]))
         if not outline.straight:
             yield from own
     elif isinstance(contact, BeamContact) and beam in contact.between:
         (other,) = (name for name in contact.between if name != beam)
         for which, place, holder in _welded(scene, beam):
-            for its, at, its_holder in _welded(scene, other):
-                ends = (beam, which), (other, its)
+            for other_end, at, its_holder in _welded(scene, other):
+                ends = (beam, which), (other, other_end)
                 halves = 0.5 * sum(_thickness(scene, *end) for end in ends) if contact.thick else 0.0
                 if holder == its_holder and _reached(scene, math.dist(place, at) - halves, *ends):
                     yield which

@@ -25,10 +25,10 @@ from fea_reference.model import Model
 from fea_reference.system import System
 from fea_reference.touch import Contact, Face, Penalty, Touch
 
-FELT = 0.01
+SIGNIFICANT = 0.01
 """Relative change of forces and motions by a penetration that is significant."""
 
-ROUNDED = 2e-12
+ROUND_OFF_DEPTH = 2e-12
 """Lengths of the longest beam: smaller penetrations are affected by round-off of positions."""
 
 POINT = 1.0
@@ -41,96 +41,102 @@ _BESIDE = 1e-6  # times the measure: distance from the least gap within which pl
 _NEAR = 0.1  # lengths of the longest beam: larger gaps do not close under loose penalties
 
 
-def in_points(one: Touch) -> bool:
+def is_point_contact(contact: Touch) -> bool:
     """True if a contact presses in points only, in zones no wider than an element.
 
     A contact beside a joint on its surface does not count: its force grows without bound towards the joint.
     """
-    if not one.closed or _beside_joint(one):
+    if not contact.closed or _beside_joint(contact):
         return False
-    first, last = one.zones.intervals.T
-    begins = one.zones.begins
+    first, last = contact.zones.intervals.T
+    begins = contact.zones.begins
     return bool((last[np.append(begins[1:], True)] - first[begins]).max() < POINT)
 
 
-def _beside_joint(one: Touch) -> bool:
+def _beside_joint(contact: Touch) -> bool:
     """True if an edge presses only within an element of a joint on the edge."""
-    return isinstance(one.pair, Face) and any(np.abs(one.zeta - end).max() < POINT for end in one.pair.own)
+    return isinstance(contact.pair, Face) and any(np.abs(contact.zeta - end).max() < POINT for end in contact.pair.own)
 
 
-def felt(
+def penetration_effects(
     model: Model, system: System, penalties: Mapping[Contact, Penalty], waiting: Iterable[Contact], quadrature: int
 ) -> dict[Contact, float]:
     """Relative effect of every point contact's penetration on forces and motions, by contact.
 
     ``waiting`` are the open contacts, whose forces are predicted.
     """
-    sinking = [one for one in system.touches if one.push > 0.0 and one.penetration > ROUNDED and in_points(one)]
+    sinking = [
+        contact
+        for contact in system.touches
+        if contact.push > 0.0 and contact.penetration > ROUND_OFF_DEPTH and is_point_contact(contact)
+    ]
     if not sinking:
         return {}
-    pressing = [one for one in system.touches if one.closed]
-    largest = max(one.push for one in pressing)
+    pressing = [contact for contact in system.touches if contact.closed]
+    largest = max(contact.push for contact in pressing)
     places = model.node_dofs[:2]
     motion = float(np.abs((system.z.values - model.start.values)[places]).max())
     motion = max(motion, _STILL * largest / min(beam.softest for beam in model.beams))
     beside = [
-        *_beside(model, system, (one.pair for one in system.touches if not one.closed), penalties, quadrature),
-        *_beside(model, system, waiting, penalties, quadrature),
+        *_open_contacts(
+            model, system, (contact.pair for contact in system.touches if not contact.closed), penalties, quadrature
+        ),
+        *_open_contacts(model, system, waiting, penalties, quadrature),
     ]
-    told = _told(pressing)
-    found = {}
-    for one in sinking:
+    groups = _determinate_groups(pressing)
+    effects = {}
+    for contact in sinking:
         right = np.zeros(model.size)
-        np.add.at(right, one.dofs, -one.gradient)
+        np.add.at(right, contact.dofs, -contact.gradient)
         way = system.solve(right)
         if way is None:
             continue
-        way *= _FALLS[one.sharp]
+        way *= _FALLS[contact.sharp]
         share = float(np.abs(way[places]).max()) / motion
-        for group in told:
-            more = sum(float(other.foreseen(way).sum()) - other.push for other in group)
-            more += _FALLS[one.sharp] * one.push if any(other is one for other in group) else 0.0
+        for group in groups:
+            more = sum(float(other.predicted_forces(way).sum()) - other.push for other in group)
+            more += _FALLS[contact.sharp] * contact.push if any(other is contact for other in group) else 0.0
             known = sum(other.push for other in group)
             share = max(share, abs(more) / max(known, _FAINT * largest))
         for gap, opening, compliance in beside:
             overlap = -(gap + float(opening @ way))
             if overlap > 0.0:
                 share = max(share, overlap / compliance / (_FAINT * largest))
-        found[one.pair] = share
-    return found
+        effects[contact.pair] = share
+    return effects
 
 
-def _told(pressing: Iterable[Touch]) -> list[list[Touch]]:
+def _determinate_groups(pressing: Iterable[Touch]) -> list[list[Touch]]:
     """Groups of contacts with determinate sums of forces: contacts of a beam at the same place form a group.
 
     Contacts beside a joint on their surface are left out: only their moment about the joint is determinate, which the
     motion reflects.
     """
     groups: list[list[Touch]] = []
-    for one in pressing:
-        if _beside_joint(one):
+    for contact in pressing:
+        if _beside_joint(contact):
             continue
         for group in groups:
-            if _at_one_place(group[0], one):
-                group.append(one)
+            if _at_one_place(group[0], contact):
+                group.append(contact)
                 break
         else:
-            groups.append([one])
+            groups.append([contact])
     return groups
 
 
-def _at_one_place(one: Touch, other: Touch) -> bool:
+def _at_one_place(contact: Touch, other: Touch) -> bool:
     """True if two contacts push the same beam to the same side within an element."""
-    if one.pair.first != other.pair.first:
+    if contact.pair.first != other.pair.first:
         return False
-    apart = max(one.zeta.min(), other.zeta.min()) - min(one.zeta.max(), other.zeta.max())
-    return apart < POINT and float(one.force.sum(axis=1) @ other.force.sum(axis=1)) > 0.0
+    apart = max(contact.zeta.min(), other.zeta.min()) - min(contact.zeta.max(), other.zeta.max())
+    return apart < POINT and float(contact.force.sum(axis=1) @ other.force.sum(axis=1)) > 0.0
 
 
-def _beside(
+def _open_contacts(
     model: Model,
     system: System,
-    open_ones: Iterable[Contact],
+    waiting: Iterable[Contact],
     penalties: Mapping[Contact, Penalty],
     quadrature: int,
 ) -> list[tuple[float, Array, float]]:
@@ -138,8 +144,8 @@ def _beside(
 
     Contacts nearest to a joint on their surface are left out, because the gap there is zero up to round-off.
     """
-    found = []
-    for pair in open_ones:
+    contacts = []
+    for pair in waiting:
         gap = least_gap(model, pair, system.z)
         if not 0.0 <= gap < _NEAR:
             continue
@@ -150,5 +156,5 @@ def _beside(
         np.add.at(opening, there.dofs, there.mean)
         opened = system.solve(opening)
         if opened is not None and (compliance := float(opening @ opened)) > 0.0:
-            found.append((gap, opening, compliance))
-    return found
+            contacts.append((gap, opening, compliance))
+    return contacts

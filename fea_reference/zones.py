@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from cprbm_scene.answer import Array
 from fea_reference.facing import Borders, Tapers, borders, facing
-from fea_reference.hermite import NeutralLine, apart
+from fea_reference.hermite import NeutralLine, line_difference
 from fea_reference.neighbours import near_each_other, nearest
 from fea_reference.projection import project
 
@@ -65,10 +65,10 @@ class Gap:
         """The rows g, g', g'' and ζ_m, without ``found``."""
         return self.g, self.slope, self.curvature, self.zeta_m
 
-    def chosen(self, which: NDArray[np.bool_] | NDArray[np.int64]) -> Gap:
+    def chosen(self, selection: NDArray[np.bool_] | NDArray[np.int64]) -> Gap:
         """The gap at a selection of the places."""
-        g, slope, curvature, zeta_m = (one[which] for one in self.rows)
-        return Gap(g, slope, curvature, zeta_m, self.found[which])
+        g, slope, curvature, zeta_m = (row[selection] for row in self.rows)
+        return Gap(g, slope, curvature, zeta_m, self.found[selection])
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,21 +96,21 @@ class Survey:
     def below(self, level: float) -> Zones:
         """Intervals on which the gap is below ``level``, divided at nodes and kinks only."""
         if self.least >= level:
-            return none(self.least)
+            return no_zones(self.least)
         zeta, neighbours, there = self.zeta, self.neighbours, self.there
         g, zeta_m = there.g - level, there.zeta_m
 
         def gap_at(where: Array, guess: Array) -> tuple[Array, Array, Array, Array]:
-            one = self.at(where, guess)
-            return one.g - level, one.slope, one.curvature, one.zeta_m
+            gap_there = self.at(where, guess)
+            return gap_there.g - level, gap_there.slope, gap_there.curvature, gap_there.zeta_m
 
         ends = np.flatnonzero(neighbours & (g[:-1] * g[1:] < 0.0))
         if ends.size:
             share = _parabola(zeta, g, there.slope, there.curvature, ends)
             where, guess = _roots(gap_at, zeta, g, zeta_m, ends, share)
             new = np.array([where, np.zeros_like(where), guess])
-            zeta, g, zeta_m = _behind(np.array([zeta, g, zeta_m]), ends, new)
-            neighbours = _parted(neighbours, ends)
+            zeta, g, zeta_m = _with_columns(np.array([zeta, g, zeta_m]), ends, new)
+            neighbours = _with_neighbours(neighbours, ends)
         inside = np.flatnonzero(neighbours & (g[:-1] <= 0.0) & (g[1:] <= 0.0) & (g[:-1] + g[1:] < 0.0))
         # The gap is smooth within an element, so that adjacent parts form a single interval.
         parted = zeta[inside] == np.floor(zeta[inside])
@@ -175,7 +175,7 @@ def gap(
     faced = facing(second, edge, points, zeta_m, lambda at_m, d: sides(zeta, at_m, d), ended=ended)
     across, J, zeta_m = faced.across, faced.c, faced.zeta_m
     back = (1j * faced.w).conj()  # n conjugate: of a product with it, the real part is n·v and the imaginary part −τ·v
-    d = (back * apart(first, there, second, across)).real
+    d = (back * line_difference(first, there, second, across)).real
     a = (back * across.bent).real
     ahead = back * there.ahead
     bend = -a / np.where(faced.fixed, 1.0, J**2 - d * a)
@@ -212,12 +212,12 @@ def side_of(first: NeutralLine, second: NeutralLine, unseen: float = 1.0) -> flo
     return float(np.sign(least if abs(least) > 1e-9 else d.sum())) or 1.0
 
 
-def ends_over(first: NeutralLine, second: NeutralLine) -> bool:
+def has_end_over(first: NeutralLine, second: NeutralLine) -> bool:
     """True if an end of the first beam has its closest point inside the second beam."""
-    return bool(np.isfinite(end_apart(first, second)))
+    return bool(np.isfinite(end_distance(first, second)))
 
 
-def end_apart(first: NeutralLine, second: NeutralLine) -> float:
+def end_distance(first: NeutralLine, second: NeutralLine) -> float:
     """Distance of the nearer end of the first beam from the second; infinite without a closest point inside."""
     near = nearest(first.nodes[[0, -1]], second.nodes)[1].astype(float)
     zeta, found = project(second, first.points[:, [0, -1]], near)
@@ -225,7 +225,7 @@ def end_apart(first: NeutralLine, second: NeutralLine) -> float:
     return float(np.hypot(*(first.points[:, [0, -1]] - second.at(zeta)[0]))[over].min(initial=np.inf))
 
 
-def seen(
+def survey_pair(
     first: NeutralLine,
     second: NeutralLine,
     side: float,
@@ -239,34 +239,36 @@ def seen(
         return gap(first, second, one_side(side), T, tapers, where, guess)
 
     reach, none_there = _reach(first, second, T), np.empty(0)
-    within = out_of_reach(first, second, T)
+    within = search_distance(first, second, T)
     begin, end = int(free[0]), int(min(free[1], first.n - 1.0)) + 2
-    one, other = near_each_other(first.nodes[begin:end], second.nodes, within + first.longest + second.longest)
-    one = one + begin
-    apart_by, _ = nearest(first.nodes[one], second.nodes[other])
+    nodes_first, nodes_second = near_each_other(
+        first.nodes[begin:end], second.nodes, within + first.longest + second.longest
+    )
+    nodes_first = nodes_first + begin
+    apart_by, _ = nearest(first.nodes[nodes_first], second.nodes[nodes_second])
     close = np.zeros(first.n + 1, dtype=bool)
-    close[one[apart_by < within]] = True
+    close[nodes_first[apart_by < within]] = True
     beside = np.flatnonzero(close[:-1] | close[1:])
     if not beside.size:
         nothing = Gap(none_there, none_there, none_there, none_there, none_there.astype(bool))
         return Survey(at, none_there, nothing, none_there.astype(bool), (), float(apart_by.min()) - T)
-    rays = borders(second, None if tapers is None else tapers.second, side).among(other)
-    zeta = _samples(first, rays, beside, one, reach)
+    rays = borders(second, None if tapers is None else tapers.second, side).among(nodes_second)
+    zeta = _samples(first, rays, beside, nodes_first, reach)
     knots = () if tapers is None else tapers.first.knots
     if knots:
         zeta = np.union1d(zeta, [knot for knot in knots if min(int(knot), first.n - 1) in beside])
     zeta = np.unique(np.clip(zeta, *free))
     x = first.around(zeta)
-    distance, nearest_node = nearest(first.nodes[x.element] + x.way, second.nodes[other])
+    distance, nearest_node = nearest(first.nodes[x.element] + x.way, second.nodes[nodes_second])
     near = np.flatnonzero(distance < reach)
-    there = at(zeta[near], other[nearest_node[near]].astype(float))
+    there = at(zeta[near], nodes_second[nearest_node[near]].astype(float))
     # a place that faces the far side of a strongly bent second beam does not overlap
     usable = there.found & (there.g > -T - reach)
     if not usable.any():
         return Survey(at, zeta[:0], there.chosen(near[:0]), np.empty(0, dtype=bool), (), float(distance.min()) - T)
     if not usable.all():
         near, there = near[usable], there.chosen(usable)
-    return survey(at, zeta[near], there, np.diff(near) == 1, knots, floor=rounded(first, second, T))
+    return survey(at, zeta[near], there, np.diff(near) == 1, knots, floor=gap_round_off(first, second, T))
 
 
 def overlap(
@@ -277,14 +279,14 @@ def overlap(
     The gap has to be below the level by more than round-off, so that beams held side by side do not press. Intervals
     end where the first beam passes a ray of ``rays``.
     """
-    inside = where.below(level - rounded(first, second, T))
+    inside = where.below(level - gap_round_off(first, second, T))
     split = inside.intervals, inside.zeta_m
-    for one in rays:
-        split = _split_at(first, one, *split)
+    for borders_of_side in rays:
+        split = _split_at(first, borders_of_side, *split)
     return Zones(*split, inside.least)
 
 
-def rounded(first: NeutralLine, second: NeutralLine, T: float) -> float:
+def gap_round_off(first: NeutralLine, second: NeutralLine, T: float) -> float:
     """Round-off of the gap of two beams."""
     return float(np.finfo(float).eps * (abs(T) + first.longest + second.longest))
 
@@ -326,8 +328,8 @@ def survey(
     slope, zeta_m = there.slope, there.zeta_m
 
     def slope_at(where: Array, guess: Array) -> tuple[Array, Array, None, Array]:
-        one = at(where, guess)
-        return one.slope, one.curvature, None, one.zeta_m
+        gap_there = at(where, guess)
+        return gap_there.slope, gap_there.curvature, None, gap_there.zeta_m
 
     # a maximum matters only between two places with negative gaps
     parts = (slope[:-1] < 0.0) | ((there.g[:-1] <= 0.0) & (there.g[1:] <= 0.0))
@@ -337,21 +339,21 @@ def survey(
     if turning.size:
         share = _turning(zeta, slope, there.curvature, turning)
         where, guess = _roots(slope_at, zeta, slope, zeta_m, turning, share, floor, _TURNS)
-        zeta, there, neighbours = _with(zeta, there, neighbours, turning, where, at(where, guess))
+        zeta, there, neighbours = _with_places(zeta, there, neighbours, turning, where, at(where, guess))
     least = float((there.g[~np.isin(zeta, joined)] if joined else there.g).min())
     return Survey(at, zeta, there, neighbours, kinks, least)
 
 
-def _with(
+def _with_places(
     zeta: Array, there: Gap, neighbours: NDArray[np.bool_], left: NDArray[np.int64], where: Array, more: Gap
 ) -> tuple[Array, Gap, NDArray[np.bool_]]:
     """Places and gap with further places ``where``, inserted behind the places with index ``left``."""
-    rows = _behind(np.array([zeta, *there.rows, there.found]), left, np.array([where, *more.rows, more.found]))
+    rows = _with_columns(np.array([zeta, *there.rows, there.found]), left, np.array([where, *more.rows, more.found]))
     zeta, g, slope, curvature, zeta_m, found = rows
-    return zeta, Gap(g, slope, curvature, zeta_m, found != 0.0), _parted(neighbours, left)
+    return zeta, Gap(g, slope, curvature, zeta_m, found != 0.0), _with_neighbours(neighbours, left)
 
 
-def _behind(rows: Array, left: NDArray[np.int64], new: Array) -> Array:
+def _with_columns(rows: Array, left: NDArray[np.int64], new: Array) -> Array:
     """``rows`` (r, k) with columns ``new`` (r, m) inserted behind the columns ``left`` (m,); (r, k+m)."""
     old = np.ones(rows.shape[1] + left.size, dtype=bool)
     at = left + np.arange(1, left.size + 1)
@@ -361,7 +363,7 @@ def _behind(rows: Array, left: NDArray[np.int64], new: Array) -> Array:
     return both
 
 
-def _parted(neighbours: NDArray[np.bool_], left: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _with_neighbours(neighbours: NDArray[np.bool_], left: NDArray[np.int64]) -> NDArray[np.bool_]:
     """``neighbours`` (k+m−1,) after the insertion of places behind ``left`` (m,), which all had a neighbour."""
     times = np.ones(neighbours.size, dtype=np.int64)
     times[left] = 2
@@ -388,18 +390,18 @@ def _with_bends(
     share = turned[bends]
     where = zeta[bends] + share * width[bends]
     more = at(where, there.zeta_m[bends] + share * (there.zeta_m[bends + 1] - there.zeta_m[bends]))
-    return _with(zeta, there, neighbours, bends, where, more)
+    return _with_places(zeta, there, neighbours, bends, where, more)
 
 
-def out_of_reach(first: NeutralLine, second: NeutralLine, T: float) -> float:
+def search_distance(first: NeutralLine, second: NeutralLine, T: float) -> float:
     """Distance of nodes beyond which the gap is not evaluated."""
     return _reach(first, second, T) + first.longest
 
 
-def nodes_apart(first: NeutralLine, second: NeutralLine) -> float:
+def node_distance(first: NeutralLine, second: NeutralLine) -> float:
     """Least distance between nodes of two beams."""
-    one, other = near_each_other(first.nodes, second.nodes, 0.0)
-    return float(nearest(first.nodes[one], second.nodes[other])[0].min())
+    nodes_first, nodes_second = near_each_other(first.nodes, second.nodes, 0.0)
+    return float(nearest(first.nodes[nodes_first], second.nodes[nodes_second])[0].min())
 
 
 def _reach(first: NeutralLine, second: NeutralLine, T: float) -> float:
@@ -415,7 +417,7 @@ def _samples(
     The gap is undefined beyond an end, and a zone up to there may be narrower than a step; at inner nodes the
     curvature of the gap jumps. ``nodes`` are nodes of the first beam within reach.
     """
-    even, _ = stepped(elements, ())
+    even, _ = steps_within(elements, ())
     distance, nearest_node = nearest(rays.points, first.nodes[nodes])
     near = distance < reach
     if not near.any():
@@ -435,7 +437,7 @@ def _samples(
     return np.unique(np.concatenate([even, zeta]))
 
 
-def stepped(elements: NDArray[np.int64], knots: tuple[float, ...]) -> tuple[Array, NDArray[np.bool_]]:
+def steps_within(elements: NDArray[np.int64], knots: tuple[float, ...]) -> tuple[Array, NDArray[np.bool_]]:
     """Equal steps within ordered ``elements`` (k,), with the ``knots`` inside them.
 
     Returns:
@@ -450,7 +452,7 @@ def stepped(elements: NDArray[np.int64], knots: tuple[float, ...]) -> tuple[Arra
     return zeta, ~np.isin(zeta[:-1], ends) | np.isin(zeta[:-1], elements)
 
 
-def none(least: float) -> Zones:
+def no_zones(least: float) -> Zones:
     """Zones without any interval."""
     return Zones(np.empty((0, 2)), np.empty((0, 2)), least)
 
@@ -507,7 +509,7 @@ def _roots(
             break
         if not going.all():
             sought = sought[going]
-            low, high, x, guess, rising, pace = (one[going] for one in (low, high, x, guess, rising, pace))
+            low, high, x, guess, rising, pace = (array[going] for array in (low, high, x, guess, rising, pace))
     return places, closest_there
 
 

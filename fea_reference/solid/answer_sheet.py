@@ -9,12 +9,12 @@ import numpy as np
 
 from cprbm_scene.answer import Array, ContactState, PointForce, PointForces, contact_states, frozen_array
 from cprbm_scene.statement import Scene, TurningBody
-from fea_reference.solid.bodies import is_own, stands_on
+from fea_reference.solid.bodies import is_face_alone, rotation_unknown
 from fea_reference.solid.contacts import Touch
 from fea_reference.solid.march import March
-from fea_reference.solid.pairs import Tip
+from fea_reference.solid.pairs import CornerOnEdge
 from fea_reference.solid.skin import Skin
-from fea_reference.solid.supports import place, support
+from fea_reference.solid.supports import place, tie_reaction
 
 
 def point_forces(scene: Scene, march: March) -> PointForces:
@@ -46,10 +46,10 @@ def _at_faces(scene: Scene, march: March) -> Iterator[PointForce]:
     """Forces of joints on the beams' end faces and on the joined bodies."""
     model, system = march.model, march.system
     for tie in model.ties:
-        at, body, (force, moment) = place(model, system, tie), model.bodies[tie.body], support(model, system, tie)
+        at, body, (force, moment) = place(model, system, tie), model.bodies[tie.body], tie_reaction(model, system, tie)
         s = 0.0 if tie.end == "start" else model.lengths[tie.beam]
         yield PointForce(tie.point, model.mesh.names[tie.beam], s, at, force, moment)
-        if body.dofs is not None and not is_own(tie, scene):  # the row of an own body states the reaction
+        if body.dofs is not None and not is_face_alone(tie, scene):  # the row of an own body states the reaction
             yield PointForce(tie.point, body.name, np.nan, at, -force, -moment)
 
 
@@ -74,7 +74,7 @@ def _at_stops(march: March) -> Iterator[PointForce]:
     for stop in model.stops:
         moment = stop.moment(z)
         if moment:
-            tie = next(tie for tie in model.ties if stands_on(tie, model.bodies) == stop.psi)
+            tie = next(tie for tie in model.ties if rotation_unknown(tie, model.bodies) == stop.psi)
             at, s = place(model, march.system, tie), 0.0 if tie.end == "start" else model.lengths[tie.beam]
             yield PointForce(stop.name, model.mesh.names[tie.beam], s, at, np.zeros(2), moment)
             if stop.phi is not None:
@@ -87,7 +87,7 @@ def _at_contact(scene: Scene, march: March, touch: Touch) -> Iterator[PointForce
     mine = np.hypot(*touch.push.T) > 0.0
     points, push = touch.points[mine], touch.push[mine]
     yield from _on_edge(scene, march, pair.name, (pair.skin, touch.zeta[mine]), points, push)
-    other = pair.other.skin if isinstance(pair.other, Tip) else pair.other
+    other = pair.other.skin if isinstance(pair.other, CornerOnEdge) else pair.other
     if isinstance(other, Skin):
         yield from _on_edge(scene, march, pair.name, (other, touch.facing[mine]), points, -push)
     elif body.dofs is not None:

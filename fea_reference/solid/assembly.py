@@ -33,16 +33,16 @@ def assemble_ends(scene: Scene, march: March) -> None:
     moments = next(i for i, part in enumerate(whole.stepped) if isinstance(part, SharePart))
     way = whole.stepped.index(WAY)
     try:
-        _stand(march, _loose(whole), march.values[:-1], march.system.z[: -len(whole.apart)])
+        _continue_with(march, _with_free_ends(whole), march.values[:-1], march.system.z[: -len(whole.apart)])
         reach(march, moments, 1.0)
-        caught = _caught(whole, march.system.z)
+        caught = _with_held_ends(whole, march.system.z)
         unheld = np.concatenate([march.system.z, np.zeros(len(whole.apart))])
-        _stand(march, replace(caught, stops=()), np.append(march.values, 1.0), unheld)
+        _continue_with(march, replace(caught, stops=()), np.append(march.values, 1.0), unheld)
         reach(march, way, 0.0)
         forbidden = [mistake for stop in whole.stops for mistake in _forbidden(march, stop, scene)]
         if forbidden:
             raise SceneError(forbidden)
-        _stand(march, caught, march.values, march.system.z)
+        _continue_with(march, caught, march.values, march.system.z)
         reach(march, moments, 0.0)
     except StoppedError as stopped:
         raise StoppedError(stopped.ending, f"during the assembly: {stopped.sentence}") from stopped
@@ -50,20 +50,20 @@ def assemble_ends(scene: Scene, march: March) -> None:
     march.closing = dict.fromkeys(march.closing, 0.0)
 
 
-def _stand(march: March, model: Model, values: Array, z: Array) -> None:
+def _continue_with(march: March, model: Model, values: Array, z: Array) -> None:
     """Continue load stepping with another mechanism."""
     march.model, march.values, march.step = model, values, np.inf
     march.system = assemble(model, march.penalties, march.settings.quadrature, values, z)
 
 
-def _loose(model: Model) -> Model:
+def _with_free_ends(model: Model) -> Model:
     """The mechanism with free ends, without stops."""
-    held = tuple(row for row in model.rows if not row.point)
+    remaining = tuple(row for row in model.rows if not row.point)
     drives = tuple(part for part in model.drives if part is not WAY)
-    return replace(model, rows=held, drives=drives, stops=(), size=model.size - len(model.apart))
+    return replace(model, rows=remaining, drives=drives, stops=(), size=model.size - len(model.apart))
 
 
-def _caught(model: Model, z: Array) -> Model:
+def _with_held_ends(model: Model, z: Array) -> Model:
     """The mechanism with the ends held at their positions in a state ``z`` with free ends: the way is one."""
     rows = tuple(replace(row, way=row.violation(model.bodies, z)) if row.point else row for row in model.rows)
     return replace(model, rows=rows)
@@ -74,10 +74,10 @@ def _forbidden(march: March, stop: StopPart, scene: Scene) -> list[Mistake]:
     angle = stop.angle(march.system.z)
     for key, limit, beyond in (("least", stop.least, stop.least - angle), ("most", stop.most, angle - stop.most)):
         if beyond > _BEYOND:
-            found = (
+            message = (
                 f"{limit:g} rad: a stop that forbids the assembly, by which {scene.stops[stop.name].beam!r} comes to "
                 f"stand at {angle:.4g} rad"
             )
             allowed = "limits that the assembled beam keeps, or other moments"
-            return [Mistake(f"stops.{stop.name}.{key}", found, allowed, scene.file)]
+            return [Mistake(f"stops.{stop.name}.{key}", message, allowed, scene.file)]
     return []

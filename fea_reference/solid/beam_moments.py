@@ -59,8 +59,9 @@ class CouplePart:
         return dofs, np.asarray(np.kron(np.outer(self.weights, self.weights), bent), dtype=float)
 
     def turned(self, drawn: Array, places: Array, start: float) -> float:
-        """θ, rad, from positions ``drawn`` to ``places`` (N, 2); ``start`` is the rotation of the way's first
-        section.
+        """θ, rad, from positions ``drawn`` to ``places`` (N, 2).
+
+        ``start`` (rad) is the rotation of the first section of the way.
         """
         leaning = [self._directions(x) for x in (drawn, places)]
         turns = np.angle(leaning[1] / leaning[0])

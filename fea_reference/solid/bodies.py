@@ -73,12 +73,12 @@ class Tie:
     psi: int | None
 
 
-def is_own(tie: Tie, scene: Scene) -> bool:
+def is_face_alone(tie: Tie, scene: Scene) -> bool:
     """True if a tie's body is the face alone, of an end drawn apart from its point."""
     return tie.body >= len(scene.bodies)
 
 
-def stands_on(tie: Tie, bodies: Sequence[BodyPart]) -> int | None:
+def rotation_unknown(tie: Tie, bodies: Sequence[BodyPart]) -> int | None:
     """Unknown of a face's own rotation: ψ, or φ of a body that is the face alone; None if neither exists."""
     dofs = bodies[tie.body].dofs
     return tie.psi if tie.psi is not None or dofs is None else int(dofs[2])

@@ -6,8 +6,8 @@ from cprbm_scene.answer import Certificate
 from fea_reference.solid.contacts import touch
 from fea_reference.solid.curvature import smallest_curvature
 from fea_reference.solid.march import March
-from fea_reference.solid.pairs import Butt, Pair
-from fea_reference.solid.rigid import seen
+from fea_reference.solid.pairs import CornerOnShape, Pair
+from fea_reference.solid.rigid import in_body_frame
 from fea_reference.solid.skin import Skin
 from fea_reference.solid.stops import STIFFNESS
 from fea_reference.solid.supports import balance
@@ -33,8 +33,8 @@ def certify(march: March) -> Certificate:
     residual = float(np.abs(system.residual[:first_row]).max()) / system.scale
     floor = system.floor / system.scale
     violation = float(np.abs(system.residual[first_row:]).max(initial=0.0))
-    penetration = max((one.penetration / one.pair.measure for one in system.touches), default=0.0)
-    behind = max((_other_way(march, pair) for pair in march.penalties), default=0.0)
+    penetration = max((contact.penetration / contact.pair.measure for contact in system.touches), default=0.0)
+    behind = max((_penetration_from_other_side(march, pair) for pair in march.penalties), default=0.0)
     force, moment = balance(model, system, march.values)
     curvature = smallest_curvature(model, system)
     thinnest = float(system.strained.determinants.min())
@@ -75,10 +75,10 @@ def certify(march: March) -> Certificate:
     )
 
 
-def _other_way(march: March, pair: Pair) -> float:
+def _penetration_from_other_side(march: March, pair: Pair) -> float:
     """Penetration of two edges seen from the other edge, relative to the mean thickness."""
-    if isinstance(pair.other, Butt):
-        return _face(march, pair, pair.other)
+    if isinstance(pair.other, CornerOnShape):
+        return _face_penetration(march, pair, pair.other)
     if not isinstance(pair.other, Skin):
         return 0.0
     turned = Pair(pair.name, pair.other, pair.skin, -1, pair.measure, -pair.way)
@@ -86,10 +86,10 @@ def _other_way(march: March, pair: Pair) -> float:
     return touch(march.model, turned, 1.0, march.settings.quadrature, system.q, system.z).penetration / pair.measure
 
 
-def _face(march: March, pair: Pair, butt: Butt) -> float:
+def _face_penetration(march: March, pair: Pair, butt: CornerOnShape) -> float:
     """Penetration of an end's face into a rigid body, relative to the thickness."""
     model, system = march.model, march.system
     nodes = model.mesh.face(pair.skin.beam, 1.0 if butt.last else 0.0)
     places = (model.mesh.places + system.q.reshape(-1, 2))[nodes]
-    g, _, _ = butt.shape.measured(seen(model.bodies[pair.body], places, system.z))
+    g, _, _ = butt.shape.measured(in_body_frame(model.bodies[pair.body], places, system.z))
     return max(0.0, -float(g.min())) / pair.measure

@@ -33,17 +33,17 @@ def smallest_curvature(model: Model, system: System) -> float:
     inverse = LinearOperator((model.size, model.size), matvec=system.factors.solve, dtype=float)
     start = system.carried.T @ np.resize([1.0, 0.7], system.carried.shape[0])
     try:
-        found = eigsh(
+        values = eigsh(
             system.tangent, k=_MODES, M=diags_array(mass).tocsc(), sigma=0.0, OPinv=inverse, v0=start,
             return_eigenvectors=False, tol=1e-6,
         )  # fmt: skip
     except ArpackError:
         return float("nan")
-    negative = int((found < 0.0).sum()) + len(model.rows)
-    return float(found.min()) if _odd(system.factors) == bool(negative % 2) else float("nan")
+    negative = int((values < 0.0).sum()) + len(model.rows)
+    return float(values.min()) if _odd(system.factors) == bool(negative % 2) else float("nan")
 
 
-def beside_minima(model: Model, system: System) -> bool:
+def has_odd_negative_count(model: Model, system: System) -> bool:
     """True if the tangent's determinant shows an odd number of negative curvatures: no minimum."""
     return system.factors is not None and _odd(system.factors) != bool(len(model.rows) % 2)
 

@@ -53,8 +53,8 @@ class Broken:
         past = along - np.clip(along, self.low, self.high)
         nearest = np.hypot(g, past).argmin(axis=1)
         every = np.arange(len(xi))
-        found = np.where(past[every, nearest] == 0.0, g[every, nearest], np.inf)  # otherwise a corner is nearest
-        return found, normal[nearest], np.zeros((len(xi), 2, 2))
+        gaps = np.where(past[every, nearest] == 0.0, g[every, nearest], np.inf)  # otherwise a corner is nearest
+        return gaps, normal[nearest], np.zeros((len(xi), 2, 2))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -87,7 +87,7 @@ class Strained:
         weighted = self.stress * self.elements.mesh.weights[..., None]
         return np.asarray(np.einsum("eqij,eqi->ej", self.B, weighted))
 
-    def foreseen(self, step: Array) -> Array:
+    def predicted(self, step: Array) -> Array:
         """σ (e, q, 3): S after a ``step`` of the displacements (2N,), to first order."""
         change = np.einsum("eqij,ej->eqi", self.B, step[self.elements.dofs])
         return np.asarray((self.strain + change) @ self.elements.elasticity)
@@ -107,7 +107,7 @@ class Strained:
         return local
 
 
-def built(mesh: Mesh, elasticity: Array) -> Elements:
+def build_elements(mesh: Mesh, elasticity: Array) -> Elements:
     """Elements of a mesh with C (beams, 3, 3) by beam."""
     dofs = np.stack([2 * mesh.cells, 2 * mesh.cells + 1], axis=2).reshape(len(mesh.cells), 18)
     size = 2 * len(mesh.places)
@@ -124,7 +124,7 @@ def plane_stress(youngs_modulus: float, poisson_ratio: float) -> Array:
     return youngs_modulus / (1.0 - nu**2) * np.array([[1.0, nu, 0.0], [nu, 1.0, 0.0], [0.0, 0.0, 0.5 * (1.0 - nu)]])
 
 
-def strained(elements: Elements, u: Array) -> Strained:
+def strain_elements(elements: Elements, u: Array) -> Strained:
     """The elements under displacements (2N,)."""
     mesh = elements.mesh
     e, q = mesh.weights.shape

@@ -78,10 +78,10 @@ def gaps(skin: Skin, x: Array, points: Array, normals: Array, reach: float, own:
     y, slope, _ = skin.curve(x, place)
     n = skin.outward(slope)
     d = p - y
-    found = (d * n).sum(axis=1)
+    lateral = (d * n).sum(axis=1)
     beside = np.abs((d * slope).sum(axis=1)) / (slope**2).sum(axis=1)
-    facing = (beside < 1e-6) & ((n * normals[near]).sum(axis=1) < _OPPOSED) & (found > -0.5 * skin.thickness)
-    gap[near] = np.where(facing, found, np.inf)
+    facing = (beside < 1e-6) & ((n * normals[near]).sum(axis=1) < _OPPOSED) & (lateral > -0.5 * skin.thickness)
+    gap[near] = np.where(facing, lateral, np.inf)
     zeta[near], faced[near] = place, facing
     return Gaps(gap, zeta, faced)
 

@@ -25,11 +25,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from cprbm_scene.answer import Array, Ending
-from fea_reference.solid.curvature import beside_minima
+from fea_reference.solid.curvature import has_odd_negative_count
 from fea_reference.solid.model import Model
-from fea_reference.solid.newton import Found, equilibrium
+from fea_reference.solid.newton import Solved, equilibrium
 from fea_reference.solid.pairs import Pair
-from fea_reference.solid.passing import passed
+from fea_reference.solid.passing import contact_passed_through
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.system import System, assemble
 
@@ -69,7 +69,7 @@ class March:
     Attributes:
         model: the mechanism.
         settings: numerical settings.
-        penalties: current ρ by pair; ``asked`` are the values at stations.
+        penalties: current ρ by pair; ``requested`` are the values at stations.
         values: dimensionless values of all stepped parameters.
         system: the last equilibrium.
         closing: value (SI) at the first closing, by contact.
@@ -80,31 +80,31 @@ class March:
     model: Model
     settings: Settings
     penalties: dict[Pair, float]
-    asked: dict[Pair, float]
+    requested: dict[Pair, float]
     values: Array
     system: System
     closing: dict[str, float] = field(default_factory=dict)
     iterations: int = 0
     step: float = np.inf
 
-    def look(self, values: Array, z: Array, penalties: dict[Pair, float]) -> Found:
+    def search(self, values: Array, z: Array, penalties: dict[Pair, float]) -> Solved:
         """Equilibrium near ``z``, or the reason of a failure; counts the iterations.
 
         Raises:
             StoppedError: the station's iterations are exhausted.
         """
-        found = equilibrium(self.model, penalties, self.settings, values, z)
-        self.iterations += found.iterations
+        solved = equilibrium(self.model, penalties, self.settings, values, z)
+        self.iterations += solved.iterations
         if self.iterations > self.settings.iteration_limit:
             raise StoppedError(
                 Ending.STEP_TOO_SMALL, f"no convergence within {self.settings.iteration_limit} iterations"
             )
-        return found
+        return solved
 
     def loosen(self) -> None:
         """Lower all penalties, down to their least values."""
         self.penalties = {
-            pair: max(_LOOSER * rho, min(rho, _LOOSEST * self.asked[pair])) for pair, rho in self.penalties.items()
+            pair: max(_LOOSER * rho, min(rho, _LOOSEST * self.requested[pair])) for pair, rho in self.penalties.items()
         }
 
 
@@ -135,41 +135,45 @@ def reach(march: March, part: int, target: float) -> None:
     why, blocked, cuts = "", "", 0
     while True:
         here = float(march.values[part])
-        left = target - here
-        if left == 0.0:
+        remaining = target - here
+        if remaining == 0.0:
             break
-        step = left if abs(left) < _WHOLE * march.step else float(np.copysign(march.step, left))
+        step = remaining if abs(remaining) < _WHOLE * march.step else float(np.copysign(march.step, remaining))
         if cuts > _CUTS or here + step == here:
             name, unit = march.model.stepped[part].name, march.model.stepped[part].unit
             ending = Ending.NOT_A_MINIMUM if why == _NO_MINIMUM else Ending.STEP_TOO_SMALL
             why += f"; in a longer step {blocked}" if blocked and blocked != why else ""
             raise StoppedError(ending, f"beyond {name} = {here * unit:.6g} no equilibrium is found: {why}")
-        goal = target if step == left else here + step
+        goal = target if step == remaining else here + step
         values = march.values.copy()
         values[part] = goal
-        found = march.look(values, march.system.z, march.penalties)
-        through = "" if found.system is None else passed(march.model, march.penalties, march.system.z, found.system.z)
-        aside = found.system is not None and beside_minima(march.model, found.system)
-        if found.system is None or through or aside:
+        solved = march.search(values, march.system.z, march.penalties)
+        through = (
+            ""
+            if solved.system is None
+            else contact_passed_through(march.model, march.penalties, march.system.z, solved.system.z)
+        )
+        aside = solved.system is not None and has_odd_negative_count(march.model, solved.system)
+        if solved.system is None or through or aside:
             blocked = f"a beam passes through the opposite body in contact {through}" if through else blocked
-            why = blocked if through else _NO_MINIMUM if aside else found.why
+            why = blocked if through else _NO_MINIMUM if aside else solved.why
             march.step, cuts = _CUT * abs(step), cuts + 1
-            if found.system is None:
+            if solved.system is None:
                 march.loosen()
             continue
         cuts = 0
         before = march.system
-        march.values, march.system = values, found.system
-        march.step *= 2.0 if found.iterations <= _EASY else 1.0
-        if march.penalties is not march.asked:
+        march.values, march.system = values, solved.system
+        march.step *= 2.0 if solved.iterations <= _EASY else 1.0
+        if march.penalties is not march.requested:
             _tighten(march)
-        _note_closings(march, part, here, before)
-    _fasten(march)
+        _record_closings(march, part, here, before)
+    _restore_penalties(march)
     _tighten(march)
     _polish(march)
 
 
-def leave_stage(march: March) -> None:
+def reset_step(march: March) -> None:
     """Forget the step limit: the next stage steps another parameter."""
     march.step = np.inf
 
@@ -177,10 +181,10 @@ def leave_stage(march: March) -> None:
 def _polish(march: March) -> None:
     """Iterate to round-off, because balances sum the residuals of many nodes. On failure the state is unchanged."""
     settings = replace(march.settings, residual=_POLISHED)
-    found = equilibrium(march.model, march.penalties, settings, march.values, march.system.z)
-    march.iterations += found.iterations
-    if found.system is not None:
-        march.system = found.system
+    solved = equilibrium(march.model, march.penalties, settings, march.values, march.system.z)
+    march.iterations += solved.iterations
+    if solved.system is not None:
+        march.system = solved.system
 
 
 def _tighten(march: March) -> None:
@@ -191,57 +195,61 @@ def _tighten(march: March) -> None:
     """
     while True:
         deep = [
-            one.pair for one in march.system.touches if one.penetration > march.settings.penetration * one.pair.measure
+            contact.pair
+            for contact in march.system.touches
+            if contact.penetration > march.settings.penetration * contact.pair.measure
         ]
         if not deep:
             return
         penalties = march.penalties | {pair: _STIFFER * march.penalties[pair] for pair in deep}
         if max(penalties.values()) > _STIFFEST * march.settings.stiffness:
             return  # the certificate reports the penetration
-        found = march.look(march.values, march.system.z, penalties)
-        if found.system is None:
-            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact penalty cannot be raised as requested: {found.why}")
-        march.penalties, march.system = penalties, found.system
-        march.asked = {pair: max(rho, penalties[pair]) for pair, rho in march.asked.items()}
+        solved = march.search(march.values, march.system.z, penalties)
+        if solved.system is None:
+            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact penalty cannot be raised as requested: {solved.why}")
+        march.penalties, march.system = penalties, solved.system
+        march.requested = {pair: max(rho, penalties[pair]) for pair, rho in march.requested.items()}
 
 
-def _fasten(march: March) -> None:
+def _restore_penalties(march: March) -> None:
     """Restore the requested penalties.
 
     Raises:
         StoppedError: no equilibrium is found.
     """
-    if march.penalties != march.asked:
-        found = _fastened(march, march.values, march.system.z, march.penalties, march.asked)
-        if found.system is None:
-            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact penalty cannot be raised as requested: {found.why}")
-        march.system = found.system
-    march.penalties = march.asked
+    if march.penalties != march.requested:
+        solved = _with_penalties(march, march.values, march.system.z, march.penalties, march.requested)
+        if solved.system is None:
+            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact penalty cannot be raised as requested: {solved.why}")
+        march.system = solved.system
+    march.penalties = march.requested
 
 
-def _fastened(march: March, values: Array, z: Array, loose: dict[Pair, float], asked: dict[Pair, float]) -> Found:
-    """Equilibrium with the penalties ``asked``, from ``z`` with loose ones, in smaller factors if needed."""
-    factor, found = _TIGHTER, Found(None, 0)
-    while loose != asked:
-        penalties = {pair: min(factor * rho, asked[pair]) for pair, rho in loose.items()}
-        found = march.look(values, z, penalties)
-        if found.system is not None:
-            loose, z = penalties, found.system.z
+def _with_penalties(
+    march: March, values: Array, z: Array, loose: dict[Pair, float], requested: dict[Pair, float]
+) -> Solved:
+    """Equilibrium with the ``requested`` penalties, from ``z`` with loose ones, in smaller factors if needed."""
+    factor, solved = _TIGHTER, Solved(None, 0)
+    while loose != requested:
+        penalties = {pair: min(factor * rho, requested[pair]) for pair, rho in loose.items()}
+        solved = march.search(values, z, penalties)
+        if solved.system is not None:
+            loose, z = penalties, solved.system.z
             continue
         factor = float(np.sqrt(factor))
         if factor < _GENTLY:
             break
-    return found
+    return solved
 
 
-def _note_closings(march: March, part: int, here: float, before: System) -> None:
+def _record_closings(march: March, part: int, here: float, before: System) -> None:
     """Record the first closings in a step from the system ``before``, at the value ``here``.
 
     The penetrations under the current penalties are within the request.
     """
     unit = march.model.stepped[part].unit
-    was = _least(before)
-    for name, gap in _least(march.system).items():
+    was = _least_gaps(before)
+    for name, gap in _least_gaps(march.system).items():
         if name in march.closing or not gap < 0.0:
             continue
         march.closing[name] = (here if was[name] <= 0.0 else _closing(march, part, name, here, before)) * unit
@@ -253,28 +261,28 @@ def _closing(march: March, part: int, name: str, here: float, before: System) ->
     Raises:
         StoppedError: no closing is found.
     """
-    goal, gap = float(march.values[part]), _least(before)[name]
-    loose, asked = (
-        {pair: rho for pair, rho in rhos.items() if pair.name != name} for rhos in (march.penalties, march.asked)
+    goal, gap = float(march.values[part]), _least_gaps(before)[name]
+    loose, requested = (
+        {pair: rho for pair, rho in rhos.items() if pair.name != name} for rhos in (march.penalties, march.requested)
     )
     known = {here: before.z}
-    c = _vanishing(march, part, name, loose, known, (here, gap), 0.5 * (here + goal))
+    c = _zero_of_gap(march, part, name, loose, known, (here, gap), 0.5 * (here + goal))
     if c is None:
         unit = march.model.stepped[part].unit
         raise StoppedError(
             Ending.STEP_TOO_SMALL,
             f"the closing of {name} between {here * unit:.6g} and {goal * unit:.6g} was not found",
         )
-    if loose == asked:
+    if loose == requested:
         return c
-    found = _fastened(march, _at(march, part, c), known[_nearest(known, c)], loose, asked)
-    if found.system is None:
+    solved = _with_penalties(march, _at(march, part, c), known[_nearest(known, c)], loose, requested)
+    if solved.system is None:
         return c
-    tight = _vanishing(march, part, name, asked, {here: before.z, c: found.system.z}, (here, gap), c)
+    tight = _zero_of_gap(march, part, name, requested, {here: before.z, c: solved.system.z}, (here, gap), c)
     return c if tight is None else tight
 
 
-def _vanishing(
+def _zero_of_gap(
     march: March,
     part: int,
     name: str,
@@ -306,17 +314,17 @@ def _vanishing(
     whole = abs(b - a)
     for look in range(_LOOKS):
         values, nearest = _at(march, part, c), _nearest(known, c)
-        found = march.look(values, known[nearest], without)
-        if found.system is None or beside_minima(march.model, found.system):
+        solved = march.search(values, known[nearest], without)
+        if solved.system is None or has_odd_negative_count(march.model, solved.system):
             c = 0.5 * (nearest + c)
             continue
         # so near the known state Newton's method may need no iteration, while the residual is significant for a nearly
         # closed gap
-        left = found.system.solve(-found.system.residual)
-        z = found.system.z if left is None else found.system.z + left
+        correction = solved.system.solve(-solved.system.residual)
+        z = solved.system.z if correction is None else solved.system.z + correction
         watching = assemble(march.model, watched, march.settings.quadrature, values, z)
-        fc = min(one.zones.least for one in watching.touches)
-        if passed(march.model, watched, known[a], z):
+        fc = min(contact.zones.least for contact in watching.touches)
+        if contact_passed_through(march.model, watched, known[a], z):
             fc = -np.inf
         else:
             known[c] = z
@@ -347,9 +355,9 @@ def _nearest(known: dict[float, Array], c: float) -> float:
     return min(known, key=lambda value: abs(value - c))
 
 
-def _least(system: System) -> dict[str, float]:
+def _least_gaps(system: System) -> dict[str, float]:
     """The least gap of every contact."""
-    found: dict[str, float] = {}
-    for one in system.touches:
-        found[one.pair.name] = min(found.get(one.pair.name, np.inf), one.zones.least)
-    return found
+    gaps: dict[str, float] = {}
+    for contact in system.touches:
+        gaps[contact.pair.name] = min(gaps.get(contact.pair.name, np.inf), contact.zones.least)
+    return gaps

@@ -59,13 +59,13 @@ class Mesh:
 
     def line(self, beam: int, eta: float) -> Ints:
         """The nodes of a beam at a place across, from its start to its end."""
-        found = np.flatnonzero((self.beams == beam) & (np.abs(self.eta - eta) < _ON))
-        return np.asarray(found[np.argsort(self.u[found])])
+        nodes = np.flatnonzero((self.beams == beam) & (np.abs(self.eta - eta) < _ON))
+        return np.asarray(nodes[np.argsort(self.u[nodes])])
 
     def face(self, beam: int, u: float) -> Ints:
         """The nodes of a beam's section, from its right to its left."""
-        found = np.flatnonzero((self.beams == beam) & (np.abs(self.u - u) < _ON))
-        return np.asarray(found[np.argsort(self.eta[found])])
+        nodes = np.flatnonzero((self.beams == beam) & (np.abs(self.u - u) < _ON))
+        return np.asarray(nodes[np.argsort(self.eta[nodes])])
 
 
 def plain_rectangle(along: Array, across: int) -> tuple[Array, NDArray[np.int64]]:
@@ -74,7 +74,7 @@ def plain_rectangle(along: Array, across: int) -> tuple[Array, NDArray[np.int64]
     return np.ascontiguousarray(mesh.p), np.ascontiguousarray(mesh.t)
 
 
-def meshed(
+def build_mesh(
     scene: Scene, counts: Mapping[str, int], across: int, length: float, rectangle: Rectangle = plain_rectangle
 ) -> Mesh:
     """Mesh of a scene's beams.

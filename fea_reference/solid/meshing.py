@@ -11,7 +11,7 @@ from fea_reference.solid import carried, gmshed
 from fea_reference.solid.mesh import Rectangle, plain_rectangle
 
 
-def chosen() -> tuple[Rectangle, str]:
+def choose_mesher() -> tuple[Rectangle, str]:
     """The mesher of rectangles, and a note for the answer."""
     if gmshed.available() and carried.available():
         return by_gmsh, "meshed by gmsh, structured along the beams"

@@ -28,10 +28,10 @@ from cprbm_scene.statement import (
 from fea_reference.solid.areas import longest
 from fea_reference.solid.beam_loads import AreaLoad, on_area
 from fea_reference.solid.beam_moments import CouplePart, couple
-from fea_reference.solid.bodies import BodyPart, Tie, across, displaced, is_own, turned
-from fea_reference.solid.elements import Elements, Strained, built, plane_stress, strained
-from fea_reference.solid.mesh import Mesh, Rectangle, meshed, plain_rectangle
-from fea_reference.solid.rows import Row, brought, rows_of
+from fea_reference.solid.bodies import BodyPart, Tie, across, displaced, is_face_alone, turned
+from fea_reference.solid.elements import Elements, Strained, build_elements, plane_stress, strain_elements
+from fea_reference.solid.mesh import Mesh, Rectangle, build_mesh, plain_rectangle
+from fea_reference.solid.rows import Row, assembly_rows, rows_of
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.stops import StopPart, stops_of
 
@@ -157,20 +157,20 @@ class Model:
 
     def turning(self, forces: Array, z: Array) -> list[tuple[int, float]]:
         """Unknowns and Σ f·∂²q for ``forces`` (2N,): the diagonal terms of rotating ties in the tangent."""
-        found = []
+        terms = []
         f = forces.reshape(-1, 2)
         for tie in self.ties:
             dofs = self.bodies[tie.body].dofs
             arms = tie.pin + (tie.offsets if tie.psi is None else np.zeros_like(tie.offsets))
             if dofs is not None:
-                found.append((int(dofs[2]), -float((f[tie.nodes] * turned(arms, z[dofs[2]])).sum())))
+                terms.append((int(dofs[2]), -float((f[tie.nodes] * turned(arms, z[dofs[2]])).sum())))
             if tie.psi is not None:
-                found.append((tie.psi, -float((f[tie.nodes] * turned(tie.offsets, z[tie.psi])).sum())))
-        return found
+                terms.append((tie.psi, -float((f[tie.nodes] * turned(tie.offsets, z[tie.psi])).sum())))
+        return terms
 
-    def strained(self, q: Array) -> Strained:
+    def strain_elements(self, q: Array) -> Strained:
         """The elements under displacements (2N,)."""
-        return strained(self.elements, q)
+        return strain_elements(self.elements, q)
 
 
 def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectangle) -> Model:
@@ -181,7 +181,7 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
     """
     counts = settings.elements_of(scene.beams)
     length = longest(scene)
-    mesh = meshed(scene, counts, settings.across, length, rectangle)
+    mesh = build_mesh(scene, counts, settings.across, length, rectangle)
     beams = list(scene.beams.values())
     widest = max(float(beam.width_at(beam.knots).max()) for beam in beams)
     stiffest = max(
@@ -192,20 +192,20 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
     )
     units = Units(length, stiffest, mesh.origin, widest)
     materials = [scene.materials[beam.material] for beam in beams]
-    elasticity = np.stack([plane_stress(one.youngs_modulus, one.poisson_ratio) for one in materials])
+    elasticity = np.stack([plane_stress(material.youngs_modulus, material.poisson_ratio) for material in materials])
     # E w per length of the mesh, whose weights contain w over the largest
-    elements = built(mesh, elasticity * widest * units.length / units.force)
+    elements = build_elements(mesh, elasticity * widest * units.length / units.force)
 
     number = {name: i for i, name in enumerate(scene.bodies)}
-    held = np.zeros(len(mesh.places), dtype=bool)
+    tied = np.zeros(len(mesh.places), dtype=bool)
     joints = []
     for i, beam in enumerate(beams):
         for which, end, u in (("start", beam.start, 0.0), ("end", beam.end, 1.0)):
             if not isinstance(end, FreeEnd):
                 nodes = mesh.face(i, u)
-                held[nodes] = True
+                tied[nodes] = True
                 joints.append((i, which, end, nodes))
-    free = np.flatnonzero(~np.repeat(held, 2))
+    free = np.flatnonzero(~np.repeat(tied, 2))
     size = free.size
     psis: list[int | None] = []
     for i, which, end, _ in joints:
@@ -230,7 +230,7 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
             size += 3
         ties.append(Tie(i, which, end.point, b, nodes, middle - bodies[b].centre, mesh.places[nodes] - middle, psi))
     rows = rows_of(scene, tuple(bodies), size)
-    rows += brought(scene, ties, tuple(bodies), number, size + len(rows), WAY.name)
+    rows += assembly_rows(scene, ties, tuple(bodies), number, size + len(rows), WAY.name)
     return Model(
         units,
         mesh,
@@ -256,28 +256,28 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
 def _loads(
     scene: Scene, mesh: Mesh, bodies: Sequence[BodyPart], number: dict[str, int], units: Units
 ) -> list[LoadPart | AreaLoad | CouplePart]:
-    found: list[LoadPart | AreaLoad | CouplePart] = []
+    loads: list[LoadPart | AreaLoad | CouplePart] = []
     for name, load in scene.loads.items():
         match load:
             case Moment():
-                found.append(LoadPart(name, number[load.body], np.zeros(2), None, units.moment))
+                loads.append(LoadPart(name, number[load.body], np.zeros(2), None, units.moment))
             case Force():
                 b = number[scene.body_of(load.point)]
                 direction = np.array(load.direction) / np.hypot(*load.direction)
-                found.append(LoadPart(name, b, bodies[b].arm(load.point), direction, units.force))
+                loads.append(LoadPart(name, b, bodies[b].arm(load.point), direction, units.force))
             case BeamForce() | DistributedLoad():
-                found.append(on_area(name, load, scene, mesh, units.force, units.length))
+                loads.append(on_area(name, load, scene, mesh, units.force, units.length))
             case BeamMoment():
                 from_end = isinstance(scene.beams[load.beam].start, FreeEnd)
-                found.append(couple(name, load, mesh, units.moment, from_end=from_end))
-    return found
+                loads.append(couple(name, load, mesh, units.moment, from_end=from_end))
+    return loads
 
 
 def _shares(scene: Scene, mesh: Mesh, ties: Sequence[Tie], bodies: Sequence[BodyPart], units: Units) -> list[SharePart]:
     """The share of the assembly's moments, if there is an assembly."""
     if scene.assembly is None:
         return []
-    on = [tie for tie in ties if is_own(tie, scene) and mesh.names[tie.beam] in scene.assembly.moments]
+    on = [tie for tie in ties if is_face_alone(tie, scene) and mesh.names[tie.beam] in scene.assembly.moments]
     dofs = [int(dofs[2]) for tie in on if (dofs := bodies[tie.body].dofs) is not None]
     moments = [scene.assembly.moments[mesh.names[tie.beam]] / units.moment for tie in on]
     return [SharePart(np.array(dofs, dtype=np.intp), np.array(moments))]

@@ -27,7 +27,7 @@ from fea_reference.solid import edges
 from fea_reference.solid.bodies import BodyPart
 from fea_reference.solid.edges import Corner
 from fea_reference.solid.model import Model
-from fea_reference.solid.rigid import Half, Round, Shape, seen
+from fea_reference.solid.rigid import Half, Round, Shape, in_body_frame
 from fea_reference.solid.skin import Skin
 
 RigidContacts = CircleContact | HalfPlaneContact | LineContact | FunctionContact
@@ -45,14 +45,14 @@ class Pair:
 
     name: str
     skin: Skin
-    other: Skin | Shape | Corner | Tip | Butt
+    other: Skin | Shape | Corner | CornerOnEdge | CornerOnShape
     body: int
     measure: float
     way: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Tip:
+class CornerOnEdge:
     """The corner of an end: the ``last`` or first place of an edge, opposite to the other edge of a pair.
 
     With ``own`` the corner belongs to the pair's edge and ``skin`` is the opposite edge, else conversely.
@@ -68,7 +68,7 @@ class Tip:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Butt:
+class CornerOnShape:
     """The corner of an end, the ``last`` or first place of the pair's edge, against a rigid ``shape``."""
 
     shape: Shape
@@ -77,7 +77,7 @@ class Butt:
 
 def pairs_of(scene: Scene, model: Model) -> tuple[Pair, ...]:
     """The pairs of a scene's contacts."""
-    found: list[Pair] = []
+    pairs: list[Pair] = []
     number = {body.name: i for i, body in enumerate(model.bodies)}
     for name, contact in scene.contacts.items():
         match contact:
@@ -85,40 +85,42 @@ def pairs_of(scene: Scene, model: Model) -> tuple[Pair, ...]:
                 one, other = (_skins(scene, model, beam) for beam in contact.between)
                 for a, b in product(one, other):
                     measure = 0.5 * (a.thickness + b.thickness)
-                    found.append(Pair(name, a, b, -1, measure))
-                    found += [
-                        Pair(name, a, Tip(b, own, last), -1, measure)
+                    pairs.append(Pair(name, a, b, -1, measure))
+                    pairs += [
+                        Pair(name, a, CornerOnEdge(b, own, last), -1, measure)
                         for own, last in product((True, False), (False, True))
                     ]
             case SelfContact():
                 own_edges = _skins(scene, model, contact.beam)
                 for a, b in product(own_edges, own_edges):
-                    found.append(Pair(name, a, b, -1, a.thickness, -1))
-                    found += [
-                        Pair(name, a, Tip(b, own=True, last=last), -1, a.thickness, way)
+                    pairs.append(Pair(name, a, b, -1, a.thickness, -1))
+                    pairs += [
+                        Pair(name, a, CornerOnEdge(b, own=True, last=last), -1, a.thickness, way)
                         for last, way in ((False, 1), (True, -1))
                     ]
             case CircleContact() | HalfPlaneContact() | LineContact() | FunctionContact():
                 body = model.bodies[number[contact.body]]
                 for shape, skin in product(_shapes(contact, body, model), _skins(scene, model, contact.beam)):
-                    found.append(Pair(name, skin, shape, number[contact.body], skin.thickness))
+                    pairs.append(Pair(name, skin, shape, number[contact.body], skin.thickness))
                     if not isinstance(shape, Corner):
-                        found += [
+                        pairs += [
                             Pair(name, skin, butt, number[contact.body], skin.thickness)
-                            for butt in (Butt(shape, last=False), Butt(shape, last=True))
-                            if _comes_from_outside(scene, contact, model, skin, butt)
+                            for butt in (CornerOnShape(shape, last=False), CornerOnShape(shape, last=True))
+                            if _may_touch_from_outside(scene, contact, model, skin, butt)
                         ]
-    return tuple(found)
+    return tuple(pairs)
 
 
-def _comes_from_outside(scene: Scene, contact: RigidContacts, model: Model, skin: Skin, butt: Butt) -> bool:
+def _may_touch_from_outside(
+    scene: Scene, contact: RigidContacts, model: Model, skin: Skin, butt: CornerOnShape
+) -> bool:
     """True if an end's corner may touch a shape: neither part of the shape's body nor inside the shape at rest."""
     beam = scene.beams[contact.beam]
     end = beam.end if butt.last else beam.start
     if isinstance(end, WeldedEnd) and scene.body_of(end.point) == contact.body:
         return False
     body = next(body for body in model.bodies if body.name == contact.body)
-    there = seen(body, skin.places[[-1 if butt.last else 0]], np.zeros(model.size))
+    there = in_body_frame(body, skin.places[[-1 if butt.last else 0]], np.zeros(model.size))
     return float(butt.shape.measured(there)[0][0]) > -_INSIDE
 
 

@@ -15,13 +15,13 @@ from cprbm_scene.answer import Array
 from fea_reference.solid.edges import Corner
 from fea_reference.solid.model import Model
 from fea_reference.solid.pairs import Pair
-from fea_reference.solid.rigid import Round, seen
+from fea_reference.solid.rigid import Round, in_body_frame
 from fea_reference.solid.skin import Skin
 
 _LOOKS = 16
 
 
-def passed(model: Model, pairs: Iterable[Pair], before: Array, after: Array) -> str:
+def contact_passed_through(model: Model, pairs: Iterable[Pair], before: Array, after: Array) -> str:
     """Name of the contact that a beam passed through between unknowns ``before`` and ``after``; empty if none."""
     places = [model.mesh.places + model.displacements(z).reshape(-1, 2) for z in (before, after)]
     looked_at = set()
@@ -31,18 +31,18 @@ def passed(model: Model, pairs: Iterable[Pair], before: Array, after: Array) -> 
         if isinstance(pair.other, Skin):
             both = pair.skin.beam, pair.other.beam
             other = model.mesh.line(pair.other.beam, 0.0)
-            if both not in looked_at and crossed(*(x[line] for line in (own, other) for x in places)):
+            if both not in looked_at and lines_cross_on_way(*(x[line] for line in (own, other) for x in places)):
                 return pair.name
             looked_at.add(both)
         elif isinstance(pair.other, Round | Corner):
             body = model.bodies[pair.body]
-            a, b = (seen(body, x[own], z) for x, z in zip(places, (before, after), strict=True))
-            if swept(a, b, pair.other.centre if isinstance(pair.other, Round) else pair.other.point):
+            a, b = (in_body_frame(body, x[own], z) for x, z in zip(places, (before, after), strict=True))
+            if sweeps_over(a, b, pair.other.centre if isinstance(pair.other, Round) else pair.other.point):
                 return pair.name
     return ""
 
 
-def swept(a: Array, b: Array, point: Array) -> bool:
+def sweeps_over(a: Array, b: Array, point: Array) -> bool:
     """True if a line through points (n, 2), moving straight from ``a`` to ``b``, sweeps over ``point`` (2,)."""
     return bool(_within(a[:-1], a[1:], b[:-1], point).any() or _within(a[1:], b[1:], b[:-1], point).any())
 
@@ -60,15 +60,15 @@ def _side(p: Array, q: Array, r: Array) -> Array:
     )
 
 
-def crossed(a: Array, b: Array, c: Array, d: Array) -> bool:
+def lines_cross_on_way(a: Array, b: Array, c: Array, d: Array) -> bool:
     """True if lines cross while moving straight from ``a`` to ``b`` (n, 2) and from ``c`` to ``d`` (m, 2)."""
     shares = np.linspace(0.0, 1.0, _LOOKS + 1)[1:]
-    return any(cross(a + share * (b - a), c + share * (d - c)) for share in shares)
+    return any(lines_cross(a + share * (b - a), c + share * (d - c)) for share in shares)
 
 
-def cross(one: Array, other: Array) -> bool:
+def lines_cross(first_line: Array, second_line: Array) -> bool:
     """True if two lines through points (n, 2) and (m, 2) cross."""
-    a, b = one[:-1, None], one[1:, None]
-    c, d = other[None, :-1], other[None, 1:]
+    a, b = first_line[:-1, None], first_line[1:, None]
+    c, d = second_line[None, :-1], second_line[None, 1:]
     apart = (_side(a, b, c) * _side(a, b, d) < 0.0) & (_side(c, d, a) * _side(c, d, b) < 0.0)
     return bool(apart.any())

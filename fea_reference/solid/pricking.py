@@ -34,15 +34,15 @@ def place(corner: Corner, body: BodyPart, z: Array) -> tuple[Array, Array]:
 def gap(corner: Corner, body: BodyPart, skin: Skin, y: Array, reach: float, z: Array) -> tuple[float, float]:
     """g, infinite without an opposite place within ``reach`` on an edge with nodes ``y`` (N, 2), and ζ."""
     x, normal = place(corner, body, z)
-    found = facing.gaps(skin, y, x, normal, reach)
-    return float(found.gap[0]), float(found.zeta[0])
+    gaps = facing.gaps(skin, y, x, normal, reach)
+    return float(gaps.gap[0]), float(gaps.zeta[0])
 
 
 def variations(corner: Corner, body: BodyPart, skin: Skin, y: Array, zeta: Array, z: Array) -> tuple[Array, Array]:
     """∂g (1, 17) and ∂²g (1, 17, 17) at ζ (1,); the 17 are (x, y) of the edge's seven nodes there, and (X, Y, φ)."""
     x, _ = place(corner, body, z)
     _, N, N1, _ = skin.shapes(zeta)
-    point, slope, bend = (one[0] for one in skin.curve(y, zeta))
+    point, slope, bend = (vectors[0] for vectors in skin.curve(y, zeta))
     n = skin.outward(slope[None])[0]
     J = float(np.hypot(*slope))
     tangent = slope / J

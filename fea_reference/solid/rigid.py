@@ -55,7 +55,7 @@ class Half:
 Shape = Round | Half | Broken | Graph
 
 
-def seen(body: BodyPart, points: Array, z: Array) -> Array:
+def in_body_frame(body: BodyPart, points: Array, z: Array) -> Array:
     """ξ (k, 2) of points (k, 2)."""
     X, Y, phi = body.state(z)
     return turned(points - body.centre - np.array([X, Y]), -phi)
@@ -67,7 +67,7 @@ def variations(shape: Shape, body: BodyPart, points: Array, shapes: Array, z: Ar
     The 17 unknowns are (x, y) of the point's seven nodes, with shape functions ``shapes`` (k, 7), and (X, Y, φ).
     """
     k, n = len(points), 2 * shapes.shape[1]
-    xi = seen(body, points, z)
+    xi = in_body_frame(body, points, z)
     g, h, H = shape.measured(xi)
     phi = float(body.state(z)[2])
     Rt = np.array([[np.cos(phi), np.sin(phi)], [-np.sin(phi), np.cos(phi)]])

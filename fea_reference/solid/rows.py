@@ -16,7 +16,7 @@ import numpy as np
 
 from cprbm_scene.answer import Array, Ints
 from cprbm_scene.statement import BodyPin, DisplacementDrive, Drive, Scene, SlidingBody, TurningBody
-from fea_reference.solid.bodies import BodyPart, Tie, across, is_own, turned
+from fea_reference.solid.bodies import BodyPart, Tie, across, is_face_alone, turned
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,15 +46,15 @@ class Row:
 
     def violation(self, bodies: tuple[BodyPart, ...], z: Array) -> float:
         """c for the value zero."""
-        found = self.apart
+        value = self.apart
         for share in self.shares:
             body = bodies[share.body]
-            found += (
+            value += (
                 float(body.state(z)[2])
                 if share.direction is None
                 else float(share.direction @ body.motion(share.arm, z))
             )
-        return found
+        return value
 
     def gradient(self, bodies: tuple[BodyPart, ...], z: Array) -> tuple[Ints, Array]:
         """Unknowns (k,) and the derivatives (k,) of c."""
@@ -84,21 +84,21 @@ class Row:
 def rows_of(scene: Scene, bodies: tuple[BodyPart, ...], first: int) -> tuple[Row, ...]:
     """A scene's rows, with multipliers from the unknown ``first`` on."""
     number = {body.name: i for i, body in enumerate(bodies)}
-    found: list[tuple[str, tuple[Share, ...], str | None]] = []
+    parts: list[tuple[str, tuple[Share, ...], str | None]] = []
     for name, both in scene.pins.items():
-        found += _pinned(name, both, scene, bodies, number)
+        parts += _pinned(name, both, scene, bodies, number)
     for name, body in scene.bodies.items():
         i = number[name]
         if isinstance(body, SlidingBody):
             along = np.array(body.along) / np.hypot(*body.along)
             pin = np.zeros(2) if body.pin is None else bodies[i].arm(body.pin)
-            found.append((name, (Share(i, across(along), pin),), None))
+            parts.append((name, (Share(i, across(along), pin),), None))
             if body.pin is None:
-                found.append((name, (Share(i, None, pin),), None))
+                parts.append((name, (Share(i, None, pin),), None))
         elif isinstance(body, TurningBody):
-            found += [(name, (Share(i, direction, bodies[i].arm(body.about)),), None) for direction in np.eye(2)]
-    found += [(name, (_driven(drive, scene, bodies, number),), name) for name, drive in scene.drives.items()]
-    return tuple(Row(name, shares, first + i, drive) for i, (name, shares, drive) in enumerate(found))
+            parts += [(name, (Share(i, direction, bodies[i].arm(body.about)),), None) for direction in np.eye(2)]
+    parts += [(name, (_driven(drive, scene, bodies, number),), name) for name, drive in scene.drives.items()]
+    return tuple(Row(name, shares, first + i, drive) for i, (name, shares, drive) in enumerate(parts))
 
 
 def _pinned(
@@ -116,18 +116,18 @@ def _driven(drive: Drive, scene: Scene, bodies: tuple[BodyPart, ...], number: di
     return Share(number[drive.body], None, np.zeros(2))
 
 
-def brought(
+def assembly_rows(
     scene: Scene, ties: Sequence[Tie], bodies: tuple[BodyPart, ...], number: Mapping[str, int], first: int, drive: str
 ) -> tuple[Row, ...]:
     """Pins of ends drawn apart from their points, stepped by ``drive``, with multipliers from ``first`` on."""
-    found: list[Row] = []
+    rows: list[Row] = []
     for tie in ties:
-        if not is_own(tie, scene):
+        if not is_face_alone(tie, scene):
             continue
         other = number[scene.body_of(tie.point)]
         arm = bodies[other].arm(tie.point)
         apart = bodies[tie.body].centre - bodies[other].centre - arm
         for e in np.eye(2):
             shares = (Share(tie.body, e, np.zeros(2)), Share(other, -e, arm))
-            found.append(Row(tie.point, shares, first + len(found), drive, tie.point, float(e @ apart)))
-    return tuple(found)
+            rows.append(Row(tie.point, shares, first + len(rows), drive, tie.point, float(e @ apart)))
+    return tuple(rows)

@@ -78,8 +78,8 @@ class Settings:
         if not isinstance(self.elements, Mapping):
             return dict.fromkeys(names, self.elements)
         if set(self.elements) != set(names):
-            found = ", ".join(f"{name}={n}" for name, n in self.elements.items())
-            raise SceneError([Mistake("settings.elements", found, "one number for each of " + ", ".join(names))])
+            counts = ", ".join(f"{name}={n}" for name, n in self.elements.items())
+            raise SceneError([Mistake("settings.elements", counts, "one number for each of " + ", ".join(names))])
         return {name: self.elements[name] for name in names}
 
     def finer(self) -> Settings:

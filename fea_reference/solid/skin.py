@@ -35,10 +35,10 @@ _WAVE = polynomial.polymul([0.0, 1.0, 0.0, -1.0], [-3.0 / 16.0, 0.0, 7.0 / 16.0]
 
 def _coefficients(elements: int) -> Array:
     """Coefficients (e, 7, 7) of powers of ξ by the stencil's nodes, for every element."""
-    found = np.zeros((elements, STENCIL, STENCIL))
+    coefficients = np.zeros((elements, STENCIL, STENCIL))
     for e in range(elements):
         first = 2 * e - int(np.clip(2 * e - 2, 0, 2 * elements - STENCIL + 1))
-        found[e, :3, first : first + 3] = _PARABOLA
+        coefficients[e, :3, first : first + 3] = _PARABOLA
         for there, own, other, beside, sign in (
             (e > 0, _BEGIN, _END, -2, -1.0),
             (e < elements - 1, _END, _BEGIN, 2, 1.0),
@@ -48,8 +48,8 @@ def _coefficients(elements: int) -> Array:
             more = np.zeros(STENCIL)
             more[first + beside : first + beside + 3] += 0.5 * other
             more[first : first + 3] -= 0.5 * own
-            found[e] -= np.outer(polynomial.polymul(_WAVE, [1.0, sign]), more)
-    return found
+            coefficients[e] -= np.outer(polynomial.polymul(_WAVE, [1.0, sign]), more)
+    return coefficients
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ class Skin:
         second[:, 2:] = n[1:] * n[:-1] * powers[:, :-2]
         begin = np.clip(2 * e - 2, 0, self.nodes.size - STENCIL)
         own = self.coefficients[e]
-        N, N1, N2 = ((each[:, None] @ own)[:, 0] for each in (powers, first, second))
+        N, N1, N2 = ((polynomials[:, None] @ own)[:, 0] for polynomials in (powers, first, second))
         return begin[:, None] + np.arange(STENCIL), N, N1, N2
 
     def at(self, values: Array, zeta: Array) -> Array:

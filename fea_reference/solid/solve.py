@@ -10,8 +10,8 @@ from cprbm_scene.statement import Scene, Stage
 from fea_reference.solid import answer_sheet
 from fea_reference.solid.assembly import assemble_ends
 from fea_reference.solid.certificates import certify
-from fea_reference.solid.march import March, StoppedError, begin, leave_stage, reach
-from fea_reference.solid.meshing import chosen
+from fea_reference.solid.march import March, StoppedError, begin, reach, reset_step
+from fea_reference.solid.meshing import choose_mesher
 from fea_reference.solid.model import build
 from fea_reference.solid.pairs import pairs_of
 from fea_reference.solid.probes import probed, shapes, touching
@@ -52,8 +52,8 @@ class Prepared:
                 known: dict[str, str] = {}  # closed contacts, with the parameter stepped at their closing
                 assemble_ends(scene, march)
                 for stage in scene.stages:
-                    leave_stage(march)
-                    part = [one.name for one in march.model.stepped].index(stage.steps)
+                    reset_step(march)
+                    part = [part.name for part in march.model.stepped].index(stage.steps)
                     unit = march.model.stepped[part].unit
                     for station in stage.stations:
                         reach(march, part, station / unit)
@@ -94,7 +94,7 @@ def prepared(scene: Scene, settings: Settings = _DEFAULT) -> Prepared:
     """
     began = time.perf_counter()
     refuse(scene)
-    rectangle, how = chosen()
+    rectangle, how = choose_mesher()
     model = build(scene, settings, rectangle)
     march = begin(model, settings, pairs_of(scene, model))
     return Prepared(scene, settings, march, time.perf_counter() - began, (how,))

@@ -21,7 +21,7 @@ import numpy as np
 from cprbm_scene.answer import Array
 from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import PinnedEnd, Scene
-from fea_reference.solid.bodies import BodyPart, Tie, stands_on
+from fea_reference.solid.bodies import BodyPart, Tie, rotation_unknown
 
 STIFFNESS = 1e6
 """K over the largest bending stiffness, per longest beam."""
@@ -59,13 +59,13 @@ class StopPart:
 def stops_of(scene: Scene, bodies: Sequence[BodyPart], ties: Sequence[Tie]) -> tuple[StopPart, ...]:
     """The scene's stops."""
     names = list(scene.beams)
-    found = []
+    stops = []
     for name, stop in scene.stops.items():
         beam = scene.beams[stop.beam]
         end = beam.start if stop.end == "start" else beam.end
         tie = next(tie for tie in ties if (names[tie.beam], tie.end) == (stop.beam, stop.end))
         assert isinstance(end, PinnedEnd)
-        psi = stands_on(tie, bodies)
+        psi = rotation_unknown(tie, bodies)
         assert psi is not None
         u, way = (0.0, 1.0) if stop.end == "start" else (1.0, -1.0)
         leaving = way * shape_of(beam.curve).tangent(np.array([u]))[0]
@@ -75,5 +75,5 @@ def stops_of(scene: Scene, bodies: Sequence[BodyPart], ties: Sequence[Tie]) -> t
         carrier = next(i for i, body in enumerate(bodies) if end.point in body.points)
         dofs = bodies[carrier].dofs
         least, most = (-np.inf if stop.least is None else stop.least), (np.inf if stop.most is None else stop.most)
-        found.append(StopPart(name, psi, carrier, None if dofs is None else int(dofs[2]), turn, least, most))
-    return tuple(found)
+        stops.append(StopPart(name, psi, carrier, None if dofs is None else int(dofs[2]), turn, least, most))
+    return tuple(stops)

@@ -17,7 +17,7 @@ from cprbm_scene.answer import Array
 from fea_reference.solid.beam_loads import AreaLoad
 from fea_reference.solid.beam_moments import CouplePart
 from fea_reference.solid.bodies import across, turned
-from fea_reference.solid.contacts import Foreseen, Touch, least_gap, touch
+from fea_reference.solid.contacts import PredictedGap, Touch, least_gap, touch
 from fea_reference.solid.elements import Strained
 from fea_reference.solid.model import LoadPart, Model, SharePart
 from fea_reference.solid.pairs import Pair
@@ -28,11 +28,11 @@ _NOTHING = 10.0  # floors: smaller forces are round-off
 
 
 @dataclass(frozen=True, slots=True)
-class Outlook:
+class Prediction:
     """Prediction of a step: ``stress`` (e, q, 3) of the elements and ``gaps`` of the pairs."""
 
     stress: Array
-    gaps: Mapping[Pair, Foreseen]
+    gaps: Mapping[Pair, PredictedGap]
 
 
 @dataclass(frozen=True)
@@ -70,11 +70,11 @@ class System:
         solution = None if self.factors is None else self.factors.solve(right)
         return None if solution is None or not np.isfinite(solution).all() else solution
 
-    def outlook(self, step: Array) -> Outlook:
+    def prediction(self, step: Array) -> Prediction:
         """Prediction for a ``step`` of the unknowns, to first order."""
         moved = self.carried @ step
-        stress = self.strained.foreseen(moved)
-        return Outlook(stress, {one.pair: one.foreseen(moved) for one in self.touches})
+        stress = self.strained.predicted(moved)
+        return Prediction(stress, {contact.pair: contact.predicted_gap(moved) for contact in self.touches})
 
     @cached_property
     def factors(self) -> SuperLU | None:
@@ -93,7 +93,7 @@ def assemble(
     quadrature: int,
     values: Array,
     z: Array,
-    foreseen: Outlook | None = None,
+    predicted: Prediction | None = None,
 ) -> System:
     """Residual and tangent in state ``z``.
 
@@ -103,12 +103,12 @@ def assemble(
         quadrature: Gauss points per part of a zone.
         values: dimensionless values of all stepped parameters, in the model's order.
         z: the unknowns.
-        foreseen: prediction of the last step for the second part of the tangent; None for the state's own.
+        predicted: prediction of the last step for the second part of the tangent; None for the state's own.
     """
     q = model.displacements(z)
-    elements = model.strained(q)
+    elements = model.strain_elements(q)
     touches = tuple(
-        touch(model, pair, factor, quadrature, q, z, None if foreseen is None else foreseen.gaps[pair])
+        touch(model, pair, factor, quadrature, q, z, None if predicted is None else predicted.gaps[pair])
         for pair, factor in penalties.items()
     )
     local = elements.gradient
@@ -117,13 +117,13 @@ def assemble(
     # the mesh's q, followed by three unknowns of every body
     forces: Array = np.bincount(model.elements.dofs.ravel(), local.ravel(), nodes + 3 * m).astype(float)
     rows, columns, entries = [], [], []
-    for one in touches:
-        if one.zeta.size:
-            forces += np.bincount(one.dofs.ravel(), one.gradient.ravel(), nodes + 3 * m)
-            wide = np.broadcast_to(one.dofs[:, :, None], one.hessian.shape)
+    for contact in touches:
+        if contact.zeta.size:
+            forces += np.bincount(contact.dofs.ravel(), contact.gradient.ravel(), nodes + 3 * m)
+            wide = np.broadcast_to(contact.dofs[:, :, None], contact.hessian.shape)
             rows.append(wide.ravel())
             columns.append(wide.transpose(0, 2, 1).ravel())
-            entries.append(one.hessian.ravel())
+            entries.append(contact.hessian.ravel())
     for part, value in zip(model.loads, values[: len(model.loads)], strict=True):
         if isinstance(part, AreaLoad | CouplePart):
             acting = part.forces if isinstance(part, AreaLoad) else part.forces(places)
@@ -136,7 +136,7 @@ def assemble(
             entries.append(-value * bent.ravel())
     carried = vstack([model.chain(z), _moving(model)], format="csr")
     stiffness = model.elements.pattern.matrix(
-        elements.hessian(elements.stress if foreseen is None else foreseen.stress)
+        elements.hessian(elements.stress if predicted is None else predicted.stress)
     )
     stiffness = block_diag((stiffness, csc_matrix((3 * m, 3 * m))), format="csc")
     if rows:
@@ -179,7 +179,7 @@ def assemble(
         more.append(value)
     extra = coo_matrix((more, (more_rows, more_columns)), (model.size, model.size))
     tangent = (carried.T @ stiffness @ carried + extra).tocsc()
-    pressing = [float(np.abs(one.gradient).max()) for one in touches if one.zeta.size]
+    pressing = [float(np.abs(contact.gradient).max()) for contact in touches if contact.zeta.size]
     largest = max(
         float(np.abs(local).max()), float(np.abs(values[: len(model.loads)]).max(initial=0.0)), *pressing, 0.0
     )

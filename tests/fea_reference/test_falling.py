@@ -39,7 +39,7 @@ def test_a_fall_beyond_a_fold_takes_few_steps(monkeypatch):
         return made
 
     monkeypatch.setattr(descent, "_step", watched)
-    assert descent.descended(march, 0, TURNED, TURNED, lost) is not None
+    assert descent.descend(march, 0, TURNED, TURNED, lost) is not None
     assert len(failed) <= 2
 
 

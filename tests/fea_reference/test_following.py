@@ -124,28 +124,28 @@ class Sharp:
 def test_a_turn_sharper_than_a_step_is_not_stepped_over(monkeypatch):
     sharp, ends = Sharp(), []
     unit = SimpleNamespace(weights=np.ones(1), weight=1.0, at=lambda value: np.array([value]))
-    monkeypatch.setattr(following, "_letting_go", lambda march, load, target, span: None)
-    monkeypatch.setattr(following, "_slipping_off", lambda march, load, target, span: None)
+    monkeypatch.setattr(following, "_vanishing_contact", lambda march, load, target, span: None)
+    monkeypatch.setattr(following, "_end_slip", lambda march, load, target, span: None)
     monkeypatch.setattr(following, "_branch", lambda march, load, span: unit)
     monkeypatch.setattr(following, "place", lambda branch, value, system, before: sharp.at(0.0))
-    monkeypatch.setattr(following, "onwards", sharp.onwards)
-    monkeypatch.setattr(following, "_apart", lambda branch, one, other: 0.0)
+    monkeypatch.setattr(following, "place_at", sharp.onwards)
+    monkeypatch.setattr(following, "_distance", lambda branch, one, other: 0.0)
 
     def lost(march, branch, first, here, there, length):
         ends.append((here, there))
         return SimpleNamespace(value=here.value, uncertainty=0.0, system=there.system)
 
-    monkeypatch.setattr(following, "_lost", lost)
+    monkeypatch.setattr(following, "_critical_between", lost)
     march = SimpleNamespace(
         saved=lambda: None,
-        look=lambda: None,
-        loose=False,
-        soft=lambda: False,
+        update_sides=lambda: None,
+        loosened=False,
+        has_soft_penalty=lambda: False,
         values=np.zeros(1),
         system=SimpleNamespace(z=None, touches=()),
         model=SimpleNamespace(size=1, moving=np.array([True])),
         least_gap=lambda system: np.inf,
-        passed=lambda before, system, what: None,
+        passing_failure=lambda before, system, what: None,
     )
     follow_branch(march, 0, 1.0, 1.0)
     ((here, there),) = ends
@@ -167,6 +167,6 @@ def test_places_on_two_branches_are_told_apart_at_once():
 
     branch = SimpleNamespace(weights=np.full(1, 0.5), weight=0.5, span=1.0)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(following, "onwards", lambda branch, here, length: at(length))
-        assert following._lost(None, branch, at(0.0), at(0.0), at(0.5), 0.5) is None
+        patched.setattr(following, "place_at", lambda branch, here, length: at(length))
+        assert following._critical_between(None, branch, at(0.0), at(0.0), at(0.5), 0.5) is None
     assert len(seen) < 15
