@@ -8,7 +8,7 @@ from elastica_reference.newton import LostError
 from elastica_reference.restructure import NotCoveredError, moved_to_ends
 from elastica_reference.state import State
 from elastica_reference.structure import Resting, Touch, Wrap
-from elastica_reference.way import Way, places_of, touches_of
+from elastica_reference.way import Stepping, places_of, touches_of
 
 LEAST_FORCE = -1e-10  # of a contact's force, dimensionless
 _LEAST_WRAP_FORCE = -1e-6  # times a wrap's force
@@ -18,7 +18,7 @@ _ABOUT_TO_SLIDE = 0.05  # times a beam's length: distance from which a place of 
 _LOOKED_AT = 101  # samples along a wrap
 
 
-def open_first_contact(way: Way, trial: State) -> bool:
+def open_first_contact(stepping: Stepping, trial: State) -> bool:
     """Step to the first opening of a contact in tension; True if there is any.
 
     Raises:
@@ -27,19 +27,19 @@ def open_first_contact(way: Way, trial: State) -> bool:
     shares = {}
     for name, force in trial.forces.items():
         if force < LEAST_FORCE:
-            was = way.state.forces[name]
+            was = stepping.state.forces[name]
             shares[name] = was / (was - force) if was > 0.0 else 0.0
     if not shares:
         return False
     name = min(shares, key=lambda key: shares[key])
-    near = way.lam + shares[name] * (trial.lam - way.lam)
-    at = way.at(name, 0.0, near, trial.lam) if shares[name] > 0.0 else way.state
-    way.accept(way.restructured(touches_of(at.structure, name), places_of(at, name), at, at.lam))
-    way.note_side(at.structure.touches[name])
+    near = stepping.lam + shares[name] * (trial.lam - stepping.lam)
+    at = stepping.at(name, 0.0, near, trial.lam) if shares[name] > 0.0 else stepping.state
+    stepping.accept(stepping.restructured(touches_of(at.structure, name), places_of(at, name), at, at.lam))
+    stepping.note_side(at.structure.touches[name])
     return True
 
 
-def change_form(way: Way, trial: State) -> bool:
+def change_form(stepping: Stepping, trial: State) -> bool:
     """Replace places by wraps or end contacts, and conversely, where needed; True if there was any change.
 
     Raises:
@@ -48,7 +48,7 @@ def change_form(way: Way, trial: State) -> bool:
     """
     touches, places = dict(trial.structure.touches), dict(trial.places)
     for name, touch in trial.structure.touches.items():
-        strip = way.model.strips[touch.beam]
+        strip = stepping.model.strips[touch.beam]
         if isinstance(touch, Wrap):
             _check_wrap(trial, touch)
             a, b = trial.wrapped(touch)
@@ -56,7 +56,7 @@ def change_form(way: Way, trial: State) -> bool:
                 del places[name, "begin"], places[name, "end"]
                 touches[name], places[name, touch.beam] = Resting(name, touch.beam, None), 0.5 * (a + b)
             continue
-        touches[name], places = moved_to_ends(trial, way.model, touch, places)
+        touches[name], places = moved_to_ends(trial, stepping.model, touch, places)
         if (
             touches[name] == touch
             and isinstance(touch, Resting)
@@ -69,28 +69,28 @@ def change_form(way: Way, trial: State) -> bool:
             places[name, "begin"], places[name, "end"] = s - half, s + half
     if touches == dict(trial.structure.touches) and not _out_of_order(trial):
         return False
-    fresh = way.restructured(touches, places, way.known, trial.lam, forces=trial.forces)
+    fresh = stepping.restructured(touches, places, stepping.known, trial.lam, forces=trial.forces)
     if not presses(fresh):
         raise LostError
-    way.accept(fresh)
+    stepping.accept(fresh)
     return True
 
 
-def slide_onto_end(way: Way, goal: float) -> bool:
+def slide_onto_end(stepping: Stepping, goal: float) -> bool:
     """Step to the arrival of a place of contact at an end of its beam, if near; True on success."""
-    now = way.state
+    now = stepping.state
     for name, touch in now.structure.touches.items():
         if isinstance(touch, Wrap) or touch.at is not None:
             continue
-        length, s = way.model.strips[touch.beam].length, now.places[name, touch.beam]
+        length, s = stepping.model.strips[touch.beam].length, now.places[name, touch.beam]
         end = length if s > 0.5 * length else 0.0
         if abs(s - end) > _ABOUT_TO_SLIDE * length:
             continue
         try:
-            at = way.at((name, touch.beam), end, goal, goal)
+            at = stepping.at((name, touch.beam), end, goal, goal)
             touches: dict[str, Touch] = {**now.structure.touches, name: replace(touch, at=end)}
             places = {key: value for key, value in at.places.items() if key != (name, touch.beam)}
-            way.accept(way.restructured(touches, places, at, at.lam))
+            stepping.accept(stepping.restructured(touches, places, at, at.lam))
         except LostError:
             continue
         return True

@@ -13,7 +13,7 @@ from elastica_reference.newton import LostError
 from elastica_reference.restructure import NotCoveredError, moved_to_ends, touch_for
 from elastica_reference.state import State
 from elastica_reference.structure import Meeting, Resting, Touch, Wrap
-from elastica_reference.way import Way
+from elastica_reference.way import Stepping
 
 _NEAR_END = 0.2  # times a beam's length: range in which a contact at an end moves inwards
 _SHALLOW = 1e-4  # units of length: depth at which a second place counts
@@ -23,7 +23,7 @@ _FIRST_WRAPS = (0.25, 0.1, 0.03)  # shares of the distance to an overlap: first 
 _PULLS = -1e-9  # of a pressure and of a force, dimensionless
 
 
-def close_first(way: Way, trial: State, overlaps: list[Overlap]) -> None:
+def close_first(stepping: Stepping, trial: State, overlaps: list[Overlap]) -> None:
     """Step to the first closing among the overlaps of a trial.
 
     Raises:
@@ -38,30 +38,30 @@ def close_first(way: Way, trial: State, overlaps: list[Overlap]) -> None:
     for overlap in sorted(overlaps, key=lambda overlap: overlap.beam not in ends):
         present = trial.structure.touches.get(overlap.contact)
         if present is not None:
-            _move_inwards(way, trial, present, overlap)
+            _move_inwards(stepping, trial, present, overlap)
             return
-        clamp = _clamped_on(way, overlap)
+        clamp = _clamped_on(stepping, overlap)
         if clamp is not None:
-            _continue_from_clamp(way, trial, overlap, clamp)
+            _continue_from_clamp(stepping, trial, overlap, clamp)
             return
-        touch, own = touch_for(way.model, overlap)
+        touch, own = touch_for(stepping.model, overlap)
         touches: dict[str, Touch] = {**trial.structure.touches, overlap.contact: touch}
-        state = way.restructured(touches, {**trial.places, **own}, trial, trial.lam, pinned=overlap.contact)
-        ended, places = moved_to_ends(state, way.model, touch, state.places)
+        state = stepping.restructured(touches, {**trial.places, **own}, trial, trial.lam, pinned=overlap.contact)
+        ended, places = moved_to_ends(state, stepping.model, touch, state.places)
         if ended != touch:
             touches[overlap.contact] = ended
-            state = way.restructured(touches, places, state, state.lam, pinned=overlap.contact)
-            if moved_to_ends(state, way.model, ended, state.places)[0] != ended:
+            state = stepping.restructured(touches, places, state, state.lam, pinned=overlap.contact)
+            if moved_to_ends(state, stepping.model, ended, state.places)[0] != ended:
                 raise LostError
-        reached.append((way.between(state, trial.lam), overlap))
-    state, overlap = min(reached, key=lambda item: abs(item[0].lam - way.lam))
-    way.note_closed(overlap.contact, state.lam, trial.lam)
-    way.accept(state)
+        reached.append((stepping.between(state, trial.lam), overlap))
+    state, overlap = min(reached, key=lambda item: abs(item[0].lam - stepping.lam))
+    stepping.note_closed(overlap.contact, state.lam, trial.lam)
+    stepping.accept(state)
 
 
-def _move_inwards(way: Way, trial: State, present: Touch, overlap: Overlap) -> None:
+def _move_inwards(stepping: Stepping, trial: State, present: Touch, overlap: Overlap) -> None:
     """Continue a contact at a beam's end between the ends; elsewhere the overlap would be a second place."""
-    length = way.model.strips[overlap.beam].length
+    length = stepping.model.strips[overlap.beam].length
     second = NotCoveredError(f"{overlap.contact} touches at a second place or along a length")
     if isinstance(present, Wrap) or present.at is None or overlap.beam != present.beam:
         raise second
@@ -73,27 +73,27 @@ def _move_inwards(way: Way, trial: State, present: Touch, overlap: Overlap) -> N
     if isinstance(present, Meeting):
         places[overlap.contact, present.onto] = overlap.sigma
     touches: dict[str, Touch] = {**trial.structure.touches, overlap.contact: replace(present, at=None)}
-    fresh = way.restructured(touches, places, trial, trial.lam)
+    fresh = stepping.restructured(touches, places, trial, trial.lam)
     if not presses(fresh) or not 0.0 <= fresh.places[overlap.contact, overlap.beam] <= length:
         raise otherwise
-    way.accept(fresh)
+    stepping.accept(fresh)
 
 
 # ------------------------------------------------------------------------------- a clamp on the circle
 
 
-def _clamped_on(way: Way, overlap: Overlap) -> str | None:
+def _clamped_on(stepping: Stepping, overlap: Overlap) -> str | None:
     """End of the beam clamped on the circle, tangent to it, near an overlap; None without such an end."""
-    scene, strip = way.model.scene, way.model.strips[overlap.beam]
+    scene, strip = stepping.model.scene, stepping.model.strips[overlap.beam]
     contact = scene.contacts[overlap.contact]
     if not isinstance(contact, CircleContact):
         return None
     for which, end, s in (("start", strip.start, 0.0), ("end", strip.end, strip.length)):
         if end.point is None or not end.welded or scene.body_of(end.point) != contact.body:
             continue
-        arm = way.model.rest(end.point) - np.array(contact.center) / way.model.unit_length
+        arm = stepping.model.rest(end.point) - np.array(contact.center) / stepping.model.unit_length
         half = float(strip.half_thickness(np.array([s]))[0]) if contact.thick else 0.0
-        rho, theta = contact.radius / way.model.unit_length + half, float(strip.line.angle(np.array([s]))[0])
+        rho, theta = contact.radius / stepping.model.unit_length + half, float(strip.line.angle(np.array([s]))[0])
         on_it = abs(math.hypot(*arm) - rho) < _ON_CIRCLE
         tangent = abs(arm[0] * math.cos(theta) + arm[1] * math.sin(theta)) < _ON_CIRCLE
         if on_it and tangent and abs(overlap.s - s) < 0.5 * strip.length:
@@ -101,46 +101,48 @@ def _clamped_on(way: Way, overlap: Overlap) -> str | None:
     return None
 
 
-def _continue_from_clamp(way: Way, trial: State, overlap: Overlap, which: str) -> None:
+def _continue_from_clamp(stepping: Stepping, trial: State, overlap: Overlap, which: str) -> None:
     """Step to equal curvatures of a clamped end and its circle, then continue along the circle or away from it.
 
     The contact at once carries the whole shear force of the clamp.
     """
-    strip, name = way.model.strips[overlap.beam], overlap.contact
+    strip, name = stepping.model.strips[overlap.beam], overlap.contact
     s = 0.0 if which == "start" else strip.length
-    held = np.array([s])
-    arm = trial.along(strip.name, held)[:2, 0] - trial.evaluation.centres[name][:, 0]
+    clamp = np.array([s])
+    arm = trial.along(strip.name, clamp)[:2, 0] - trial.evaluation.centres[name][:, 0]
     sense = sense_of(trial, Resting(name, strip.name, None), s)
     kappa = sense / math.hypot(*arm)
-    wanted = float((strip.rigidity(held) * (kappa - strip.line.curvature(held)))[0])
+    wanted = float((strip.rigidity(clamp) * (kappa - strip.line.curvature(clamp)))[0])
 
     def bent(z: Columns, evaluation: Evaluation) -> Columns:
         part = evaluation.parts[strip.name][0 if which == "start" else -1]
         moment: Columns = part.start[3] if which == "start" else part.end[3]
         return moment - wanted
 
-    at = way.restructured(trial.structure.touches, trial.places, trial, trial.lam, condition=bent)
-    way.between(at, trial.lam)
-    way.note_closed(name, at.lam, trial.lam)
-    way.accept(at)
-    state = _wrap_from_clamp(way, trial, overlap, which, sense) or _place_beyond_clamp(way, trial, overlap, which)
+    at = stepping.restructured(trial.structure.touches, trial.places, trial, trial.lam, condition=bent)
+    stepping.between(at, trial.lam)
+    stepping.note_closed(name, at.lam, trial.lam)
+    stepping.accept(at)
+    state = _wrap_from_clamp(stepping, trial, overlap, which, sense) or _place_beyond_clamp(
+        stepping, trial, overlap, which
+    )
     if state is None:
         raise NotCoveredError(f"the beginning of {name} beside the clamp of {strip.name} was not found")
-    way.accept(state)
+    stepping.accept(state)
 
 
-def _wrap_from_clamp(way: Way, trial: State, overlap: Overlap, which: str, sense: float) -> State | None:
+def _wrap_from_clamp(stepping: Stepping, trial: State, overlap: Overlap, which: str, sense: float) -> State | None:
     """State with a wrap from the clamp, if it presses; else None."""
-    at, name, strip = way.state, overlap.contact, way.model.strips[overlap.beam]
-    if strip.beam.tapered and way.model.scene.contacts[name].thick:
+    at, name, strip = stepping.state, overlap.contact, stepping.model.strips[overlap.beam]
+    if strip.beam.tapered and stepping.model.scene.contacts[name].thick:
         return None
     s, key = (0.0, "end") if which == "start" else (strip.length, "begin")
     wrap = Wrap(name, strip.name, sense, from_start=which == "start", to_end=which == "end")
     for share in _FIRST_WRAPS:
         places = {**at.places, (name, key): s + share * (overlap.s - s)}
         try:
-            state = way.restructured({**at.structure.touches, name: wrap}, places, at, at.lam, pinned=(name, key))
-            way.between(state, trial.lam)
+            state = stepping.restructured({**at.structure.touches, name: wrap}, places, at, at.lam, pinned=(name, key))
+            stepping.between(state, trial.lam)
         except LostError:
             continue
         pressure, begin, end = state.pressures(wrap, np.linspace(*state.wrapped(wrap), 101))
@@ -148,19 +150,19 @@ def _wrap_from_clamp(way: Way, trial: State, overlap: Overlap, which: str, sense
     return None
 
 
-def _place_beyond_clamp(way: Way, trial: State, overlap: Overlap, which: str) -> State | None:
+def _place_beyond_clamp(stepping: Stepping, trial: State, overlap: Overlap, which: str) -> State | None:
     """State with a place of contact that moves away from the clamp; None if there is none."""
-    at, name, strip = way.state, overlap.contact, way.model.strips[overlap.beam]
-    held = at.along(strip.name, np.array([0.0 if which == "start" else strip.length]))[:, 0]
-    arm = held[:2] - at.evaluation.centres[name][:, 0]
-    shear = abs(float(held[4:] @ arm) / math.hypot(*arm))
+    at, name, strip = stepping.state, overlap.contact, stepping.model.strips[overlap.beam]
+    clamp = at.along(strip.name, np.array([0.0 if which == "start" else strip.length]))[:, 0]
+    arm = clamp[:2] - at.evaluation.centres[name][:, 0]
+    shear = abs(float(clamp[4:] @ arm) / math.hypot(*arm))
     for share in _FIRST_PLACES:
         s = share * strip.length if which == "start" else (1.0 - share) * strip.length
         places = {**at.places, (name, strip.name): s}
         touches: dict[str, Touch] = {**at.structure.touches, name: Resting(name, strip.name, None)}
         try:
-            state = way.restructured(touches, places, at, at.lam, forces={name: shear}, pinned=(name, strip.name))
-            way.between(state, trial.lam)
+            state = stepping.restructured(touches, places, at, at.lam, forces={name: shear}, pinned=(name, strip.name))
+            stepping.between(state, trial.lam)
         except LostError:
             continue
         if state.forces[name] > 0.0:

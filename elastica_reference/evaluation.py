@@ -106,8 +106,8 @@ class Evaluation:
         u, v, phi = self.placements[body]
         x, y = rest - self.model.reference(body)
         # cos φ − 1 as −2 sin²(φ/2), exact for small rotations
-        less, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
-        return np.stack([rest[0] + u + less * x - sin * y, rest[1] + v + sin * x + less * y])
+        cos_minus_one, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
+        return np.stack([rest[0] + u + cos_minus_one * x - sin * y, rest[1] + v + sin * x + cos_minus_one * y])
 
     def turned(self, body: str, rest: Array) -> Columns:
         """Vector (2, K) from a body's reference to its point with the reference position ``rest`` (2,)."""

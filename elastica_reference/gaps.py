@@ -74,9 +74,9 @@ def overlaps(
         if isinstance(contact, CircleContact):
             candidates += _of_circle(model, now, name, contact, now.centre(name), touched)
         elif isinstance(contact, BeamContact):
-            one, other = contact.between
-            candidates += _of_pair(model, now, before, name, contact, (one, other), touched, sides)
-            candidates += _of_pair(model, now, before, name, contact, (other, one), touched, sides)
+            first, second = contact.between
+            candidates += _of_pair(model, now, before, name, contact, (first, second), touched, sides)
+            candidates += _of_pair(model, now, before, name, contact, (second, first), touched, sides)
     return [overlap for overlap in candidates if overlap.gap < -tolerance]
 
 
@@ -113,26 +113,26 @@ def _of_pair(
     touched: Mapping[tuple[str, str], tuple[float, float]],
     sides: Mapping[tuple[str, str, str], float],
 ) -> list[Overlap]:
-    one, other = beams
-    a, b = model.strips[one], model.strips[other]
+    first, second = beams
+    a, b = model.strips[first], model.strips[second]
     s, sigma = np.linspace(0.0, a.length, SAMPLES), np.linspace(0.0, b.length, SAMPLES)
 
     def nearest(known: Known) -> Array:
-        A, B = known.along(one, s)[:2], known.along(other, sigma)[:2]
+        A, B = known.along(first, s)[:2], known.along(second, sigma)[:2]
         return np.asarray(sigma[np.argmin((A[0][:, None] - B[0]) ** 2 + (A[1][:, None] - B[1]) ** 2, axis=1)])
 
     def away(known: Known, places: Array, start: Array) -> tuple[Array, Array, Array]:
         """Distances of places to the left of the other line, closest points, and absolute distances."""
-        at, r0 = start.copy(), known.along(one, places)[:2]
+        at, r0 = start.copy(), known.along(first, places)[:2]
         for _ in range(_FEET):
-            x, y, theta, m = known.along(other, at)[:4]
+            x, y, theta, m = known.along(second, at)[:4]
             t, r = np.stack([np.cos(theta), np.sin(theta)]), r0 - np.stack([x, y])
             bent = 1.0 - (b.line.curvature(at) + b.compliance(at) * m) * (t[0] * r[1] - t[1] * r[0])
             step = (t[0] * r[0] + t[1] * r[1]) / np.where(np.abs(bent) > 0.1, bent, 1.0)
             at, last = np.clip(at + step, 0.0, b.length), at
             if np.max(np.abs(at - last)) < _FOUND:
                 break
-        x, y, theta = known.along(other, at)[:3]
+        x, y, theta = known.along(second, at)[:3]
         r = r0 - np.stack([x, y])
         return np.cos(theta) * r[1] - np.sin(theta) * r[0], at, np.hypot(*r)
 
@@ -149,7 +149,7 @@ def _of_pair(
         """
         lateral, at, distance = away(now, places, np.interp(places, s, feet))
         was, foot, _ = away(before, places, np.interp(places, s, feet_before))
-        side = np.where(np.abs(was) > _TOUCHING, np.sign(was), sides.get((name, one, other), 0.0))
+        side = np.where(np.abs(was) > _TOUCHING, np.sign(was), sides.get((name, first, second), 0.0))
         side = np.where(between(foot), side, 0.0)
         apart = a.half_thickness(places) + b.half_thickness(at) if contact.thick else 0.0
         return np.where(side != 0.0, side * lateral - apart, np.inf), at, side, distance
@@ -158,10 +158,10 @@ def _of_pair(
     # far from its initial side a line has gone around the other's end rather than passed through
     gaps = np.where(between(at) & (distance < 0.1), gaps, np.inf)
     minima = []
-    for place, _, at_end in _minima(lambda places: measured(places)[0], s, gaps, touched.get((name, one))):
+    for place, _, at_end in _minima(lambda places: measured(places)[0], s, gaps, touched.get((name, first))):
         value, foot, side, _ = (float(array[0]) for array in measured(np.array([place])))
         if between(np.array([foot]))[0]:
-            minima.append(Overlap(name, one, place, at_end, other, foot, side, value))
+            minima.append(Overlap(name, first, place, at_end, second, foot, side, value))
     return minima
 
 

@@ -28,7 +28,7 @@ from elastica_reference.restructure import NotCoveredError
 from elastica_reference.settings import Settings
 from elastica_reference.state import State
 from elastica_reference.structure import Meeting, Wrap
-from elastica_reference.way import Way
+from elastica_reference.way import Stepping
 
 _SAYS = logging.getLogger(__name__)
 
@@ -64,16 +64,16 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
     refuse(scene)
     chosen = settings or Settings()
     began = time.perf_counter()
-    way = Way(model_of(scene), chosen)
+    stepping = Stepping(model_of(scene), chosen)
     stations: list[StationAnswer] = []
     ending, sentence = Ending.COMPLETED, ""
     try:
         for stage in scene.stages:
-            way.begin(stage)
+            stepping.begin(stage)
             step = 0.0
             for station in stage.stations:
-                step = _advance(way, station / way.unit, step)
-                stations.append(_certified(way, station))
+                step = _advance(stepping, station / stepping.unit, step)
+                stations.append(_certified(stepping, station))
                 station_reached(_SAYS, scene, len(stations), stations[-1])
     except NotCoveredError as error:
         ending, sentence = Ending.NOT_COVERED, f"{error}."
@@ -84,7 +84,7 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
         ending=ending,
         sentence=sentence,
         stations=tuple(stations),
-        events=tuple(way.events),
+        events=tuple(stepping.events),
         seconds=time.perf_counter() - began,
     )
 
@@ -134,77 +134,80 @@ def refuse(scene: Scene) -> None:
     ]
     if refused:
         raise SceneError(
-            [Mistake(key, what, f"{known}, for the exact solution", scene.file) for key, what, known in refused]
+            [Mistake(key, value, f"{allowed}, for the exact solution", scene.file) for key, value, allowed in refused]
         )
 
 
-def _certified(way: Way, station: float) -> StationAnswer:
+def _certified(stepping: Stepping, station: float) -> StationAnswer:
     """A station's answer, whose equations also hold with more Gauss points.
 
     Raises:
         NotCoveredError: the residual with more Gauss points is too large.
     """
     try:
-        finer = residual_with_more_points(way.state, way.settings.further)
+        finer = residual_with_more_points(stepping.state, stepping.settings.further)
     except LostError:
         finer = math.inf
-    if not finer <= way.settings.tolerance:
+    if not finer <= stepping.settings.tolerance:
         raise NotCoveredError(f"at {station:g} more Gauss points are needed: their residual is {finer:.1e}")
-    return station_answer(way, station, finer)
+    return station_answer(stepping, station, finer)
 
 
-def _advance(way: Way, target: float, step: float) -> float:
+def _advance(stepping: Stepping, target: float, step: float) -> float:
     """Step to a dimensionless ``target``; returns the last successful step size.
 
     Raises:
         NotCoveredError: the path leads beyond the equations.
     """
-    whole, changes = target - way.lam, 0
-    largest, smallest = way.settings.largest_step * abs(whole), way.settings.smallest_step * abs(whole)
+    whole, changes = target - stepping.lam, 0
+    largest, smallest = stepping.settings.largest_step * abs(whole), stepping.settings.smallest_step * abs(whole)
     step = min(largest, step or _FIRST_STEP * abs(whole))
     reason, tried = "", 0
-    while way.lam != target:
+    while stepping.lam != target:
         tried += 1
-        goal = target if abs(target - way.lam) <= step else way.lam + math.copysign(step, whole)
+        goal = target if abs(target - stepping.lam) <= step else stepping.lam + math.copysign(step, whole)
         try:
-            trial = way.attempt(goal)
-            if not _accept_or_change(way, trial):
+            trial = stepping.attempt(goal)
+            if not _accept_or_change(stepping, trial):
                 changes += 1
             step = min(1.5 * step, largest)
         except LostError as error:
             reason = f", where {error}" if str(error) else ""
-            if slide_onto_end(way, goal):
+            if slide_onto_end(stepping, goal):
                 changes += 1
             else:
                 step *= 0.4
-        if tried >= way.settings.steps and way.lam != target:
+        if tried >= stepping.settings.steps and stepping.lam != target:
             raise NotCoveredError(
-                f"{way.settings.steps} steps lead no farther than {way.lam * way.unit:.6g} of {way.stepped}"
+                f"{stepping.settings.steps} steps lead no farther than {stepping.lam * stepping.unit:.6g} of "
+                f"{stepping.stepped}"
             )
         if step < smallest or changes > _CHANGES:
-            raise NotCoveredError(f"no equilibrium was found beyond {way.lam * way.unit:.6g} of {way.stepped}{reason}")
+            raise NotCoveredError(
+                f"no equilibrium was found beyond {stepping.lam * stepping.unit:.6g} of {stepping.stepped}{reason}"
+            )
     return step
 
 
-def _accept_or_change(way: Way, trial: State) -> bool:
+def _accept_or_change(stepping: Stepping, trial: State) -> bool:
     """Accept a trial without changes of contact and return True; else step to the first change and return False.
 
     Raises:
         LostError: the change was not found.
         NotCoveredError: there are no equations for the change.
     """
-    if open_first_contact(way, trial) or change_form(way, trial):
+    if open_first_contact(stepping, trial) or change_form(stepping, trial):
         return False
-    overlapping = overlaps(way.model, trial, way.known, _closed_ranges(trial), way.sides, _OVERLAP)
+    overlapping = overlaps(stepping.model, trial, stepping.known, _closed_ranges(trial), stepping.sides, _OVERLAP)
     if overlapping:
         try:
-            close_first(way, trial, overlapping)
+            close_first(stepping, trial, overlapping)
         except LostError as error:
             raise LostError(f"{overlapping[0].contact} touches") from error
         return False
-    if passed_through(way.model, way.known, trial):
+    if passed_through(stepping.model, stepping.known, trial):
         raise LostError
-    way.accept(trial)
+    stepping.accept(trial)
     return True
 
 

@@ -35,11 +35,11 @@ def passed_through(model: Model, before: Known, after: Known) -> bool:
                 return True
             continue
         assert isinstance(contact, BeamContact)
-        for one, other in (contact.between, contact.between[::-1]):
-            sigma = np.linspace(0.0, model.strips[other].length, SAMPLES)
-            for end in (0.0, model.strips[one].length):
+        for first, second in (contact.between, contact.between[::-1]):
+            sigma = np.linspace(0.0, model.strips[second].length, SAMPLES)
+            for end in (0.0, model.strips[first].length):
                 place = np.array([end])
-                p, q = (known.along(other, sigma)[:2] - known.along(one, place)[:2] for known in (before, after))
+                p, q = (known.along(second, sigma)[:2] - known.along(first, place)[:2] for known in (before, after))
                 if _through_line(p, q):
                     return True
     return False

@@ -13,27 +13,27 @@ from elastica_reference.restructure import NotCoveredError
 from elastica_reference.spectral import rule
 from elastica_reference.state import State
 from elastica_reference.structure import Meeting, Wrap
-from elastica_reference.way import Way
+from elastica_reference.way import Stepping
 
 _FLOOR = 1e-13  # of a residual, dimensionless: about a hundred roundings
 
 
-def station_answer(way: Way, value: float, finer: float) -> StationAnswer:
+def station_answer(stepping: Stepping, value: float, finer: float) -> StationAnswer:
     """A station's answer; ``finer`` is the largest row with more Gauss points."""
-    model, state, scene = way.model, way.state, way.model.scene
+    model, state, scene = stepping.model, stepping.state, stepping.model.scene
     # a guide constrains a slide; the remaining direction is a row of the equations
     free = [body for body, freedoms in model.moving.items() if freedoms == 3]
-    left = max((float(np.max(np.abs(state.evaluation.on_body[body]))) for body in free), default=0.0)
+    unbalanced = max((float(np.max(np.abs(state.evaluation.on_body[body]))) for body in free), default=0.0)
     certificate = Certificate(
         residual=max(finer, state.residual),
         residual_floor=_FLOOR,
         violation=state.residual,
         penetration=0.0,
         complementarity=0.0,
-        force_balance=left,
-        moment_balance=left,
-        smallest_curvature=way.curvature,
-        iterations=way.states,
+        force_balance=unbalanced,
+        moment_balance=unbalanced,
+        smallest_curvature=stepping.curvature,
+        iterations=stepping.states,
     )
     shapes = {}
     for name, strip in model.strips.items():
@@ -41,12 +41,12 @@ def station_answer(way: Way, value: float, finer: float) -> StationAnswer:
         x, y = state.along(name, s)[:2] * model.unit_length
         shapes[name] = Shape(frozen_array(s * model.unit_length), frozen_array(x), frozen_array(y))
     return StationAnswer(
-        stage=way.stage,
+        stage=stepping.stage,
         value=value,
         values=frozendict(
             {
                 probe.name: frozen_array(
-                    _value(scene, model, state, probe, way.closed_at) if probe.asked_in(way.stage) else []
+                    _value(scene, model, state, probe, stepping.closed_at) if probe.asked_in(stepping.stage) else []
                 ).ravel()
                 for probe in scene.probes
             }
@@ -157,12 +157,12 @@ def _touching(model: Model, state: State) -> dict[str, Array]:
 def _reaction(scene: Scene, state: State, name: str) -> tuple[Array, float]:
     """Reaction force and moment at a fixed point, or of the drives of a point or body."""
     model, force, moment = state.equations.model, np.zeros(2), 0.0
-    for (beam, which), held in state.evaluation.ends.items():
+    for (beam, which), action in state.evaluation.ends.items():
         strip = model.strips[beam]
         end = strip.start if which == "start" else strip.end
         if end.point == name and scene.body_of(name) not in model.moving:
-            force = force - held.force[:, 0]
-            moment -= float(held.moment[0]) if end.welded else 0.0
+            force = force - action.force[:, 0]
+            moment -= float(action.moment[0]) if end.welded else 0.0
     for drive, index in state.equations.layout.drives.items():
         record, reaction = scene.drives[drive], float(state.z[index])
         if isinstance(record, DisplacementDrive) and record.point == name:

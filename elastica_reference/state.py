@@ -57,7 +57,7 @@ class State:
     Attributes:
         equations: equations of the structure and loads.
         z: unknowns (n,); lam: λ.
-        found: all quantities at z, with a single column.
+        evaluation: all quantities at z, with a single column.
         residual: largest row.
     """
 

@@ -73,6 +73,6 @@ class Structure:
 
     def piece_beyond(self, beam: str, contact: str) -> int:
         """Number of the beam's piece that begins at a contact."""
-        held = {wrap.contact for wrap in self.wraps(beam) if wrap.held}
+        held_wraps = {wrap.contact for wrap in self.wraps(beam) if wrap.held}
         passed = self.order[beam][: self.order[beam].index(contact) + 1]
-        return sum(item not in held for item in passed)
+        return sum(item not in held_wraps for item in passed)

@@ -114,12 +114,12 @@ def _jump(out: Evaluation, structure: Structure, contact: str, beam: str, force:
 
 def _release_ends(out: Evaluation, pushed: dict[tuple[str, str], Columns]) -> None:
     """Transfer the forces of beams and contacts at ends to the bodies; a free end is in equilibrium."""
-    for (beam, which), held in out.ends.items():
+    for (beam, which), action in out.ends.items():
         strip = out.model.strips[beam]
         end = strip.start if which == "start" else strip.end
-        force = held.force + pushed[beam, which] if (beam, which) in pushed else held.force
+        force = action.force + pushed[beam, which] if (beam, which) in pushed else action.force
         if end.point is None:
             out.rows += list(force)
         else:
-            out.act(out.model.scene.body_of(end.point), held.place, force, held.moment)
-            out.ends[beam, which] = EndAction(held.place, force, held.moment)
+            out.act(out.model.scene.body_of(end.point), action.place, force, action.moment)
+            out.ends[beam, which] = EndAction(action.place, force, action.moment)

@@ -23,7 +23,7 @@ _CHANGE = 1.0  # largest change of an unknown in a step, absolute or relative
 
 
 @dataclass
-class Way:
+class Stepping:
     """State of load stepping.
 
     Attributes:

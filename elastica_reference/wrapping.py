@@ -54,12 +54,12 @@ def lie_from_clamp(out: Evaluation, where: Layout, wrap: Wrap, z: Columns) -> No
     part = out.parts[strip.name][0 if wrap.from_start else -1]
     state = part.start[:4] if wrap.from_start else part.end
     free = z[where.places[name, "end" if wrap.from_start else "begin"]]
-    held = np.full_like(free, 0.0 if wrap.from_start else strip.length)
+    clamp_place = np.full_like(free, 0.0 if wrap.from_start else strip.length)
     assert end.point is not None
     clamp = out.moved(out.model.scene.body_of(end.point), out.model.rest(end.point))
     angle = out.angle(strip.name, which)
-    place, theta = _rotated(clamp, centre, angle, g * (free - held) / rho)
-    (m_free, dm_free), (m_held, dm_held) = _moment(strip, wrap, rho, free), _moment(strip, wrap, rho, held)
+    place, theta = _rotated(clamp, centre, angle, g * (free - clamp_place) / rho)
+    (m_free, dm_free), (m_held, dm_held) = _moment(strip, wrap, rho, free), _moment(strip, wrap, rho, clamp_place)
     out.rows += [*(state[:2] - place), state[2] - theta, state[3] - m_free]
     (tangent, e), (tangent_held, e_held) = _frame(theta, g), _frame(angle, g)
     N = _along(part.force, tangent)
@@ -67,10 +67,10 @@ def lie_from_clamp(out: Evaluation, where: Layout, wrap: Wrap, z: Columns) -> No
     inside_held = (N + g / rho * (m_free - m_held)) * tangent_held + g * dm_held * e_held  # (1)
     if wrap.from_start:
         out.ends[strip.name, which] = EndAction(clamp, inside_held, m_held)
-        _record(out, wrap, Zone(held, free, clamp, angle, inside_held, part.force, inside_held, inside_free))
+        _record(out, wrap, Zone(clamp_place, free, clamp, angle, inside_held, part.force, inside_held, inside_free))
     else:
         out.ends[strip.name, which] = EndAction(clamp, -inside_held, -m_held)
-        _record(out, wrap, Zone(free, held, place, theta, part.force, inside_held, inside_free, inside_held))
+        _record(out, wrap, Zone(free, clamp_place, place, theta, part.force, inside_held, inside_free, inside_held))
 
 
 def neutral_radius(out: Evaluation, wrap: Wrap) -> float:

@@ -22,15 +22,15 @@ from fea_reference.state import State
 
 def advance(model: Model, z: State, step: Array) -> State:
     """State ``z`` moved by ``step`` (size,)."""
-    way = step.copy()
+    motion = step.copy()
     for beam in model.beams:
         dofs = model.node_dofs[:2, beam.nodes]
         dx, dy, turn, stretch = _chords(dofs, z, step)
         # change of every chord without cancellation: (1 + stretch) R(turn) minus the identity
         along, across = stretch * np.cos(turn) - 2.0 * np.sin(0.5 * turn) ** 2, (1.0 + stretch) * np.sin(turn)
         changes = np.array([along * dx - across * dy, across * dx + along * dy])
-        way[dofs[:, 1:]] = step[dofs[:, :1]] + np.cumsum(changes, axis=1)
-    return z.moved(way)
+        motion[dofs[:, 1:]] = step[dofs[:, :1]] + np.cumsum(changes, axis=1)
+    return z.moved(motion)
 
 
 def transported(model: Model, before: State, now: State, rate: Array) -> Array:
@@ -52,14 +52,14 @@ def path_terms(model: Model, before: State, now: State, rates: tuple[Array, Arra
     ``rates`` are the path tangents (size,) at both ends.
     """
     here = by * rates[1]
-    come = step_between(model, now, before) + here
+    first_term = step_between(model, now, before) + here
     turned = by * transported(model, before, now, rates[0]) - here
-    return 3.0 * come + turned, 2.0 * come + turned
+    return 3.0 * first_term + turned, 2.0 * first_term + turned
 
 
 def step_between(model: Model, start: State, end: State) -> Array:
     """The step (size,) from ``start`` to ``end``, inverse of :func:`advance`."""
-    way = (end.values - start.values) + (end.rest - start.rest)
+    step = (end.values - start.values) + (end.rest - start.rest)
     for beam in model.beams:
         dofs = model.node_dofs[:2, beam.nodes]
         dx, dy = start.difference(dofs[:, 1:], dofs[:, :-1])
@@ -67,8 +67,8 @@ def step_between(model: Model, start: State, end: State) -> Array:
         ratio = (along + 1j * across) / (dx + 1j * dy)
         turn, stretch = np.angle(ratio), np.abs(ratio) - 1.0
         changes = np.array([stretch * dx - turn * dy, turn * dx + stretch * dy])
-        way[dofs[:, 1:]] = way[dofs[:, :1]] + np.cumsum(changes, axis=1)
-    return way
+        step[dofs[:, 1:]] = step[dofs[:, :1]] + np.cumsum(changes, axis=1)
+    return step
 
 
 def _chords(dofs: Ints, z: State, step: Array) -> tuple[Array, Array, Array, Array]:

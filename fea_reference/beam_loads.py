@@ -139,8 +139,8 @@ def _beam_moment(model: Model, part: BeamMomentPart, value: float, z: State) -> 
     chain = model.chain_of_sections(beam, e)
     local, twice = value * local, value * twice
     work = value * float(theta[0] - rest) + 0.5 * value**2 * float(give)
-    none, place = np.zeros((2, 1)), model.line(beam, z).at(zeta)[0]
-    return BeamLoad(part, value, none, place, work, chain, chain.gradient(local), chain.hessian(twice, local))
+    no_force, place = np.zeros((2, 1)), model.line(beam, z).at(zeta)[0]
+    return BeamLoad(part, value, no_force, place, work, chain, chain.gradient(local), chain.hessian(twice, local))
 
 
 def _moment_at_rest(model: Model, part: BeamMomentPart) -> Array:

@@ -145,19 +145,19 @@ def sign_change(branch: Branch, start: Place, length: float, size: Callable[[Pla
     """
     behind: list[tuple[float, Place]] = []
 
-    def sized(way: float) -> float:
-        there = place_at(branch, start, way) if way > 0.0 else start
+    def sized(distance: float) -> float:
+        there = place_at(branch, start, distance) if distance > 0.0 else start
         if there is None:
             raise ArithmeticError
         value = size(there)
         if value < 0.0:
-            behind.append((way, there))
-        return value if way > 0.0 else max(value, np.finfo(float).tiny)
+            behind.append((distance, there))
+        return value if distance > 0.0 else max(value, np.finfo(float).tiny)
 
     near = _NEAR * length
     try:
         root = brentq(sized, 0.0, length, xtol=near, rtol=_ROUNDED)
-        if min(way for way, _ in behind) > root + 2.0 * near:
+        if min(distance for distance, _ in behind) > root + 2.0 * near:
             sized(root + 2.0 * near)
     except ArithmeticError:
         return None

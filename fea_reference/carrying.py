@@ -34,13 +34,13 @@ def split_zones(along_first: Zones, along_second: Zones, last: int, ends: tuple[
     own = np.zeros(along_second.intervals.shape, dtype=bool)
     for end in ends:
         own |= np.abs(along_second.intervals - end * last) <= _AT_END
-    taken = np.isin(number_m, number_m[own.any(axis=1)])
-    handed = np.zeros(len(number), dtype=bool)
-    for zone in np.unique(number_m[taken]):
+    second_carries = np.isin(number_m, number_m[own.any(axis=1)])
+    transferred = np.zeros(len(number), dtype=bool)
+    for zone in np.unique(number_m[second_carries]):
         places = along_second.intervals[number_m == zone]
         shared = (along_first.zeta_m.min(axis=1) <= places.max()) & (along_first.zeta_m.max(axis=1) >= places.min())
-        handed |= np.isin(number, number[shared])
-    return along_first.chosen(~handed), along_second.chosen(taken)
+        transferred |= np.isin(number, number[shared])
+    return along_first.chosen(~transferred), along_second.chosen(second_carries)
 
 
 def merge_zones(along_first: Zones, along_second: Zones) -> tuple[Zones, Ints]:

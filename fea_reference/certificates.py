@@ -134,11 +134,11 @@ def _drive_below_round_off(march: March) -> bool:
     A rigid motion meets only the round-off of elements, of 12 EI/h³, at any distance.
     """
     model = march.model
-    none = _NONE_MET * float(np.finfo(float).eps) * model.stiffest / float(model.elements.length.min())
+    round_off = _NONE_MET * float(np.finfo(float).eps) * model.stiffest / float(model.elements.length.min())
     first = len(model.loads)
     for number, value in enumerate(march.values[first : first + len(model.drives)], start=first):
         reaction = float(np.abs(march.rate(number)[model.multipliers]).max())
-        if reaction > none and 0.0 < reaction * abs(value) <= NOTHING * march.system.floor:
+        if reaction > round_off and 0.0 < reaction * abs(value) <= NOTHING * march.system.floor:
             return True
     return False
 

@@ -129,8 +129,8 @@ def passes_through(model: Model, circle: Circle, before: State, after: State) ->
     first, last, over = swept_over((lines[0], centres[0]), (lines[1], centres[1]))
     if (over & (first.d * last.d < 0.0)).any():
         return True  # a circle smaller than the distance between chords and arcs
-    way = np.hypot(*(new - old)).max()
-    allowed = circle.radius + circle.edge.nearest - circle.deepest - _SAGITTA * way**2
+    longest_path = np.hypot(*(new - old)).max()
+    allowed = circle.radius + circle.edge.nearest - circle.deepest - _SAGITTA * longest_path**2
     return any(np.hypot(*(old + part * (new - old))).min() < allowed for part in _BETWEEN)
 
 
@@ -200,16 +200,16 @@ def resting_pressure(model: Model, touch: Touch, circle: Circle, z: State) -> fl
     middle = intervals.mean(axis=1)
     zone = np.cumsum(np.append(False, intervals[1:, 0] > intervals[:-1, 1]))
     if intervals[0, 0] <= _AT_END:
-        place, mine = 0.0, zone == 0
+        place, selected = 0.0, zone == 0
     elif intervals[-1, 1] >= line.n - _AT_END:
-        place, mine = float(line.n), zone == zone[-1]
+        place, selected = float(line.n), zone == zone[-1]
     else:
-        place, mine = float(np.median(middle)), zone >= 0
-    if place in (0.0, line.n) and intervals[mine].max() - intervals[mine].min() < 1.0:
+        place, selected = float(np.median(middle)), zone >= 0
+    if place in (0.0, line.n) and intervals[selected].max() - intervals[selected].min() < 1.0:
         return 0.0
-    axial = z[model.element_dofs[6, line.locate(middle[mine])[0] + beam.elements.start]]
-    kappa = 1.0 / (circle.radius + circle.edge.at(middle[mine]))
-    constant = float(np.median(axial + kappa**2 * beam.bending(middle[mine] / line.n)))
+    axial = z[model.element_dofs[6, line.locate(middle[selected])[0] + beam.elements.start]]
+    kappa = 1.0 / (circle.radius + circle.edge.at(middle[selected]))
+    constant = float(np.median(axial + kappa**2 * beam.bending(middle[selected] / line.n)))
     at = np.array([place / line.n])
     stiffness, second = float(beam.bending(at)[0]), float(beam.bending_second(at)[0])
     kappa_there = 1.0 / float(circle.radius + circle.edge.at(at * line.n)[0])
@@ -236,8 +236,8 @@ class _RelativeLine:
         total, lost_in_sum = summed(x, y)
         own, lost_of_own = squared(np.array([circle.radius + circle.edge.nearest]))
         over, lost_in_difference = summed(total, -own)
-        lost = lost_x + lost_y + 2.0 * (away.conj() * rest).real
-        return cls(line, away, over + (lost_in_difference + lost_in_sum - lost_of_own + lost))
+        round_off = lost_x + lost_y + 2.0 * (away.conj() * rest).real
+        return cls(line, away, over + (lost_in_difference + lost_in_sum - lost_of_own + round_off))
 
     def near(self, circle: Circle, lead: float) -> Ints:
         """Elements (k,) with a possible gap below ``lead``, and the elements at the nearest node."""
@@ -259,8 +259,8 @@ def _clearance(relative: _RelativeLine, circle: Circle, there: Around, zeta: Arr
     q, d = relative.away[there.element], there.way
     away = q + d
     r = np.abs(away)
-    more = ((2.0 * q + d) * d.conj()).real
-    g = (relative.over[there.element] + more) / (r + (circle.radius + circle.edge.nearest))
+    change = ((2.0 * q + d) * d.conj()).real
+    g = (relative.over[there.element] + change) / (r + (circle.radius + circle.edge.nearest))
     if circle.edge.varies:
         g -= circle.edge.at(zeta) - circle.edge.nearest
     return r, away / r, g
@@ -270,13 +270,13 @@ def _zones_below(relative: _RelativeLine, circle: Circle, lead: float) -> Zones:
     """Intervals with a gap below ``lead``, divided at the knots of a thick beam."""
     line = relative.line
 
-    def at(zeta: Array, none: Array) -> Gap:
+    def at(zeta: Array, zeta_m: Array) -> Gap:
         there = line.around(zeta)
         r, n, g = _clearance(relative, circle, there, zeta)
         ahead = n.conj() * there.ahead
         slope = ahead.real - circle.edge.slope(zeta) if circle.edge.varies else ahead.real
         curvature = (n.conj() * there.bent).real + ahead.imag**2 / r
-        return Gap(g - lead, slope, curvature, none, np.ones(zeta.shape, dtype=bool))
+        return Gap(g - lead, slope, curvature, zeta_m, np.ones(zeta.shape, dtype=bool))
 
     zeta, neighbours = steps_within(relative.near(circle, lead), circle.edge.inner)
     floor = float(np.finfo(float).eps) * line.longest

@@ -290,8 +290,8 @@ def touch(
     if zones_m.intervals.size:
         about = pair.about()
         there = _gauss_points(model, about, distance, quadrature, z, zones_m)
-        more, most = _missing_force(model, about, penalty, z, zones_m, there)
-        missing, missing_share = missing + more, max(missing_share, most)
+        further_missing, further_share = _missing_force(model, about, penalty, z, zones_m, there)
+        missing, missing_share = missing + further_missing, max(missing_share, further_share)
         least = min(least, _survey(model, about, z, distance).least)
         zones, order = merge_zones(zones, zones_m)
         here = here.with_other(there, (order[:, None] * quadrature + np.arange(quadrature)).ravel())

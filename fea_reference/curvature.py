@@ -169,15 +169,15 @@ def _directions(model: Model, system: System, K: csr_array) -> csr_array:
         here = count + np.arange(free_motions.shape[1])
         count += here.size
         of_bodies |= {int(dof): (here, line) for dof, line in zip(dofs, free_motions, strict=True)}
-    ways = [(dof, dof, 1.0) for dof in of_bodies]
+    couplings = [(dof, dof, 1.0) for dof in of_bodies]
     for dof, row in row_of.items():
         entry = slice(K.indptr[row], K.indptr[row + 1])
-        ways += [
+        couplings += [
             (dof, int(other), -float(value))
             for other, value in zip(K.indices[entry], K.data[entry], strict=True)
             if int(other) in of_bodies
         ]
-    for dof, other, value in ways:
+    for dof, other, value in couplings:
         here, line = of_bodies[other]
         rows.append(np.full(here.size, dof))
         columns.append(here)

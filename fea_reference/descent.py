@@ -87,25 +87,25 @@ def _descend(
     march.system = critical.system
     march.reassemble()
     least = 10.0 * abs(critical.left) + 1.0
-    way = moment_mode(march.model, critical.system, least) if critical.loss is Loss.BIFURCATION else critical.direction
-    size = float(np.abs(way[march.model.moving]).max())
+    mode = moment_mode(march.model, critical.system, least) if critical.loss is Loss.BIFURCATION else critical.direction
+    size = float(np.abs(mode[march.model.moving]).max())
     if not size > 0.0:
         return None
     known, end = dict(march.closing), critical.value * march.model.stepped[load].unit
     iterations, energy = march.iterations, penalised_energy(march.model, march.system, march.values)
     kicks, steps = (_KICKS[:1], _FEW) if np.isfinite(beside) else (_KICKS, _STEPS)
     for kick in kicks:
-        ways: list[tuple[float, March, float]] = []
+        trials: list[tuple[float, March, float]] = []
         for sense in (1.0, -1.0):
             trial = march.saved()
-            start = advance(march.model, critical.system.z, sense * kick / size * way)
+            start = advance(march.model, critical.system.z, sense * kick / size * mode)
             drag = least
             while drag < _STRONGEST and not _step(trial, load, start, drag, start):
                 drag *= 10.0
             if drag < _STRONGEST:
-                ways.append((energy - penalised_energy(trial.model, trial.system, trial.values), trial, drag))
-        most = max((fall for fall, *_ in ways), default=0.0)
-        for _, trial, drag in sorted(ways, key=lambda item: item[0] < most - _SAME * abs(most)):
+                trials.append((energy - penalised_energy(trial.model, trial.system, trial.values), trial, drag))
+        most = max((fall for fall, *_ in trials), default=0.0)
+        for _, trial, drag in sorted(trials, key=lambda item: item[0] < most - _SAME * abs(most)):
             if _reaches_minimum(trial, load, drag, critical.system.z, _ASTRAY * beside, steps):
                 march.iterations += trial.iterations - iterations
                 march.restore(trial)
@@ -118,9 +118,7 @@ def _descend(
 
 
 def _reaches_minimum(march: March, load: int, drag: float, first: State, farthest: float, steps: int) -> bool:
-    """Descend to a minimum within ``steps`` and a rotation ``farthest`` (rad) from the state ``first``; True on
-    success.
-    """
+    """Descend to a minimum within ``steps`` and a rotation ``farthest`` (rad) from ``first``; True on success."""
     march.reassemble()  # without the drag
     convex = _CONVEX
     for _ in range(steps):

@@ -41,12 +41,12 @@ def taut_at(pulls: Sequence[tuple[float, float]]) -> float | None:
         return None
     ratio = float(np.log(F2 / F1) / np.log(F3 / F2))
 
-    def off(way: float) -> float:
-        return float(np.log1p(before / (way + step)) / np.log1p(step / way)) - ratio
+    def off(distance: float) -> float:
+        return float(np.log1p(before / (distance + step)) / np.log1p(step / distance)) - ratio
 
     low, high = _NEAR * step, _AFAR * step
     if not off(low) < 0.0 < off(high):
         return None
-    way = float(brentq(off, low, high))
-    power = float(np.log1p(step / way) / np.log(F3 / F2))
-    return v3 + float(np.copysign(way, v3 - v2)) if _POWERS[0] <= power <= _POWERS[1] else None
+    distance = float(brentq(off, low, high))
+    power = float(np.log1p(step / distance) / np.log(F3 / F2))
+    return v3 + float(np.copysign(distance, v3 - v2)) if _POWERS[0] <= power <= _POWERS[1] else None

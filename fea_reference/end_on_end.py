@@ -34,29 +34,29 @@ def ends_pass_through(pair: Pair, before: NeutralLine, after: NeutralLine) -> bo
         return False  # a line's ends are points and never touch
     v, there = (complex(line.nodes[-1] - line.nodes[0]) for line in (before, after))
     touching = float(pair.apart(np.array([float(before.n)]), np.zeros(1))[0])
-    way = there - v
-    share = 0.0 if way == 0.0 else min(1.0, max(0.0, -(v * way.conjugate()).real / abs(way) ** 2))
+    path = there - v
+    share = 0.0 if path == 0.0 else min(1.0, max(0.0, -(v * path.conjugate()).real / abs(path) ** 2))
     # overlapping ends may pass around each other at their present distance
-    return abs(v + share * way) < min(touching, abs(v), abs(there)) * float(np.cos(0.5 * _TURNS))
+    return abs(v + share * path) < min(touching, abs(v), abs(there)) * float(np.cos(0.5 * _TURNS))
 
 
 def _crosses_line_behind(pair: Pair, before: NeutralLine, after: NeutralLine, tip: int) -> bool:
     """True if the end at node ``tip``, next to the other end, crosses the line behind the other end."""
     other, n = before.n - tip, before.n
 
-    def seen(line: NeutralLine, nodes: Complex) -> Complex:
+    def in_end_frame(line: NeutralLine, nodes: Complex) -> Complex:
         ahead = np.exp(1j * line.angles[other]) * (1.0 if other == 0 else -1.0)
         return np.asarray((nodes - line.nodes[other]) / ahead)
 
-    (begin,), (end,) = seen(before, before.nodes[[tip]]), seen(after, after.nodes[[tip]])
+    (begin,), (end,) = in_end_frame(before, before.nodes[[tip]]), in_end_frame(after, after.nodes[[tip]])
     if abs(begin) > _BESIDE * pair.distance + before.longest:
         return False
     behind = np.arange(n // 2 + 1) if other == 0 else np.arange(n, n - n // 2 - 1, -1)
-    line, way = seen(after, after.nodes[behind]), end - begin
-    if way == 0.0:
+    line, path = in_end_frame(after, after.nodes[behind]), end - begin
+    if path == 0.0:
         return False
-    side = ((line - begin) / way).imag
+    side = ((line - begin) / path).imag
     passes = np.flatnonzero((side[:-1] < 0.0) != (side[1:] < 0.0))
     share = side[passes] / (side[passes] - side[passes + 1])
-    where = ((line[passes] + share * (line[passes + 1] - line[passes]) - begin) / way).real
+    where = ((line[passes] + share * (line[passes + 1] - line[passes]) - begin) / path).real
     return bool(np.count_nonzero((where > 0.0) & (where < 1.0)) % 2)

@@ -73,8 +73,8 @@ def _continued(model: Model, system: System, touch: Touch, at: int, outwards: fl
     if chi is None:
         return zeta
     # χ over the distance inwards, a parabola through three places
-    way = np.abs(beyond - zeta)
-    a, b, c = np.polyfit(way, chi, 2)
+    distance = np.abs(beyond - zeta)
+    a, b, c = np.polyfit(distance, chi, 2)
     roots = np.roots([a, b, c])
     # a parabola that barely misses zero ends at its minimum
     inwards = roots.real[roots.real <= 0.0]

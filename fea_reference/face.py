@@ -149,10 +149,10 @@ def passes_through(model: Model, face: Face, before: State, after: State) -> boo
         along = b - a
         old_side = along[0] * (old[1] - a[1]) - along[1] * (old[0] - a[0])
         new_side = along[0] * (new[1] - a[1]) - along[1] * (new[0] - a[0])
-        way = new - old
-        from_a, from_b = (way[0] * (at[1] - old[1]) - way[1] * (at[0] - old[0]) for at in (a, b))
+        path = new - old
+        from_a, from_b = (path[0] * (at[1] - old[1]) - path[1] * (at[0] - old[0]) for at in (a, b))
         through = (old_side > 0.0) & (new_side < 0.0) & (from_a * from_b < 0.0) & apart & ~inside
-        if through.any() and not _slid_along(views[0], views[1], even[through], way[:, through]).all():
+        if through.any() and not _slid_along(views[0], views[1], even[through], path[:, through]).all():
             return True
     return _swept_over_tip(face, *views)
 
@@ -286,7 +286,7 @@ def _corner_terms(
     if not bends:
         return None
     size = 10 if moves else 7
-    more = np.zeros((size, size, len(zones.intervals) * quadrature))
+    terms = np.zeros((size, size, len(zones.intervals) * quadrature))
     for i, end in bends:
         # the element that contains the interval: at a node the next interval has the same term
         e = np.array([min(int(zones.intervals[i].mean()), view.line.n - 1)])
@@ -302,10 +302,10 @@ def _corner_terms(
         slope = steeper[first] - steeper[1 - first]
         gap = float(view.gap(np.array([end]))[0]) - penalty.lead
         by = view.by(difference, shapes(xi), e, x - view.centre[:, None], moves=moves)[:, 0]
-        more[:, :, (i + 1) * quadrature - 1] = (
+        terms[:, :, (i + 1) * quadrature - 1] = (
             -penalty.stiffness * gap / slope * float(view.line.lengths[e[0]]) * np.outer(by, by)
         )
-    return more
+    return terms
 
 
 class _View:

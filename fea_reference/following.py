@@ -305,11 +305,11 @@ def stop_instability(march: March, load: int, curvature: float, system: System) 
 
 def force_about_to_vanish(march: March, load: int, value: float) -> bool:
     """True if a contact force, extrapolated linearly, vanishes before ``value`` and leaves an unstable state."""
-    way = value - float(march.values[load])
-    next_contact = _next_vanishing(march, load, float(np.sign(way)))
+    distance = value - float(march.values[load])
+    next_contact = _next_vanishing(march, load, float(np.sign(distance)))
     return (
         next_contact is not None
-        and abs(next_contact[1]) < abs(way)
+        and abs(next_contact[1]) < abs(distance)
         and not softest(march.model, _without(march, next_contact[0])).curvature > 0.0
     )
 
@@ -322,24 +322,26 @@ def _vanishing_contact(march: March, load: int, target: float, span: float) -> C
         next_contact = _next_vanishing(march, load, sense)
         if next_contact is None or next_contact[1] * sense > (target - march.values[load]) * sense:
             break
-        contact, way = next_contact
+        contact, distance = next_contact
         mode_without = softest(march.model, _without(march, contact))
         if mode_without.curvature > 0.0:
             break
-        if abs(way) <= _APPROACHED * span:
-            critical = _end_at_zero_force(march, load, contact, way, mode_without)
+        if abs(distance) <= _APPROACHED * span:
+            critical = _end_at_zero_force(march, load, contact, distance, mode_without)
             if critical is not None:
                 return critical
             break
         before, rate = march.saved(), march.rate(load)
-        size = min(_SHARE * abs(way), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
+        size = min(_SHARE * abs(distance), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
         trouble = march.step(
-            load, float(march.values[load]) + np.copysign(size, way), march.path_tangent(load, rate, target)
+            load, float(march.values[load]) + np.copysign(size, distance), march.path_tangent(load, rate, target)
         )
         if trouble is not None or not softest(march.model, march.system).curvature > 0.0:
             march.restore(before)
             critical = (
-                _end_at_zero_force(march, load, contact, way, mode_without) if abs(way) <= _FORESEEN * span else None
+                _end_at_zero_force(march, load, contact, distance, mode_without)
+                if abs(distance) <= _FORESEEN * span
+                else None
             )
             if critical is not None:
                 return critical
@@ -348,24 +350,26 @@ def _vanishing_contact(march: March, load: int, target: float, span: float) -> C
     return None
 
 
-def _end_at_zero_force(march: March, load: int, contact: Touch, way: float, mode_without: Mode) -> CriticalPoint | None:
-    """Critical point at the zero of a contact force, at distance ``way``, with the mode ``mode_without`` the contact.
+def _end_at_zero_force(
+    march: March, load: int, contact: Touch, distance: float, mode_without: Mode
+) -> CriticalPoint | None:
+    """Critical point at the zero of a contact force, at ``distance``, with the mode ``mode_without`` the contact.
 
     None if the state is unstable with a rigid contact, too.
     """
     mode_with = softest(march.model, with_stiffness_factor(march.model, march.system, contact, _RIGID))
     if not mode_with.curvature > 0.0:
         return None
-    return _extrapolated_end(march, load, way, Loss.CONTACT, contact, mode_with.curvature, mode_without)
+    return _extrapolated_end(march, load, distance, Loss.CONTACT, contact, mode_with.curvature, mode_without)
 
 
 def _extrapolated_end(
-    march: March, load: int, way: float, loss: Loss, contact: Touch, curvature: float, mode_without: Mode
+    march: March, load: int, distance: float, loss: Loss, contact: Touch, curvature: float, mode_without: Mode
 ) -> CriticalPoint:
-    """Critical point at distance ``way`` in λ, where a contact ends; ``curvature`` is the value with the contact."""
+    """Critical point at ``distance`` in λ, where a contact ends; ``curvature`` is the value with the contact."""
     return CriticalPoint(
-        float(march.values[load] + way),
-        abs(way),
+        float(march.values[load] + distance),
+        abs(distance),
         loss,
         contact.pair.name,
         curvature,
@@ -385,38 +389,38 @@ def _end_slip(march: March, load: int, target: float, span: float) -> CriticalPo
     sense, saved = float(np.sign(target - march.values[load])), march.saved()
     tight = behind = False
     while (next_slip := _next_slip(march, load, sense * span)) is not None:
-        contact, way = next_slip
-        if tight and not behind and -_SLIPPING * span <= way * sense < 0.0:
+        contact, distance = next_slip
+        if tight and not behind and -_SLIPPING * span <= distance * sense < 0.0:
             # under tight penalties the slip lies behind the current state
             march.restore(saved)
-            if not _step_towards(march, load, _BACK * way):
+            if not _step_towards(march, load, _BACK * distance):
                 break
             march.tighten()
             behind = True
             continue
-        if not 0.0 <= way * sense <= min(_SLIPPING * span, (target - march.values[load]) * sense):
+        if not 0.0 <= distance * sense <= min(_SLIPPING * span, (target - march.values[load]) * sense):
             break
         if not tight:
             # penetration shifts the slip, possibly to a point behind the current state
             march.tighten()
             tight = True
             continue
-        if abs(way) > _AS_GOOD * span and _step_towards(march, load, way):
+        if abs(distance) > _AS_GOOD * span and _step_towards(march, load, distance):
             continue
-        if abs(way) > _FORESEEN * span:
+        if abs(distance) > _FORESEEN * span:
             break
         return _extrapolated_end(
-            march, load, way, Loss.SLIP, contact, march.curvature, softest(march.model, _without(march, contact))
+            march, load, distance, Loss.SLIP, contact, march.curvature, softest(march.model, _without(march, contact))
         )
     march.restore(saved)
     return None
 
 
-def _step_towards(march: March, load: int, way: float) -> bool:
-    """Step over most of the distance ``way``, within the limit of motion; True on success, else the state stays."""
+def _step_towards(march: March, load: int, distance: float) -> bool:
+    """Step over most of the ``distance``, within the limit of motion; True on success, else the state stays."""
     before, rate = march.saved(), march.rate(load)
-    size = min(_SHARE * abs(way), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
-    value = float(march.values[load] + np.copysign(size, way))
+    size = min(_SHARE * abs(distance), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
+    value = float(march.values[load] + np.copysign(size, distance))
     if march.step(load, value, march.path_tangent(load, rate, value)) is None:
         return True
     march.restore(before)
@@ -433,9 +437,9 @@ def _next_slip(march: March, load: int, ahead: float) -> tuple[Touch, float] | N
         there = None if here is None else distance_to_end(march.model, contact, moved_state)
         if here is None or there is None or not there < here:
             continue
-        way = step * here / (here - there)
-        if first_slip is None or abs(way) < abs(first_slip[1]):
-            first_slip = contact, way
+        distance = step * here / (here - there)
+        if first_slip is None or abs(distance) < abs(first_slip[1]):
+            first_slip = contact, distance
     return first_slip
 
 
@@ -499,9 +503,9 @@ def _next_vanishing(march: March, load: int, sense: float) -> tuple[Touch, float
         change = float(part.predicted_forces(sense * rate).sum()) - part.push
         if change >= 0.0:
             continue
-        way = float(-part.push / change)
-        if first_part is None or way < abs(first_part[1]):
-            first_part = part, sense * way
+        distance = float(-part.push / change)
+        if first_part is None or distance < abs(first_part[1]):
+            first_part = part, sense * distance
     return first_part
 
 

@@ -142,8 +142,8 @@ def _partners(
     here, there = f(j), f(j + 1)
     # opposite to an end f is zero up to round-off and lean
     for at_end, f_end, node in ((j == 0, here, 0), (j == line.n - 1, there, line.n)):
-        nothing = _NOTHING * line.longest**2 + steepest * np.hypot(*(x[:, i[at_end]] - line.points[:, [node]]))
-        f_end[at_end] = np.where(np.abs(f_end[at_end]) <= nothing, 0.0, f_end[at_end])
+        tolerance = _NOTHING * line.longest**2 + steepest * np.hypot(*(x[:, i[at_end]] - line.points[:, [node]]))
+        f_end[at_end] = np.where(np.abs(f_end[at_end]) <= tolerance, 0.0, f_end[at_end])
     least = (here >= 0.0) & (there <= 0.0) & (here > there)
     share = here / np.where(least, here - there, 1.0)
     if roles.ended:
@@ -162,7 +162,7 @@ def _samples(line: NeutralLine, tapers: Tapers | None, reach: float) -> Array:
     """Equal steps within every element, and the places opposite to the line's ends, on either side."""
     even = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
     x = line.at(even)[0]
-    more = [even]
+    places = [even]
     sides = (1.0,) if tapers is None else (1.0, -1.0)
     rays = [borders(line, None if tapers is None else tapers.second, side) for side in sides]
     for border, end in product(rays, (0, line.n)):
@@ -182,8 +182,8 @@ def _samples(line: NeutralLine, tapers: Tapers | None, reach: float) -> Array:
             step, zeta = np.abs(moved - zeta).max(), moved
             if step < 1e-12 * line.n:
                 break
-        more.append(zeta)
-    return np.unique(np.concatenate(more))
+        places.append(zeta)
+    return np.unique(np.concatenate(places))
 
 
 def _sequences(i: Ints, zeta_m: Array) -> tuple[Ints, NDArray[np.bool_]]:

@@ -75,11 +75,11 @@ class Chain:
 
     def gradient(self, local: Array) -> Array:
         """Derivatives (M, k) by all unknowns from derivatives ``local`` (m, k) by the lines' unknowns."""
-        every = np.zeros(self.dofs.shape)
-        every[: len(local)] = local
+        total = np.zeros(self.dofs.shape)
+        total[: len(local)] = local
         for row, by in zip(self.rows, self.by, strict=True):
-            every += local[row] * by
-        return every
+            total += local[row] * by
+        return total
 
     def hessian(self, local: Array, gradient: Array) -> Array:
         """Second derivatives (M, M, k) by all unknowns from those by the lines' unknowns.
@@ -91,18 +91,18 @@ class Chain:
         half[:, :m] = local
         for row, by in zip(self.rows, self.by, strict=True):
             half += local[:, row, None] * by
-        every = np.zeros((size[0], *size))
-        every[:m] = half
+        total = np.zeros((size[0], *size))
+        total[:m] = half
         for row, by, twice in zip(self.rows, self.by, self.twice, strict=True):
-            every += by[:, None] * half[row] + gradient[row] * twice
-        return every
+            total += by[:, None] * half[row] + gradient[row] * twice
+        return total
 
     def local(self, step: Array, m: int) -> Array:
         """Step (m, k) of the lines' unknowns, with tangent angles for rotations, from a ``step`` (size,) of all."""
-        every = step[self.dofs]
-        own = every[:m].copy()
+        steps = step[self.dofs]
+        own = steps[:m].copy()
         for row, by in zip(self.rows, self.by, strict=True):
-            own[row] += (by * every).sum(axis=0)
+            own[row] += (by * steps).sum(axis=0)
         return own
 
 

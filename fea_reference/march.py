@@ -361,10 +361,10 @@ class March:
 
         ``step`` is the increment of λ.
         """
-        model, quadrature, way = self.model, self.settings.quadrature, step * tangent.rate
+        model, quadrature, motion = self.model, self.settings.quadrature, step * tangent.rate
         pressing = [contact for contact in self.system.touches if contact.push > 0.0]
         known = known_depths(self.system, {contact.pair: contact.penetration for contact in pressing}, self.pushes())
-        predicted = {contact.pair: contact.predicted_forces(way) for contact in pressing}
+        predicted = {contact.pair: contact.predicted_forces(motion) for contact in pressing}
         for pair, push in tangent.pushes.items():
             known[pair] = Depth(self.settings.penetration * pair.scale, push * step)
             predicted[pair] = np.array([push * step])
@@ -417,9 +417,9 @@ class March:
         if last_step.contacts != frozenset(self.penalties) or not abs(step) <= _AHEAD * abs(last_step.by):
             return first
         u = step / last_step.by
-        more = u**2 * last_step.second + u**3 * last_step.third
-        bent, straight = (float(np.abs(way[self.model.moving]).max()) for way in (more, first))
-        return first + more if bent <= _BENT * straight else first
+        higher = u**2 * last_step.second + u**3 * last_step.third
+        bent, straight = (float(np.abs(motion[self.model.moving]).max()) for motion in (higher, first))
+        return first + higher if bent <= _BENT * straight else first
 
     def passing_failure(self, before: State, system: System, where: str) -> Trouble | None:
         """Failure if bodies passed through each other, or an element turned too far, since ``before``; else None."""
@@ -508,8 +508,8 @@ class March:
         An overlap deeper than a few elements counts as the far side of a bent beam. A beam that passes the end of
         another in a single step may therefore end open behind the other beam.
         """
-        way = after.values - before.values
-        largest_motion = float(np.abs(way[self.model.moving]).max())
+        path = after.values - before.values
+        largest_motion = float(np.abs(path[self.model.moving]).max())
         least = zones_of(self.model, pair, before).least
         if least > 2.0 * largest_motion:
             return False
@@ -523,7 +523,7 @@ class March:
             if last - first < 2:
                 return False
             middle = (first + last) // 2
-            state = State.of(before.values + middle / parts * way)
+            state = State.of(before.values + middle / parts * path)
             if motion_before_contact(self.model, pair, state) > pace * (last - middle):
                 return False
             if zones_of(self.model, pair, state).least < deepest:
@@ -586,10 +586,10 @@ class March:
         second, third = path_terms(self.model, before.z, after.z, rates, end - start)
         return advance(self.model, after.z, (value - end) * rates[1] + u**2 * second + u**3 * third)
 
-    def _close_tightly(self, load: int, way: float) -> None:
+    def _close_tightly(self, load: int, increment: float) -> None:
         """Tighten the other penalties after a closing and locate the closing again.
 
-        Penetration under loose penalties shifts a closing. ``way`` is the step in λ. Without a new location an open
+        Penetration under loose penalties shifts a closing. ``increment`` is the step in λ. Without a new location an open
         contact stays open.
         """
         loose = dict(self.penalties)
@@ -598,14 +598,14 @@ class March:
             return
         value, gap = float(self.values[load]), self.least_gap(self.system)
         for share in _NEARBY:
-            other = value + np.copysign(share, gap) * way
+            other = value + np.copysign(share, gap) * increment
             beyond = self.solve(load, other, advance(self.model, self.system.z, (other - value) * self.rate(load)))
             if beyond is None:
                 return
             if self.least_gap(beyond) * gap <= 0.0:
-                found = self._first_touch(load, {value: self.system, other: beyond})
-                if found is not None:
-                    self.values[load], self.system = found
+                closing = self._first_touch(load, {value: self.system, other: beyond})
+                if closing is not None:
+                    self.values[load], self.system = closing
                 return
 
     def gaps(self, system: System) -> list[float]:
@@ -617,8 +617,8 @@ class March:
         """The least value of :meth:`gaps`."""
         return min(self.gaps(system), default=np.inf)
 
-    def close_touching(self, load: int, way: float = 0.0) -> None:
-        """Close every open contact with a vanishing gap; ``way`` is the last step in λ."""
+    def close_touching(self, load: int, increment: float = 0.0) -> None:
+        """Close every open contact with a vanishing gap; ``increment`` is the last step in λ."""
         z = self.system.z
         closing = [p for p in self.open if least_gap(self.model, p, z) <= CLOSED * p.scale]
         for pair in closing:
@@ -627,14 +627,14 @@ class March:
             unseen = zones_of(self.model, pair, z).least > CLOSED * pair.scale
             closed = pair.about() if unseen and isinstance(pair, Pair) else pair
             self.penalties[closed] = Penalty(pair.stiffness)
-            remainder = self._increment_to_zero_gap(load, pair, way) * self.model.stepped[load].unit
+            remainder = self._increment_to_zero_gap(load, pair, increment) * self.model.stepped[load].unit
             self.closing.setdefault(pair.name, self.value(load) + remainder)
         if closing:
             self.reassemble()
 
-    def _increment_to_zero_gap(self, load: int, pair: Contact, way: float) -> float:
+    def _increment_to_zero_gap(self, load: int, pair: Contact, increment: float) -> float:
         """Increment of λ to the exact zero of a gap within the closing tolerance, by the current rate of the gap."""
-        step = _DIFFERENCE * way
+        step = _DIFFERENCE * increment
         moved_state = advance(self.model, self.system.z, step * self.rate(load))
         here, gap_there = (least_gap(self.model, pair, z) for z in (self.system.z, moved_state))
         return step * here / (here - gap_there) if 0.0 < here < (here - gap_there) / _DIFFERENCE else 0.0
@@ -685,9 +685,9 @@ class March:
                 pair.carried
                 and contact.closed
                 and missing_share <= LACKING
-                and (alone := self._as_single_integral(contact, pair)) is not None
+                and (single := self._as_single_integral(contact, pair)) is not None
             ):
-                solved = self._with_replaced_pair(pair, alone)
+                solved = self._with_replaced_pair(pair, single)
                 if solved is not None and all(contact.missing_share <= LACKING for contact in solved[0].touches):
                     self.system, self.penalties = solved
                 continue
@@ -708,7 +708,7 @@ class March:
         Measured along the other beam, such an end is oblique: its contact would start later and deeper than normal to
         the beam's side.
         """
-        more: dict[Contact, Contact] = {}
+        extended: dict[Contact, Contact] = {}
         for contact in system.touches:
             pair, z = contact.pair, system.z
             if not isinstance(pair, Pair) or pair.roles is not None or pair.carried or not contact.closed:
@@ -716,9 +716,11 @@ class March:
             last, last_m = (self.model.line(self.model.beams[i], z).n for i in (pair.first, pair.second))
             if at_ends(contact.zones.zeta_m, last_m) or least_at_ends(self.model, pair, z) >= -CLOSED * pair.scale:
                 continue
-            more[pair] = replace(pair, carried=pair.ends_m) if at_ends(contact.zones.intervals, last) else pair.about()
-        self.penalties = {more.get(pair, pair): penalty for pair, penalty in self.penalties.items()}
-        return bool(more)
+            extended[pair] = (
+                replace(pair, carried=pair.ends_m) if at_ends(contact.zones.intervals, last) else pair.about()
+            )
+        self.penalties = {extended.get(pair, pair): penalty for pair, penalty in self.penalties.items()}
+        return bool(extended)
 
     def _as_single_integral(self, contact: Touch, pair: Pair) -> Pair | None:
         """The pair as integrated along the only beam with pressing ends; None if ends of both beams press."""
@@ -948,7 +950,7 @@ class March:
         return tries >= _POLISHINGS and enough and stiff
 
     def _penetration_exponents(self, system: System, tighter: Mapping[Contact, Penalty]) -> dict[Contact, float]:
-        """Exponents of the penetration, −Δln ε/Δln depth, from the current to the ``tighter`` penalties of
+        """Exponents −Δln ε/Δln depth of the penetration, from the current to the ``tighter`` penalties of
         ``system``.
         """
         before = {contact.pair: contact.penetration for contact in self.system.touches}

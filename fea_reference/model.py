@@ -353,8 +353,8 @@ class Model:
         gamma = shear_angle(self.elements, beam.elements, self.element_dofs[:, beam.elements], z)[e]
         angles, lengths = z[dofs[2]] + np.repeat(gamma, 2), np.repeat(self.elements.length[beam.elements][e], 2)[:-1]
         dx, dy = z.difference(dofs[:2, 1:], dofs[:2, :-1])
-        more, *_ = chord_speed_excess(np.hypot(dx, dy), lengths, np.diff(angles))
-        return NeutralLine.through(z[dofs[:2]], angles, lengths, z.rest[dofs[:2]], 1.0 / lengths, more)
+        excess, *_ = chord_speed_excess(np.hypot(dx, dy), lengths, np.diff(angles))
+        return NeutralLine.through(z[dofs[:2]], angles, lengths, z.rest[dofs[:2]], 1.0 / lengths, excess)
 
     def chain_apart(self, beam: BeamPart, e: Index, z: State) -> Chain:
         """Chain rule from the elements (k,) of :meth:`apart_at_nodes` to the unknowns."""

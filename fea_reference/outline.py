@@ -198,7 +198,7 @@ class Broken:
         return np.asarray(np.where(near.corner, round_it, _across(self._normals.take(side, axis=1), y, rest, begins)))
 
     def _foot(self, y: Array) -> tuple[Ints, Array, Array]:
-        """Closest side (k,) of points (2, k), distance (k,) along the side, and vector (2, k) from the
+        """Closest side (k,) of points (2, k), distance (k,) along the side, and vector (2, k) from its
         closest point.
         """
         tangents, first, low, high = self._sides

@@ -66,10 +66,10 @@ def _force(model: Model, load: int, system: System, values: Array, h: float) -> 
     part = model.stepped[load]
     if isinstance(part, DrivePart):
         return -float(system.z.values[part.row])
-    more, less = values.copy(), values.copy()
-    more[load] += h
-    less[load] -= h
-    return (potential_energy(model, system, more) - potential_energy(model, system, less)) / (2.0 * h)
+    raised, lowered = values.copy(), values.copy()
+    raised[load] += h
+    lowered[load] -= h
+    return (potential_energy(model, system, raised) - potential_energy(model, system, lowered)) / (2.0 * h)
 
 
 def _bend(model: Model, load: int, system: System, rate: Array, acting: Acting) -> float:

@@ -67,7 +67,7 @@ class Prepared:
                 ending, sentence = stopped.ending, stopped.sentence
         closed = {name: f"closed at {value:.6g}" for name, value in march.closing.items()}
         tested = [f"{name}: {closed.get(name, 'stayed open')}" for name in scene.contacts]
-        left = [
+        bypassed = [
             f"{end.sentence}; the solution continues on a nearby branch, found by energy descent"
             for end in march.bypassed
         ]
@@ -82,7 +82,7 @@ class Prepared:
             critical=tuple(march.critical),
             gone_over=tuple(end.record for end in march.bypassed),
             seconds=self.seconds + time.perf_counter() - began,
-            notes=(*tested, *left),
+            notes=(*tested, *bypassed),
         )
 
 
@@ -177,5 +177,5 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float, closed:
 def _course(march: March, stage: Stage) -> Course:
     """Stepped parameter of a stage and its span, from the present value through all stations."""
     load = [part.name for part in march.model.stepped].index(stage.steps)
-    ways = [march.values[load], *(station / march.model.stepped[load].unit for station in stage.stations)]
-    return Course(load, float(np.ptp(ways)) or 1.0, stage.name, stage.beyond)
+    values = [march.values[load], *(station / march.model.stepped[load].unit for station in stage.stations)]
+    return Course(load, float(np.ptp(values)) or 1.0, stage.name, stage.beyond)

@@ -63,8 +63,8 @@ def swept_over(
     (old, c_0), (new, c_1) = before, after
     first = closest_places(old, c_0)
     last = closest_places(new, c_1, first.zeta)
-    ways = [np.abs(_at(new, places.zeta) - c_1 - _at(old, places.zeta) + c_0) for places in (first, last)]
-    near = np.abs(last.d - first.d) <= _WAY * np.maximum(*ways)
+    paths = [np.abs(_at(new, places.zeta) - c_1 - _at(old, places.zeta) + c_0) for places in (first, last)]
+    near = np.abs(last.d - first.d) <= _WAY * np.maximum(*paths)
     return first, last, first.found & last.found & near
 
 

@@ -92,10 +92,10 @@ class Drag:
 
 def with_stiffness_factor(model: Model, system: System, contact: Touch, factor: float) -> System:
     """The system with a contact ``factor`` times as stiff at unchanged force; only the tangent changes."""
-    more = replace(contact, stiffness=factor * contact.stiffness).hessian(contact.pushes) - contact.hessian(
+    change = replace(contact, stiffness=factor * contact.stiffness).hessian(contact.pushes) - contact.hessian(
         contact.pushes
     )
-    return replace(system, tangent=system.tangent + model.patterns.matrix([Block(contact.dofs, more)]))
+    return replace(system, tangent=system.tangent + model.patterns.matrix([Block(contact.dofs, change)]))
 
 
 def assemble(
@@ -174,8 +174,8 @@ def _assembled(
         residual += np.bincount(dofs.ravel(), gradient.ravel(), model.size)
     if drag is not None:
         residual += drag.weights * (z.values - drag.anchor.values + (z.rest - drag.anchor.rest))
-        every = np.arange(model.size)
-        entries.append(Single(every, every, drag.weights))
+        unknowns = np.arange(model.size)
+        entries.append(Single(unknowns, unknowns, drag.weights))
     tangent = model.patterns.matrix(entries)
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values[: len(model.loads)]).max(initial=0.0)]
     balanced += [np.abs(gradient).max() for _, gradient in pressing]

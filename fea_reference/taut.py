@@ -50,10 +50,10 @@ def continue_beyond(march: March, turn: TurningPoint, target: float) -> bool:
         return False
     saved, load = march.saved(), branch.load
     march.values, march.system = branch.at(there.value), there.system
-    way = target - there.value
-    size = min(abs(way), _PREDICTED / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
+    remaining = target - there.value
+    size = min(abs(remaining), _PREDICTED / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
     for _ in range(_CUTS):
-        value = target if size >= abs(way) else float(there.value + np.copysign(size, way))
+        value = target if size >= abs(remaining) else float(there.value + np.copysign(size, remaining))
         if march.step(load, value, march.path_tangent(load, rate, target)) is None and march.minimum:
             return True
         march.restore(saved)

@@ -194,14 +194,14 @@ def _step_to(march: March, course: Course, target: float, *, watched: bool) -> b
         tangent = march.path_tangent(load, march.rate(load) if rate is None else rate, target)
         rate = tangent.rate
         speed = float(np.abs(rate[march.model.moving]).max())
-        way = target - march.values[load]
+        remaining = target - march.values[load]
         predicted = _HALF * _distance_to_zero(known)
-        size = min(abs(way), stride, _PREDICTED / max(speed, 1e-300))
+        size = min(abs(remaining), stride, _PREDICTED / max(speed, 1e-300))
         minimum = not watched or known[-1][1] > 0.0
         stable = bool(known) and known[-1][1] > 0.0
         close = stable and predicted < size and predicted < _NEAR * course.span
         size = min(size, predicted)
-        value = target if size >= abs(way) else march.values[load] + np.copysign(size, way)
+        value = target if size >= abs(remaining) else march.values[load] + np.copysign(size, remaining)
         if value == march.values[load]:
             raise _taut_ending(march, load, pulls) or StoppedError(*reason)
         close = close or (stable and follow and force_about_to_vanish(march, load, float(value)))
@@ -236,14 +236,14 @@ def _step_to(march: March, course: Course, target: float, *, watched: bool) -> b
         if (unstable or give_up_stepping) and (taut_ending := _taut_ending(saved, load, pulls)) is not None:
             raise taut_ending
         if minimum and follow and (close or unstable or give_up_stepping):
-            critical, progressed, again = None, False, True
+            critical, progressed, restored = None, False, True
             if tight is not None:
                 # under loose penalties the state may lie beyond the critical point under tight ones
-                again = saved.values[load] != tight.values[load]
+                restored = saved.values[load] != tight.values[load]
                 march.restore(tight)
                 tight, critical = None, follow_branch(march, load, target, course.span)
                 progressed = critical is None and abs(target - march.values[load]) < abs(target - value)
-            if critical is None and not progressed and again:
+            if critical is None and not progressed and restored:
                 march.restore(saved)
                 critical = follow_branch(march, load, target, course.span) if march.curvature > 0.0 else None
                 progressed = critical is None and abs(target - march.values[load]) < abs(target - value)
@@ -313,10 +313,10 @@ def _distance_to_zero(known: list[tuple[float, float]]) -> float:
     """Distance from the last value to the zero of the squared curvature, extrapolated linearly from two values."""
     if len(known) < 2:
         return np.inf
-    (one, before), (other, now) = known
+    (previous, before), (last, now) = known
     if not 0.0 < now < before:
         return np.inf
-    return abs(other - one) * now**2 / (before**2 - now**2)
+    return abs(last - previous) * now**2 / (before**2 - now**2)
 
 
 def _released_energy(saved: March, march: March, load: int, rate: Array, ahead: Array) -> bool:

@@ -88,18 +88,18 @@ def penetration_effects(
     for contact in sinking:
         right = np.zeros(model.size)
         np.add.at(right, contact.dofs, -contact.gradient)
-        way = system.solve(right)
-        if way is None:
+        response = system.solve(right)
+        if response is None:
             continue
-        way *= _FALLS[contact.sharp]
-        share = float(np.abs(way[places]).max()) / motion
+        response *= _FALLS[contact.sharp]
+        share = float(np.abs(response[places]).max()) / motion
         for group in groups:
-            more = sum(float(other.predicted_forces(way).sum()) - other.push for other in group)
-            more += _FALLS[contact.sharp] * contact.push if any(other is contact for other in group) else 0.0
+            change = sum(float(other.predicted_forces(response).sum()) - other.push for other in group)
+            change += _FALLS[contact.sharp] * contact.push if any(other is contact for other in group) else 0.0
             known = sum(other.push for other in group)
-            share = max(share, abs(more) / max(known, _FAINT * largest))
+            share = max(share, abs(change) / max(known, _FAINT * largest))
         for gap, opening, compliance in beside:
-            overlap = -(gap + float(opening @ way))
+            overlap = -(gap + float(opening @ response))
             if overlap > 0.0:
                 share = max(share, overlap / compliance / (_FAINT * largest))
         effects[contact.pair] = share

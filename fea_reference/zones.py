@@ -250,8 +250,8 @@ def survey_pair(
     close[nodes_first[apart_by < within]] = True
     beside = np.flatnonzero(close[:-1] | close[1:])
     if not beside.size:
-        nothing = Gap(none_there, none_there, none_there, none_there, none_there.astype(bool))
-        return Survey(at, none_there, nothing, none_there.astype(bool), (), float(apart_by.min()) - T)
+        empty = Gap(none_there, none_there, none_there, none_there, none_there.astype(bool))
+        return Survey(at, none_there, empty, none_there.astype(bool), (), float(apart_by.min()) - T)
     rays = borders(second, None if tapers is None else tapers.second, side).among(nodes_second)
     zeta = _samples(first, rays, beside, nodes_first, reach)
     knots = () if tapers is None else tapers.first.knots
@@ -345,10 +345,12 @@ def survey(
 
 
 def _with_places(
-    zeta: Array, there: Gap, neighbours: NDArray[np.bool_], left: NDArray[np.int64], where: Array, more: Gap
+    zeta: Array, there: Gap, neighbours: NDArray[np.bool_], left: NDArray[np.int64], where: Array, inserted: Gap
 ) -> tuple[Array, Gap, NDArray[np.bool_]]:
     """Places and gap with further places ``where``, inserted behind the places with index ``left``."""
-    rows = _with_columns(np.array([zeta, *there.rows, there.found]), left, np.array([where, *more.rows, more.found]))
+    rows = _with_columns(
+        np.array([zeta, *there.rows, there.found]), left, np.array([where, *inserted.rows, inserted.found])
+    )
     zeta, g, slope, curvature, zeta_m, found = rows
     return zeta, Gap(g, slope, curvature, zeta_m, found != 0.0), _with_neighbours(neighbours, left)
 
@@ -389,8 +391,8 @@ def _with_bends(
         return zeta, there, neighbours
     share = turned[bends]
     where = zeta[bends] + share * width[bends]
-    more = at(where, there.zeta_m[bends] + share * (there.zeta_m[bends + 1] - there.zeta_m[bends]))
-    return _with_places(zeta, there, neighbours, bends, where, more)
+    inserted = at(where, there.zeta_m[bends] + share * (there.zeta_m[bends + 1] - there.zeta_m[bends]))
+    return _with_places(zeta, there, neighbours, bends, where, inserted)
 
 
 def search_distance(first: NeutralLine, second: NeutralLine, T: float) -> float:
@@ -488,20 +490,20 @@ def _roots(
         below = f * rising < 0.0
         low, high = np.where(below, x, low), np.where(below, high, x)
         flat = df == 0.0
-        way = -f / np.where(flat, 1.0, df)
-        newton = x + way
+        newton_step = -f / np.where(flat, 1.0, df)
+        newton = x + newton_step
         if bend is not None:
-            more = _to_parabola(way, df, bend)
-            newton += more
+            correction = _to_parabola(newton_step, df, bend)
+            newton += correction
         # a step out of the bracket by round-off has converged; bisection would restart from afar
         good = (newton > low - _ARRIVED) & (newton < high + _ARRIVED) & ~flat
         moved = np.where(good, np.minimum(np.maximum(newton, low), high), 0.5 * (low + high))
-        nothing = np.abs(f) * (high - low) <= floor
-        step = np.where(nothing, 0.0, moved - x)
+        converged = np.abs(f) * (high - low) <= floor
+        step = np.where(converged, 0.0, moved - x)
         x, guess = x + step, guess + pace * step
         size = np.abs(step)
         if bend is not None:
-            size = np.where(good & (size < _SHORT) & (more != 0.0), np.minimum(size, np.abs(more)), size)
+            size = np.where(good & (size < _SHORT) & (correction != 0.0), np.minimum(size, np.abs(correction)), size)
         # the error of the last step is of second or third order
         going = size >= np.where(good, arrived, _ARRIVED)
         places[sought], closest_there[sought] = x, guess
@@ -513,10 +515,12 @@ def _roots(
     return places, closest_there
 
 
-def _to_parabola(way: Array, slope: Array, bend: Array) -> Array:
-    """Difference between the nearer zero of a parabola and the Newton step ``way`` (k,); zero if it is not small."""
-    under = 1.0 + 2.0 * way * bend / np.where(slope == 0.0, np.inf, slope)
-    return np.asarray(np.where(under > _BENT, way * (2.0 / (1.0 + np.sqrt(np.maximum(under, _BENT))) - 1.0), 0.0))
+def _to_parabola(newton_step: Array, slope: Array, bend: Array) -> Array:
+    """Difference between the nearer zero of a parabola and the ``newton_step`` (k,); zero if it is not small."""
+    under = 1.0 + 2.0 * newton_step * bend / np.where(slope == 0.0, np.inf, slope)
+    return np.asarray(
+        np.where(under > _BENT, newton_step * (2.0 / (1.0 + np.sqrt(np.maximum(under, _BENT))) - 1.0), 0.0)
+    )
 
 
 def _at_kinks(
@@ -560,9 +564,9 @@ def _parabola(zeta: Array, g: Array, slope: Array, curvature: Array, left: NDArr
     """Share of the interval behind ``left`` at the zero of the parabola at its negative end."""
     forward = g[left] < 0.0
     inner = np.where(forward, left, left + 1)
-    way = np.where(forward, 1.0, -1.0)
+    direction = np.where(forward, 1.0, -1.0)
     width = zeta[left + 1] - zeta[left]
-    a, b, c = 0.5 * curvature[inner] * width**2, way * slope[inner] * width, g[inner]
+    a, b, c = 0.5 * curvature[inner] * width**2, direction * slope[inner] * width, g[inner]
     root = np.sqrt(np.maximum(b * b - 4.0 * a * c, 0.0))
     # stable form of (−b + root)/(2a)
     distance = np.clip(-2.0 * c / np.maximum(b + root, 1e-300), _WITHIN, 1.0 - _WITHIN)
@@ -582,8 +586,8 @@ def _split_at(first: NeutralLine, rays: Borders, intervals: Array, closest: Arra
         return (r * back).real, (there.ahead * back).real
 
     before, behind = (off(intervals[owner, i])[0] for i in (0, 1))
-    nothing = _ARRIVED * np.diff(intervals[owner])[:, 0] * np.abs(off(intervals[owner].mean(axis=1))[1])
-    passes = (before * behind < 0.0) & (np.minimum(np.abs(before), np.abs(behind)) > nothing)
+    tolerance = _ARRIVED * np.diff(intervals[owner])[:, 0] * np.abs(off(intervals[owner].mean(axis=1))[1])
+    passes = (before * behind < 0.0) & (np.minimum(np.abs(before), np.abs(behind)) > tolerance)
     owner, ray, before, behind = owner[passes], ray[passes], before[passes], behind[passes]
     zeta = intervals[owner, 0] + before / (before - behind) * np.diff(intervals[owner])[:, 0]
     for _ in range(_ITERATIONS if owner.size else 0):

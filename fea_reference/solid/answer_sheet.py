@@ -84,12 +84,12 @@ def _at_stops(march: March) -> Iterator[PointForce]:
 def _at_contact(scene: Scene, march: March, touch: Touch) -> Iterator[PointForce]:
     """Forces of a contact on both edges, or on the edge and the rigid body."""
     pair, body = touch.pair, march.model.bodies[touch.pair.body]
-    mine = np.hypot(*touch.push.T) > 0.0
-    points, push = touch.points[mine], touch.push[mine]
-    yield from _on_edge(scene, march, pair.name, (pair.skin, touch.zeta[mine]), points, push)
+    pressing = np.hypot(*touch.push.T) > 0.0
+    points, push = touch.points[pressing], touch.push[pressing]
+    yield from _on_edge(scene, march, pair.name, (pair.skin, touch.zeta[pressing]), points, push)
     other = pair.other.skin if isinstance(pair.other, CornerOnEdge) else pair.other
     if isinstance(other, Skin):
-        yield from _on_edge(scene, march, pair.name, (other, touch.facing[mine]), points, -push)
+        yield from _on_edge(scene, march, pair.name, (other, touch.facing[pressing]), points, -push)
     elif body.dofs is not None:
         for at, force in zip(points, push, strict=True):
             yield PointForce(pair.name, body.name, np.nan, at, -force, 0.0)

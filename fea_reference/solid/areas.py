@@ -56,9 +56,9 @@ def graded(beam: Beam, n: int) -> Array:
     length = shape_of(beam.curve).length
     ends = zip((beam.start, beam.end), beam.thickness_at(np.array([0.0, 1.0])), strict=True)
     depths = [0.0 if isinstance(end, FreeEnd) else min(_DEPTH * t / length, _MOST) for end, t in ends]
-    more = [depth * (-np.log(_SHORTEST) - 1.0 + _SHORTEST) for depth in depths]
-    sigma = np.linspace(0.0, 1.0 + sum(more), n + 1)
-    u = sigma - more[0]
+    extra = [depth * (-np.log(_SHORTEST) - 1.0 + _SHORTEST) for depth in depths]
+    sigma = np.linspace(0.0, 1.0 + sum(extra), n + 1)
+    u = sigma - extra[0]
     for depth, there in zip(depths, (sigma, sigma[::-1]), strict=True):
         near = there < -depth * np.log(_SHORTEST)
         if near.any():

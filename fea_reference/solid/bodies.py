@@ -92,8 +92,8 @@ def turned(r: Array, phi: float) -> Array:
 
 def displaced(r: Array, phi: float) -> Array:
     """(R(φ) − I) r for vectors (..., 2), without cancellation."""
-    less, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
-    return np.stack([less * r[..., 0] - sin * r[..., 1], sin * r[..., 0] + less * r[..., 1]], axis=-1)
+    cos_minus_one, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
+    return np.stack([cos_minus_one * r[..., 0] - sin * r[..., 1], sin * r[..., 0] + cos_minus_one * r[..., 1]], axis=-1)
 
 
 def across(r: Array) -> Array:

@@ -88,10 +88,10 @@ class Graph:
         """Points and unit tangents (k, 2), and κ (k,), at values ``v`` (k,) of the variable."""
         slope, second = self.f.deriv(1)(v), self.f.deriv(2)(v)
         point = np.stack([v, self.f(v)], axis=1)
-        way = 1.0 if self.forwards else -1.0
-        tangent = way * np.stack([np.ones_like(v), slope], axis=1) / np.hypot(1.0, slope)[:, None]
+        direction = 1.0 if self.forwards else -1.0
+        tangent = direction * np.stack([np.ones_like(v), slope], axis=1) / np.hypot(1.0, slope)[:, None]
         # a graph that bends to the left of its direction is concave; across, left and right are exchanged
-        kappa = (way if self.across else -way) * second / np.hypot(1.0, slope) ** 3
+        kappa = (direction if self.across else -direction) * second / np.hypot(1.0, slope) ** 3
         return (point[:, ::-1], tangent[:, ::-1], kappa) if self.across else (point, tangent, kappa)
 
     def _nearest(self, xi: Array) -> Array:
@@ -117,9 +117,9 @@ def broken(contact: LineContact, origin: Array, unit: float) -> tuple[Broken, tu
     points = (np.array(contact.points) - origin) / unit
     if contact.side == "right":
         points = points[::-1]
-    way = np.diff(points, axis=0)
-    length = np.hypot(*way.T)
-    tangent = way / length[:, None]
+    vectors = np.diff(points, axis=0)
+    length = np.hypot(*vectors.T)
+    tangent = vectors / length[:, None]
     first, low, high = points[:-1], np.zeros_like(length), length
     if contact.closed:
         return Broken(first, tangent, low, high), corners(first, np.roll(tangent, 1, axis=0), tangent)

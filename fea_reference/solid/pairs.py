@@ -82,8 +82,8 @@ def pairs_of(scene: Scene, model: Model) -> tuple[Pair, ...]:
     for name, contact in scene.contacts.items():
         match contact:
             case BeamContact():
-                one, other = (_skins(scene, model, beam) for beam in contact.between)
-                for a, b in product(one, other):
+                first, second = (_skins(scene, model, beam) for beam in contact.between)
+                for a, b in product(first, second):
                     measure = 0.5 * (a.thickness + b.thickness)
                     pairs.append(Pair(name, a, b, -1, measure))
                     pairs += [

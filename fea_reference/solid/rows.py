@@ -104,9 +104,9 @@ def rows_of(scene: Scene, bodies: tuple[BodyPart, ...], first: int) -> tuple[Row
 def _pinned(
     name: str, both: BodyPin, scene: Scene, bodies: tuple[BodyPart, ...], number: dict[str, int]
 ) -> list[tuple[str, tuple[Share, ...], str | None]]:
-    one, other = (number[scene.body_of(point)] for point in both.points)
-    arms = bodies[one].arm(both.points[0]), bodies[other].arm(both.points[1])
-    return [(name, (Share(one, e, arms[0]), Share(other, -e, arms[1])), None) for e in np.eye(2)]
+    first, second = (number[scene.body_of(point)] for point in both.points)
+    arms = bodies[first].arm(both.points[0]), bodies[second].arm(both.points[1])
+    return [(name, (Share(first, e, arms[0]), Share(second, -e, arms[1])), None) for e in np.eye(2)]
 
 
 def _driven(drive: Drive, scene: Scene, bodies: tuple[BodyPart, ...], number: dict[str, int]) -> Share:

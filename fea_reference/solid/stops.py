@@ -67,8 +67,8 @@ def stops_of(scene: Scene, bodies: Sequence[BodyPart], ties: Sequence[Tie]) -> t
         assert isinstance(end, PinnedEnd)
         psi = rotation_unknown(tie, bodies)
         assert psi is not None
-        u, way = (0.0, 1.0) if stop.end == "start" else (1.0, -1.0)
-        leaving = way * shape_of(beam.curve).tangent(np.array([u]))[0]
+        u, sign = (0.0, 1.0) if stop.end == "start" else (1.0, -1.0)
+        leaving = sign * shape_of(beam.curve).tangent(np.array([u]))[0]
         line = np.array(scene.place_of(stop.towards)) - np.array(scene.place_of(end.point))
         turn = float(np.arctan2(line[0] * leaving[1] - line[1] * leaving[0], line @ leaving))
         turn += 2.0 * np.pi if turn < -np.pi + _ROUNDED else 0.0

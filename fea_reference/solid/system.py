@@ -213,7 +213,7 @@ def load_direction(model: Model, part: LoadPart | SharePart, z: Array) -> Array:
 
 def _moving(model: Model) -> csr_matrix:
     """Matrix (3m, size) from the unknowns to three unknowns of every body, zero for fixed bodies."""
-    every = [np.full(3, -1) if body.dofs is None else body.dofs for body in model.bodies]
-    columns = np.concatenate(every)
+    dofs = [np.full(3, -1) if body.dofs is None else body.dofs for body in model.bodies]
+    columns = np.concatenate(dofs)
     rows = np.flatnonzero(columns >= 0)
     return csr_matrix((np.ones(rows.size), (rows, columns[rows])), (columns.size, model.size))
