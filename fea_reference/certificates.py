@@ -16,11 +16,11 @@ from fea_reference.yielding import SIGNIFICANT, penetration_effects
 _VIOLATION = 1e-9
 _BALANCE = 1e-8
 _RESOLVED = 0.05  # thicknesses: penetration of a rigid body, whose penalty is the stiffest that the elements resolve
-_FROM_AFAR = 0.05  # thicknesses: largest gap with contact pressure
+_WIDEST_GAP = 0.05  # thicknesses: largest gap with contact pressure
 _SLENDER = 0.01  # lengths of the longest beam: largest reference thickness for this gap
 _SOFT = 0.05  # accepted relative deficit of a penalty against the resolution of the elements
-_NONE_MET = 1e3  # units of round-off of the stiffest element: measured up to twelve for 10 to 640 elements
-_PULLS = 1e-8  # times the largest force or EI/length: largest tension of a stop
+_ROUND_OFF_UNITS = 1e3  # units of round-off of the stiffest element: measured up to twelve for 10 to 640 elements
+_STOP_TENSION = 1e-8  # times the largest force or EI/length: largest tension of a stop
 
 
 def certify(march: March) -> Certificate:
@@ -54,7 +54,7 @@ def certify(march: March) -> Certificate:
         failures.append(f"a joint, a stop or an element's length is violated by {violation:.1e} of the longest beam")
     for stop, limit in acting_stops(model.stops, march.acting):
         press = stop.press(system.z, limit)
-        if not press >= -_PULLS * max(1.0, system.scale):
+        if not press >= -_STOP_TENSION * max(1.0, system.scale):
             failures.append(f"{stop.known_as} acts in tension, with a moment of {press * model.units.moment:.1e} N·m")
     if not system.significant:
         round_off = system.floor * model.units.force
@@ -91,7 +91,7 @@ def certify(march: March) -> Certificate:
                     f"a tip of contact {contact.pair.name} cuts into the beam by {deep * model.units.length:.1e} m"
                 )
         far = _widest_pressed_gap(march, contact)
-        if not far <= _FROM_AFAR * min(contact.pair.measure, _SLENDER):
+        if not far <= _WIDEST_GAP * min(contact.pair.measure, _SLENDER):
             failures.append(f"contact {contact.pair.name} presses across a gap of {far * model.units.length:.1e} m")
     if not force <= balance:
         failures.append(f"the forces of loads and supports have a sum of {force:.1e} of the largest")
@@ -134,7 +134,7 @@ def _drive_below_round_off(march: March) -> bool:
     A rigid motion meets only the round-off of elements, of 12 EI/h³, at any distance.
     """
     model = march.model
-    round_off = _NONE_MET * float(np.finfo(float).eps) * model.stiffest / float(model.elements.length.min())
+    round_off = _ROUND_OFF_UNITS * float(np.finfo(float).eps) * model.stiffest / float(model.elements.length.min())
     first = len(model.loads)
     for number, value in enumerate(march.values[first : first + len(model.drives)], start=first):
         reaction = float(np.abs(march.rate(number)[model.multipliers]).max())

@@ -41,7 +41,7 @@ from fea_reference.system import Drag, System
 from fea_reference.touch import Penalty
 
 _BEYOND = 1e-6  # times the span: distance beyond the critical point
-_ASIDE = 1e-4  # the same at a bifurcation, where the distance is not critical
+_BEYOND_BIFURCATION = 1e-4  # the same at a bifurcation, where the distance is not critical
 _KICKS = (3e-3, 1e-2)  # rad (and lengths): displacements along φ
 _FARTHEST = 0.05  # rad (and lengths): largest motion of a step
 _AIM = 0.03  # the intended motion of a step; a shorter step is followed by a step without drag
@@ -52,7 +52,7 @@ _SOFTER = 0.9  # factor of the least drag after a successful step
 _SOON = 12  # iterations for a step
 _STEPS = 400
 _FEW = 60  # steps to a neighbouring state
-_ASTRAY = 2.0  # times the permitted rotation: a larger one during the descent ends it
+_MAX_ROTATION_RATIO = 2.0  # times the permitted rotation: a larger one during the descent ends it
 _CHANGES = 8  # changes of contacts and stops in a step
 _ROUNDED = 1e-9  # relative to the energy
 _SAME = 1e-3  # relative to the larger decrease: equally low senses; Newton's residual is 3e-5 of the decrease
@@ -80,7 +80,7 @@ def _descend(
     march: March, load: int, target: float, span: float, critical: CriticalPoint, beside: float, *, loose: bool
 ) -> float | None:
     """Energy after a descent with ``loose`` or with the current penalties; None without a minimum."""
-    beyond, remaining = _ASIDE if critical.loss is Loss.BIFURCATION else _BEYOND, target - critical.value
+    beyond, remaining = _BEYOND_BIFURCATION if critical.loss is Loss.BIFURCATION else _BEYOND, target - critical.value
     march.values[load] = critical.value + float(np.sign(remaining)) * min(beyond * span, abs(remaining))
     if loose:
         march.penalties = {pair: Penalty(pair.stiffness) for pair in march.penalties}
@@ -106,7 +106,7 @@ def _descend(
                 trials.append((energy - penalised_energy(trial.model, trial.system, trial.values), trial, drag))
         most = max((fall for fall, *_ in trials), default=0.0)
         for _, trial, drag in sorted(trials, key=lambda item: item[0] < most - _SAME * abs(most)):
-            if _reaches_minimum(trial, load, drag, critical.system.z, _ASTRAY * beside, steps):
+            if _reaches_minimum(trial, load, drag, critical.system.z, _MAX_ROTATION_RATIO * beside, steps):
                 march.iterations += trial.iterations - iterations
                 march.restore(trial)
                 march.tighten()

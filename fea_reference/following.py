@@ -47,21 +47,21 @@ _FIRST = 0.01  # arc length of the first step
 _MOST = 0.03  # rad (and lengths): largest motion of a step
 _LEAST = 1e-9
 _STEPS = 400
-_LOOK = 30  # steps between two checks of progress
+_CHECK_INTERVAL = 30  # steps between two checks of progress
 _STRAIGHT = 0.9  # cosine between the tangents at both ends of a step
 _LONGER = 2.0  # step lengths: a farther point is on another branch
 _SHARP = 1e-6  # arc length of a turn that counts as sharp
-_GROWN = 1.2  # times the least curvature so far: the minimum of the curvature has been passed
+_PAST_MINIMUM = 1.2  # times the least curvature so far: the minimum of the curvature has been passed
 _PAST = 5  # steps
 _ROOTS = 60
 _FINE = 1e-8  # times the span
 _SHORT = 1e-4  # times a step
 _WIDE = 1e-4  # times the span: a critical point with a larger uncertainty may vanish with shorter steps
-_KEPT = 20  # path segments
+_SEGMENTS = 20  # path segments
 _FARTHER = 30.0  # arc lengths between two points: a larger distance means different branches
 _BETWEEN = 1.0  # elements: gap between contact points that separates zones
-_ALONG = 0.5  # cosine between tangent and φ at a fold
-_TURNING = 0.1  # times the initial dλ/ds: largest value at a fold
+_FOLD_COSINE = 0.5  # cosine between tangent and φ at a fold
+_FOLD_TANGENT = 0.1  # times the initial dλ/ds: largest value at a fold
 _CLEAR, _NEAR = 1e-5, 1e-2  # times the initial μ: above round-off, and near enough for dλ/ds at the critical point
 _APPROACHED = 1e-8  # times the span: distance at which a contact force counts as zero
 _SHARE = 0.9  # share of the remaining distance per step
@@ -71,11 +71,11 @@ _AS_GOOD = 1e-6  # times the span: distance at which the slip counts as reached
 _FORESEEN = 1e-3  # times the span: largest distance over which the slip is extrapolated, if no step leads nearer
 _DIFFERENCE = 1e-7  # times the span: increment of finite differences
 _RIGID = 1e4  # stiffness factor that stands for a rigid contact
-_HELD = 1e-2  # times the initial curvature: a contact with a larger one is stable
+_STABLE_SHARE = 1e-2  # times the initial curvature: a contact with a larger one is stable
 # times the initial contact force: negligible, or small while the rigid contact is unchanged
 _NOTHING, _LITTLE = 1e-2, 0.1
 _SOON = 1e-4  # times the span: distance from which a contact force is on its final decrease
-_AS_HELD = 0.5  # times the initial curvature with a rigid contact: the contact is unchanged
+_UNCHANGED_SHARE = 0.5  # times the initial curvature with a rigid contact: the contact is unchanged
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,9 +146,9 @@ def _follow(
     segments: list[Segment] = []
     uncertain: tuple[CriticalPoint, March] | None = None
     for tried in range(_STEPS):
-        if tried % _LOOK == 0 and tried > 0:
+        if tried % _CHECK_INTERVAL == 0 and tried > 0:
             # at this rate of decrease no critical point comes within the limit of steps
-            if here.curvature > (1.0 - _LOOK / _STEPS) * known[0] and length <= known[1]:
+            if here.curvature > (1.0 - _CHECK_INTERVAL / _STEPS) * known[0] and length <= known[1]:
                 return turn
             known = here.curvature, length
         length = min(length, _MOST / max(float(np.abs(here.way[march.model.moving]).max()), _MOST))
@@ -216,11 +216,11 @@ def _follow(
             continue
         if turn is None and here.rate * sense > 0.0 > there.rate * sense:
             turn = TurningPoint(branch, here, length)
-        steps_past_minimum = steps_past_minimum + 1 if there.curvature > _GROWN * least else 0
+        steps_past_minimum = steps_past_minimum + 1 if there.curvature > _PAST_MINIMUM * least else 0
         least = min(least, there.curvature)
         if steps_past_minimum >= _PAST:
             return turn
-        segments = [*segments[-_KEPT:], Segment(branch, here, length)]
+        segments = [*segments[-_SEGMENTS:], Segment(branch, here, length)]
         here, length = there, 1.5 * length
     return turn
 
@@ -490,7 +490,7 @@ def _force_vanished(
         return False
     return (
         curvature
-        > _AS_HELD
+        > _UNCHANGED_SHARE
         * softest(march.model, with_stiffness_factor(march.model, first.system, initial_contact, _RIGID)).curvature
     )
 
@@ -540,7 +540,7 @@ def _critical_between(
             ((part, place_found) for part, place_found in tried if place_found is not None), (share, None)
         )
         if middle is None:
-            if min(before.curvature, -behind.curvature) > _HELD * first.curvature:
+            if min(before.curvature, -behind.curvature) > _STABLE_SHARE * first.curvature:
                 return None
             break
         clear = middle if _CLEAR < abs(middle.curvature) / first.curvature < _NEAR else clear
@@ -556,7 +556,7 @@ def _critical_between(
     energy = potential_energy(march.model, march.system, march.values)
     for initial_contact, contact in _contact_parts_since(first.system, before.system):
         curvature = softest(march.model, with_stiffness_factor(march.model, before.system, contact, _RIGID)).curvature
-        if curvature > _HELD * first.curvature and _force_vanished(
+        if curvature > _STABLE_SHARE * first.curvature and _force_vanished(
             march, branch, first, initial_contact, contact, curvature
         ):
             # the other zones stay in contact
@@ -566,7 +566,7 @@ def _critical_between(
     mass = lumped_mass(march.model)
     along, size = float(before.mode.direction @ (mass * before.way)), float(np.sqrt(before.way @ (mass * before.way)))
     # τ vanishes with μ at a fold only; round-off over the last μ makes τ small at a bifurcation too
-    fold = abs((clear or before).rate) < _TURNING * abs(first.rate) and abs(along) > _ALONG * size
+    fold = abs((clear or before).rate) < _FOLD_TANGENT * abs(first.rate) and abs(along) > _FOLD_COSINE * size
     loss, side = Loss.FOLD if fold else Loss.BIFURCATION, -1.0 if fold and along < 0.0 else 1.0
     zero = before.curvature if before.curvature < -behind.curvature else behind.curvature
     return CriticalPoint(value, uncertainty, loss, "", zero, zero, energy, before.system, side * before.mode.direction)

@@ -48,41 +48,49 @@ from fea_reference.touch import LACKING, Circle, Contact, Face, Pair, Penalty, R
 from fea_reference.yielding import POINT, ROUND_OFF_DEPTH, SIGNIFICANT, is_point_contact, penetration_effects
 
 # rad (and lengths): largest difference between equilibrium and prediction; a larger one means another branch
-_CORRECTED = 0.2
-_AHEAD = 2.0  # times the last step: longest step for which the last step's change of tangent still helps the predictor
-_BENT = 0.3  # largest share of the first-order motion that the higher-order terms may add
-_TURNED = 1.0  # rad: rotation of an element's end against its chord; the shallow-arch element is not valid beyond
+_MAX_CORRECTION = 0.2
+_MAX_STEP_RATIO = (
+    2.0  # times the last step: longest step for which the last step's change of tangent still helps the predictor
+)
+_MAX_HIGHER_TERMS = 0.3  # largest share of the first-order motion that the higher-order terms may add
+_MAX_ROTATION = 1.0  # rad: rotation of an element's end against its chord; the shallow-arch element is not valid beyond
 _TIGHTEN = 100.0  # largest factor for a penalty in a single increase
-_NARROW = 2.0  # exponent of this factor for a contact in a point, where the penetration is predictable
-_GENTLEST = 1.03  # smallest factor, tried last
+_POINT_POWER = 2.0  # exponent of this factor for a contact in a point, where the penetration is predictable
+_LEAST_FACTOR = 1.03  # smallest factor, tried last
 _TIGHTENINGS = 40
-_FELT = 5.0  # times the requested penetration: largest effect of a penetration on other forces and motions, as a share
-_HELD = 200.0  # times the allowed penetration: a deeper contact, which no penalty could be raised for, is lost
+_EFFECT_FACTOR = (
+    5.0  # times the requested penetration: largest effect of a penetration on other forces and motions, as a share
+)
+_EXCESSIVE_DEPTH = (
+    200.0  # times the allowed penetration: a deeper contact, which no penalty could be raised for, is lost
+)
 _SETTLINGS = 8
-_LED = 1e-5  # relative change of the resting pressure above which the lead is computed again
+_LEAD_TOLERANCE = 1e-5  # relative change of the resting pressure above which the lead is computed again
 _NEARBY = (1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0)  # steps: distances at which a closing under tight penalties is sought
-_SINKING = 0.1  # thicknesses: penetration above which tight penalties have to push the beams apart first
-_DEEPER = 1e-3  # shortest elements: additional penetration of a contact about to be passed through
-_THROUGH = 0.5  # thicknesses: longest motion within which no beam passes through another unnoticed
-_AT_LIMIT = 1e-10  # rad: overrun of an angle limit at the closing of the stop
-_SHARP = 1e-3  # times the accepted residual: aim at a station, where this is above round-off
-_SHARPENINGS = 3
+_DEEP = 0.1  # thicknesses: penetration above which tight penalties have to push the beams apart first
+_PASSING_DEPTH = 1e-3  # shortest elements: additional penetration of a contact about to be passed through
+_LONGEST_PATH = 0.5  # thicknesses: longest motion within which no beam passes through another unnoticed
+_LIMIT_TOLERANCE = 1e-10  # rad: overrun of an angle limit at the closing of the stop
+_FINE_RESIDUAL = 1e-3  # times the accepted residual: aim at a station, where this is above round-off
+_FINE_ITERATIONS = 3
 _SOFT = 0.1  # times the stiffest penalty that the elements resolve
-_PULLS = 1e-9  # times the largest force or EI/length: tension of a stop at which the stop opens
+_STOP_TENSION = 1e-9  # times the largest force or EI/length: tension of a stop at which the stop opens
 _DIFFERENCE = 1e-4  # steps: increment for finite-difference rates of gaps
 _INSIDE = 0.01  # closing tolerances: distance from the edge of the tolerance to the value sought
-_SWITCHED = 1e-8  # rad, or forces: margin within which a stop counts as switched
+_SWITCH_MARGIN = 1e-8  # rad, or forces: margin within which a stop counts as switched
 _AIM = 0.84  # times the requested penetration: aim for a pair of beams, so that the error follows a power law
 _STIFFEST = 1e9  # times the stiffest penalty that the elements resolve: upper bound at the penetration of the next line
 _STANDARD = 1e-4  # for elements as long as thick; at a tip the bound grows with the square of the ratio of penetrations
 # factor of a single increase, and upper bound over the stiffest, where a penalty ends a branch too early
 _FIRMER, _FIRMEST = 1e3, 1e9
-_EVEN = 0.03  # accepted relative difference between a penalty and the wanted penalty
+_PENALTY_TOLERANCE = 0.03  # accepted relative difference between a penalty and the wanted penalty
 _SAME = 1e-9  # the same for a circle
 _POLISHINGS = 8  # iterations after which a penetration below the requested one is accepted
-_IN_A_POINT = 1.5  # penalty ∝ penetration to the power −1.5 for a contact in a point
-_FALLS = (1.0, 2.0)  # the same exponent in an area, and at a tip
-_SUNK = 0.3  # times the greatest penetration of a contact not yet passed through: a deeper one is about to pass
+_POINT_EXPONENT = 1.5  # penalty ∝ penetration to the power −1.5 for a contact in a point
+_EXPONENTS = (1.0, 2.0)  # the same exponent in an area, and at a tip
+_PASSING_SHARE = (
+    0.3  # times the greatest penetration of a contact not yet passed through: a deeper one is about to pass
+)
 _STIFFER = 10.0  # factor of the penalty for the repeated step
 _STIFFENINGS = 3
 _LOOSER = (1.0, 0.5)  # shares of the way, in orders of magnitude, from tight penalties to the loosest
@@ -138,15 +146,12 @@ class March:
         critical: critical points passed on request.
         bypassed: critical points passed without request.
         iterations: Newton iterations since the last station.
-        zones_far: True if zones moved too far between the last stations for tight penalties; the next one starts with
-            loose
-            ones.
+        zones_far: True if zones moved too far between the last stations for tight penalties; the next station then
+            starts with loose penalties.
         loosened: True if penalties were loosened after the last tightening.
         known_curvature: last system with a computed smallest curvature, and this curvature.
         last_step: the last step, if the branch continued along it.
-        previous_point: parameter number, value and curvature one step before, with tight penalties, while critical
-            points
-            count.
+        previous_point: parameter number, value and curvature one step before, if watched and with tight penalties.
         least_penalties: lower bounds of penalties up to the next station, by contact, above the bound from the
             penetration.
     """
@@ -194,7 +199,10 @@ class March:
     def penetrations_bounded(self) -> bool:
         """True if no penetration is far above the allowed one, so that penalties could be tightened."""
         allowed = self.allowed()
-        return all(contact.penetration <= _HELD * allowed.get(contact.pair, np.inf) for contact in self.system.touches)
+        return all(
+            contact.penetration <= _EXCESSIVE_DEPTH * allowed.get(contact.pair, np.inf)
+            for contact in self.system.touches
+        )
 
     @property
     def largest_axial_force(self) -> float:
@@ -303,7 +311,7 @@ class March:
                 Ending.STEP_TOO_SMALL,
                 f"Newton's method finds no equilibrium beyond {self.described(load, start)}",
             )
-        if self.largest_motion(system, predicted) > _CORRECTED:
+        if self.largest_motion(system, predicted) > _MAX_CORRECTION:
             return (
                 Ending.STEP_TOO_SMALL,
                 f"beyond {self.described(load, start)} the nearest equilibrium is on another branch",
@@ -414,12 +422,12 @@ class March:
         first, last_step = step * rate, self.last_step
         if last_step is None or last_step.load != load or last_step.acting is not self.acting:
             return first
-        if last_step.contacts != frozenset(self.penalties) or not abs(step) <= _AHEAD * abs(last_step.by):
+        if last_step.contacts != frozenset(self.penalties) or not abs(step) <= _MAX_STEP_RATIO * abs(last_step.by):
             return first
         u = step / last_step.by
         higher = u**2 * last_step.second + u**3 * last_step.third
         bent, straight = (float(np.abs(motion[self.model.moving]).max()) for motion in (higher, first))
-        return first + higher if bent <= _BENT * straight else first
+        return first + higher if bent <= _MAX_HIGHER_TERMS * straight else first
 
     def passing_failure(self, before: State, system: System, where: str) -> Trouble | None:
         """Failure if bodies passed through each other, or an element turned too far, since ``before``; else None."""
@@ -435,7 +443,7 @@ class March:
             if self._overlapped_between(pair, before, system.z):
                 return Ending.BEAMS_CROSSED, f"{where} a beam passes through the opposite body in contact {pair.name}"
         turned = float(np.abs(system.elements.rotation).max())
-        if turned > _TURNED:
+        if turned > _MAX_ROTATION:
             return Ending.TURNED_TOO_FAR, f"{where} an element turns by {turned:.2f} rad: take more elements"
         for pair in (*self.open, *self.penalties):
             if passed_through(self.model, pair, before, system.z):
@@ -460,13 +468,13 @@ class March:
             return np.inf
         limit = self.acting.limits.get(stop.name)
         if limit is None:
-            return stop.margin(system.z)[0] + _AT_LIMIT
+            return stop.margin(system.z)[0] + _LIMIT_TOLERANCE
         # the largest force may be the stop's own, which vanishes where the stop opens
-        return stop.press(system.z, limit) / max(1.0, system.scale) + _PULLS
+        return stop.press(system.z, limit) / max(1.0, system.scale) + _STOP_TENSION
 
     def switch_stops(self, load: int, changing: Iterable[StopPart]) -> None:
         """Close or open the stops among ``changing`` that have reached their margin."""
-        arrived = [stop for stop in changing if self.stop_margin(stop, self.system) <= _SWITCHED]
+        arrived = [stop for stop in changing if self.stop_margin(stop, self.system) <= _SWITCH_MARGIN]
         for stop in arrived:
             self.switched[stop.name] = float(self.values[load])
             self.toggle_stop(stop, load, self.system)
@@ -513,9 +521,9 @@ class March:
         least = zones_of(self.model, pair, before).least
         if least > 2.0 * largest_motion:
             return False
-        deepest = least - _DEEPER * self._shortest_element if least < 0.0 else 0.0
+        deepest = least - _PASSING_DEPTH * self._shortest_element if least < 0.0 else 0.0
         thick = min(pair.distance, pair.scale) if isinstance(pair, Pair) else 0.0
-        parts = max(2, int(np.ceil(largest_motion / max(self._shortest_element, _THROUGH * thick))))
+        parts = max(2, int(np.ceil(largest_motion / max(self._shortest_element, _LONGEST_PATH * thick))))
         pace = relative_motion(self.model, pair, before, after) / parts
 
         def overlaps(first: int, last: int) -> bool:
@@ -560,7 +568,7 @@ class March:
             gap = gaps(value)[which]
             return 0.0 if 0.0 <= gap <= 0.5 * tolerances[which] else gap - _INSIDE * tolerances[which]
 
-        tolerances = [*(CLOSED * pair.scale for pair in self.open), *(_SWITCHED for _ in self.model.stops)]
+        tolerances = [*(CLOSED * pair.scale for pair in self.open), *(_SWITCH_MARGIN for _ in self.model.stops)]
         clear, beyond = sorted(known, key=lambda value: min(gaps(value)), reverse=True)
         xtol = 1e-11 * max(abs(clear), abs(beyond))
         try:
@@ -589,8 +597,8 @@ class March:
     def _close_tightly(self, load: int, increment: float) -> None:
         """Tighten the other penalties after a closing and locate the closing again.
 
-        Penetration under loose penalties shifts a closing. ``increment`` is the step in λ. Without a new location an open
-        contact stays open.
+        Penetration under loose penalties shifts a closing. ``increment`` is the step in λ. Without a new location an
+        open contact stays open.
         """
         loose = dict(self.penalties)
         self.tighten()
@@ -665,7 +673,7 @@ class March:
         if not solved.converged or _too_deep(self.model, solved.system) or self._overlaps_more(solved.system):
             return False
         contact_lost = self._passed_rigid_body(solved.system) or self.slip_failure(solved.system, "") is not None
-        if self.largest_motion(solved.system, self.system.z) <= _CORRECTED and not contact_lost:
+        if self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION and not contact_lost:
             self.system, self.penalties, self.loosened = solved.system, looser, True
             self.exchange_beams()
             return True
@@ -688,7 +696,7 @@ class March:
                 and (single := self._as_single_integral(contact, pair)) is not None
             ):
                 solved = self._with_replaced_pair(pair, single)
-                if solved is not None and all(contact.missing_share <= LACKING for contact in solved[0].touches):
+                if solved is not None and all(renewed.missing_share <= LACKING for renewed in solved[0].touches):
                     self.system, self.penalties = solved
                 continue
             about = pair.about()
@@ -697,7 +705,7 @@ class March:
                     break
                 if other != pair and (solved := self._with_replaced_pair(pair, other)) is not None:
                     reduced_share = next(
-                        (contact.missing_share for contact in solved[0].touches if contact.pair == other), 0.0
+                        (renewed.missing_share for renewed in solved[0].touches if renewed.pair == other), 0.0
                     )
                     if reduced_share < missing_share:
                         (self.system, self.penalties), pair, missing_share = solved, other, reduced_share
@@ -738,7 +746,7 @@ class March:
             self.model, self.settings, penalties, self.values, self.system.z, self.acting, depths, pushes
         )
         self.iterations += solved.iterations
-        if not solved.converged or self.largest_motion(solved.system, self.system.z) > _CORRECTED:
+        if not solved.converged or self.largest_motion(solved.system, self.system.z) > _MAX_CORRECTION:
             return None
         return solved.system, penalties
 
@@ -763,7 +771,7 @@ class March:
             allowed = self.allowed()
             factors = {
                 contact.pair: self._penalty_factor(
-                    contact, falls.get(contact.pair, _IN_A_POINT), allowed.get(contact.pair)
+                    contact, falls.get(contact.pair, _POINT_EXPONENT), allowed.get(contact.pair)
                 )
                 for contact in self.system.touches
             }
@@ -781,11 +789,11 @@ class March:
             held_depths: dict[Contact, float] = {}
             for contact in self.system.touches:
                 narrow = contact.closed and np.ptp(contact.zones.intervals) < POINT
-                limit = most**_NARROW if narrow else most
+                limit = most**_POINT_POWER if narrow else most
                 factor = min(max(factors[contact.pair], 1.0 / limit), limit)
                 stiffness = factor * self.penalties[contact.pair].stiffness
                 tighter[contact.pair] = Penalty(stiffness, pressures[contact.pair] / stiffness)
-                depths[contact.pair] = contact.penetration * factor ** (-1.0 / falls.get(contact.pair, _IN_A_POINT))
+                depths[contact.pair] = contact.penetration * factor ** (-1.0 / falls.get(contact.pair, _POINT_EXPONENT))
                 if narrow and isinstance(contact.pair, Pair):
                     held_depths[contact.pair] = depths[contact.pair]
             pushes = self.pushes()
@@ -795,16 +803,16 @@ class March:
             )
             solved = equilibrium(self.model, self.settings, tighter, self.values, z, self.acting, held_depths, pushes)
             self.iterations += solved.iterations
-            near = solved.converged and self.largest_motion(solved.system, self.system.z) <= _CORRECTED
+            near = solved.converged and self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION
             if near and not self._passed_rigid_body(solved.system):
                 falls = self._penetration_exponents(solved.system, tighter)
                 self.system, self.penalties = solved.system, tighter
                 most = min(most**1.5, _TIGHTEN)
             else:
-                if most <= _GENTLEST:
+                if most <= _LEAST_FACTOR:
                     return  # the next attempt would be identical
                 tried = max(max(factor, 1.0 / factor) for factor in factors.values())
-                most = max(min(most, tried) ** 0.4, _GENTLEST)
+                most = max(min(most, tried) ** 0.4, _LEAST_FACTOR)
 
     def raise_penalty(self, name: str) -> bool:
         """Hold a contact by a far stiffer penalty up to the next station; True if this was possible."""
@@ -814,7 +822,7 @@ class March:
             return False
         self.least_penalties[name] = stiffness
         self.tighten()
-        return self.penalties[pair].stiffness >= (1.0 - _EVEN) * stiffness
+        return self.penalties[pair].stiffness >= (1.0 - _PENALTY_TOLERANCE) * stiffness
 
     def has_soft_penalty(self) -> bool:
         """True if a closed contact has a penalty far below the stiffest that the elements resolve."""
@@ -826,14 +834,14 @@ class March:
     def has_deep_pair(self) -> bool:
         """True if contacts are so deep under the current penalties that the next step might pass through."""
         return self.has_deep_tip() or any(
-            isinstance(contact.pair, Pair) and contact.penetration > _SINKING * contact.pair.scale
+            isinstance(contact.pair, Pair) and contact.penetration > _DEEP * contact.pair.scale
             for contact in self.system.touches
         )
 
     def has_deep_tip(self) -> bool:
         """True if a tip of a rigid edge has cut deep into a beam: no further step may find an equilibrium there."""
         faces = (contact.pair for contact in self.system.touches if isinstance(contact.pair, Face) and contact.closed)
-        return any(tip_depth(self.model, face, self.system.z) > _SINKING * face.scale for face in faces)
+        return any(tip_depth(self.model, face, self.system.z) > _DEEP * face.scale for face in faces)
 
     def settle(self, load: int) -> None:
         """Tighten penalties and switch stops until both are consistent.
@@ -852,7 +860,7 @@ class March:
             for stop in changing:
                 self.toggle_stop(stop, load, self.system)
             system = self.solve(load, float(self.values[load]), self.system.z)
-            if system is None or self.largest_motion(system, self.system.z) > _CORRECTED:
+            if system is None or self.largest_motion(system, self.system.z) > _MAX_CORRECTION:
                 self.acting, self.closing = before, closing
                 return
             self.system = system
@@ -869,7 +877,7 @@ class March:
             self.penalties[pair] = Penalty(pair.stiffness)
             self.closing.setdefault(pair.name, self.value(load))
         system = self.solve(load, float(self.values[load]), z)
-        if system is None or self.largest_motion(system, z) > _CORRECTED:
+        if system is None or self.largest_motion(system, z) > _MAX_CORRECTION:
             self.restore(there)
             return False
         self.system = system
@@ -880,14 +888,16 @@ class March:
 
         The accepted residual is relative to the largest element force, which may exceed the loads a hundredfold.
         """
-        settings = replace(self.settings, residual=_SHARP * self.settings.residual, newton_limit=_SHARPENINGS)
+        settings = replace(
+            self.settings, residual=_FINE_RESIDUAL * self.settings.residual, newton_limit=_FINE_ITERATIONS
+        )
         system = self.system
         if float(np.abs(system.residual).max()) > max(settings.residual * system.scale, system.floor):
             solved = equilibrium(
                 self.model, settings, self.penalties, self.values, system.z, self.acting, self.depths(), self.pushes()
             )
             self.iterations += solved.iterations
-            if solved.converged and self.largest_motion(solved.system, system.z) <= _SHARP:
+            if solved.converged and self.largest_motion(solved.system, system.z) <= _FINE_RESIDUAL:
                 self.system = solved.system
 
     def remove_gap_round_off(self) -> None:
@@ -903,7 +913,7 @@ class March:
         """
         system, settings = self.system, self.settings
         effects = penetration_effects(self.model, system, self.penalties, self.open, settings.quadrature)
-        felt_at_most = min(_FELT * settings.penetration, SIGNIFICANT)
+        felt_at_most = min(_EFFECT_FACTOR * settings.penetration, SIGNIFICANT)
         depths: dict[Contact, float] = {}
         for contact in system.touches:
             if not contact.closed:
@@ -936,17 +946,17 @@ class March:
         aim = _AIM * allowed
         # a penetration above this bound belongs to a body that was passed through
         slender = max(1.0, self._shortest_element / contact.pair.scale)
-        most = _STIFFEST * (slender * _STANDARD / self.settings.penetration) ** _FALLS[1] * least
+        most = _STIFFEST * (slender * _STANDARD / self.settings.penetration) ** _EXPONENTS[1] * least
         return float(min(max((contact.penetration / aim) ** fall, least), most))
 
     def _penalty_accepted(self, contact: Touch, factor: float, tries: int, allowed: float | None) -> bool:
         """True if a penalty needs no change; after several iterations a pair's penalty may be too stiff."""
         if allowed is None:
             return factor <= 1.0 + _SAME
-        if abs(factor - 1.0) <= _EVEN:
+        if abs(factor - 1.0) <= _PENALTY_TOLERANCE:
             return True
         enough = contact.penetration <= allowed
-        stiff = contact.pair.stiffest <= (1.0 + _EVEN) * self.penalties[contact.pair].stiffness
+        stiff = contact.pair.stiffest <= (1.0 + _PENALTY_TOLERANCE) * self.penalties[contact.pair].stiffness
         return tries >= _POLISHINGS and enough and stiff
 
     def _penetration_exponents(self, system: System, tighter: Mapping[Contact, Penalty]) -> dict[Contact, float]:
@@ -958,15 +968,15 @@ class March:
         for contact in system.touches:
             factor = tighter[contact.pair].stiffness / self.penalties[contact.pair].stiffness
             share = contact.penetration / before[contact.pair] if before[contact.pair] > 0.0 else 0.0
-            if share > 0.0 and abs(np.log(share)) > _EVEN:
-                exponents[contact.pair] = float(np.clip(-np.log(factor) / np.log(share), *_FALLS))
+            if share > 0.0 and abs(np.log(share)) > _PENALTY_TOLERANCE:
+                exponents[contact.pair] = float(np.clip(-np.log(factor) / np.log(share), *_EXPONENTS))
         return exponents
 
     def _leads_outdated(self, pressures: Mapping[Contact, float]) -> bool:
         """True if a lead differs from the lead of the current axial forces."""
         return any(
             abs(pressure / self.penalties[pair].stiffness - self.penalties[pair].lead)
-            > _LED * max(pressure / self.penalties[pair].stiffness, self.settings.penetration * pair.scale)
+            > _LEAD_TOLERANCE * max(pressure / self.penalties[pair].stiffness, self.settings.penetration * pair.scale)
             for pair, pressure in pressures.items()
         )
 
@@ -1010,11 +1020,11 @@ def _too_deep(model: Model, system: System) -> list[Contact]:
     return [
         contact.pair
         for contact in system.touches
-        if contact.penetration > _SUNK * _deepest(contact.pair)
+        if contact.penetration > _PASSING_SHARE * _deepest(contact.pair)
         or (
             isinstance(contact.pair, Face)
             and contact.closed
-            and tip_depth(model, contact.pair, system.z) > _SUNK * contact.pair.scale
+            and tip_depth(model, contact.pair, system.z) > _PASSING_SHARE * contact.pair.scale
         )
     ]
 

@@ -32,8 +32,8 @@ from fea_reference.state import State
 from fea_reference.system import Drag, System, assemble
 from fea_reference.touch import Contact, Penalty, Touch
 
-_TURN = 0.4  # rad, and lengths of the longest beam: largest motion per iteration
-_LOST = 3  # longer corrections before the search is given up: a distant equilibrium is on another branch
+_MAX_MOTION = 0.4  # rad, and lengths of the longest beam: largest motion per iteration
+_LONG_CORRECTIONS = 3  # longer corrections before the search is given up: a distant equilibrium is on another branch
 _NEAR = 3.0  # ratio of penetrations within the reach of Newton's method
 _NOTHING = 1e-2  # times the accepted correction and residual: no further step needed
 _SETTLED = 1e-4  # correction below which held contacts are released
@@ -41,7 +41,7 @@ _SMALL = 1e-4  # times the longest correction, or a length: scale of small corre
 _FALLING = 0.1  # times the previous residual: this decrease allows a few more iterations
 _TOUCHING = 1e-9  # thicknesses: negligible overlap
 _STALLED = 6  # consecutive small corrections without one below half of the first: no convergence
-_HELD = 6  # largest number of iterations with held contacts
+_HOLD_ITERATIONS = 6  # largest number of iterations with held contacts
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,13 +101,13 @@ def equilibrium(
         correction = float(np.abs(step[moving]).max())
         if not held_depths and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING * accepted:
             return Solved(system, converged=True, iterations=iteration)  # this step is not needed
-        far += correction > _TURN
+        far += correction > _MAX_MOTION
         longest = max(longest, correction)
         small = [*small[1 - _STALLED :], correction] if correction < _SMALL * min(1.0, longest) else []
         stalled = not held_depths and len(small) == _STALLED and min(small) > 0.5 * small[0]
-        if far >= _LOST or stalled:
+        if far >= _LONG_CORRECTIONS or stalled:
             return Solved(system, converged=False, iterations=iteration + 1)
-        step *= min(1.0, _TURN / max(correction, _TURN))
+        step *= min(1.0, _MAX_MOTION / max(correction, _MAX_MOTION))
         predicted = {contact.pair: contact.predicted_forces(step) for contact in system.touches}
         if penalties and not held_depths and unbalanced > accepted:
             system = _line_searched(
@@ -117,7 +117,7 @@ def equilibrium(
         else:
             z = settled_at(system, advance(model, z, step))
             system = assemble(model, penalties, settings.quadrature, values, z, acting, held_depths, predicted, drag)
-        settled = iteration >= _HELD or correction < _SETTLED
+        settled = iteration >= _HOLD_ITERATIONS or correction < _SETTLED
         opened = [
             contact.pair
             for contact in system.touches

@@ -22,7 +22,7 @@ from fea_reference.projection import project
 from fea_reference.state import State
 from fea_reference.touch import Pair, Touch
 
-_NEAR = 1.0  # elements: largest distance of a zone from its end
+_NEAR_END = 1.0  # elements: largest distance of a zone from its end
 
 
 def distance_to_end(model: Model, contact: Touch, z: State) -> float | None:
@@ -31,7 +31,7 @@ def distance_to_end(model: Model, contact: Touch, z: State) -> float | None:
     if not isinstance(pair, Pair) or pair.roles is not None or not contact.closed:
         return None
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    near = [end for end in (0, first.n) if np.abs(contact.zeta - end).max() <= _NEAR]
+    near = [end for end in (0, first.n) if np.abs(contact.zeta - end).max() <= _NEAR_END]
     if len(near) != 1:
         return None
     inwards = first.tangents[:, near[0]] * (1.0 if near[0] == 0 else -1.0)

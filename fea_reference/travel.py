@@ -35,22 +35,22 @@ from fea_reference.touch import Circle, Face, Pair
 _PREDICTED = 0.3  # rad (and lengths): largest predicted motion of a load step
 _CUTS = 10  # consecutive cuts of a step, to a quarter
 _SHORTEST = 0.25**_CUTS  # times the span: length of a step over the whole span after all cuts
-_PACE = 1e-3  # times the span: progress
+_PROGRESS = 1e-3  # times the span: progress
 _PATIENCE = 250  # iterations without this progress: a failing step then starts the search for a critical point
 _EASY = 6  # iterations: a step with more is not followed by a longer step
 _FAR = 4.0  # elements: larger motion of a zone between stations, which calls for loose penalties again
-_ASIDE = 0.15  # times the motion of a step: accepted deviation from the mean of the tangents
-_UNEVEN = 0.6  # times the difference of the tangents: further accepted deviation
-_NOWHERE = 1e-6  # rad (and lengths): negligible motion
-_RISES = 10.0  # times the earlier penetration: further accepted deviation after a change of penalty
-_BESIDE = 0.3  # rad: largest rotation of sections and bodies to a neighbouring state
-_AGAIN = 1e-5  # times the span: distance of two values for the same critical point
+_DEVIATION = 0.15  # times the motion of a step: accepted deviation from the mean of the tangents
+_TANGENT_CHANGE = 0.6  # times the difference of the tangents: further accepted deviation
+_NO_MOTION = 1e-6  # rad (and lengths): negligible motion
+_PENETRATION_FACTOR = 10.0  # times the earlier penetration: further accepted deviation after a change of penalty
+_NEIGHBOUR_ROTATION = 0.3  # rad: largest rotation of sections and bodies to a neighbouring state
+_SAME_POINT = 1e-5  # times the span: distance of two values for the same critical point
 _MANY, _CROWDED = 4, 0.01  # this many critical points within this share of the span lead to no stable branch
 _HALF = 0.5  # times the distance to the extrapolated zero of the curvature
 _NEAR = 1e-2  # times the span: a shorter step is left to path following
 _FOLLOWINGS = 8  # consecutive runs of path following with tight penalties
-_TIRED = 3  # consecutive cuts before path following starts
-_WARY = 3  # cuts in total before the curvature is computed although no critical point is sought
+_CUTS_BEFORE_FOLLOWING = 3  # consecutive cuts before path following starts
+_CUTS_BEFORE_WATCHING = 3  # cuts in total before the curvature is computed although no critical point is sought
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,8 +179,8 @@ def _step_to(march: March, course: Course, target: float, *, watched: bool) -> b
                 previous for previous in pulls if (march.values[load] - previous[0]) * (target - previous[0]) > 0.0
             ]
             pulls.append((float(march.values[load]), march.largest_axial_force))
-        watching = watched or failed >= _WARY
-        if abs(march.values[load] - last_progress[0]) >= _PACE * course.span:
+        watching = watched or failed >= _CUTS_BEFORE_WATCHING
+        if abs(march.values[load] - last_progress[0]) >= _PROGRESS * course.span:
             last_progress, search_done = (march.values[load], march.iterations), False
         if cuts > _CUTS:
             raise _taut_ending(march, load, pulls) or StoppedError(*reason)
@@ -228,10 +228,10 @@ def _step_to(march: March, course: Course, target: float, *, watched: bool) -> b
             trouble = Ending.NOT_A_MINIMUM, f"beyond {saved.described(load, saved.values[load])} no minimum is found"
         slow = trouble is not None and march.iterations - last_progress[1] > _PATIENCE
         # tiny steps may succeed without progress: without a critical point the branch ends here
-        tiny = trouble is not None and size < _SHORTEST * course.span and size * speed < _NOWHERE
+        tiny = trouble is not None and size < _SHORTEST * course.span and size * speed < _NO_MOTION
         if tiny and search_done and trouble is not None:
             raise _taut_ending(march, load, pulls) or StoppedError(*trouble)
-        give_up_stepping = slow or tiny or (trouble is not None and cuts >= _TIRED)
+        give_up_stepping = slow or tiny or (trouble is not None and cuts >= _CUTS_BEFORE_FOLLOWING)
         last_progress = (last_progress[0], march.iterations) if slow else last_progress
         if (unstable or give_up_stepping) and (taut_ending := _taut_ending(saved, load, pulls)) is not None:
             raise taut_ending
@@ -343,9 +343,9 @@ def _off_branch(saved: March, march: March, load: int, rate: Array, ahead: Array
     changed = [
         contact for contact in saved.system.touches if now.get(contact.pair.name) != saved.penalties[contact.pair]
     ]
-    deviation -= _RISES * max((contact.penetration for contact in changed), default=0.0)
+    deviation -= _PENETRATION_FACTOR * max((contact.penetration for contact in changed), default=0.0)
     largest_motion, uneven = max(np.abs(first).max(), np.abs(last).max()), np.abs(last - first).max()
-    return bool(deviation > _UNEVEN * uneven + _ASIDE * largest_motion + _NOWHERE)
+    return bool(deviation > _TANGENT_CHANGE * uneven + _DEVIATION * largest_motion + _NO_MOTION)
 
 
 def _record(march: March, course: Course, critical: CriticalPoint, after: float | None) -> Critical:
@@ -393,7 +393,7 @@ def _may_bypass(march: March, course: Course, critical: CriticalPoint) -> bool:
     unit = march.model.stepped[course.load].unit
     ends = [point.record.end for point in march.bypassed]
     bypassed_values = [end.value / unit for end in ends if end.stage == course.stage]
-    repeated = len(bypassed_values) > 0 and abs(critical.value - bypassed_values[-1]) <= _AGAIN * course.span
+    repeated = len(bypassed_values) > 0 and abs(critical.value - bypassed_values[-1]) <= _SAME_POINT * course.span
     repeated = repeated or (
         len(bypassed_values) >= _MANY and abs(critical.value - bypassed_values[-_MANY]) <= _CROWDED * course.span
     )
@@ -424,7 +424,7 @@ def _continue_beyond(march: March, course: Course, target: float, critical: Crit
         after = descend(march, load, target, course.span, critical)
     elif course.beyond not in ("stop", "jump") and leads_on and _may_bypass(march, course, critical):
         before = march.saved()
-        energy = descend(march, load, target, course.span, critical, _BESIDE)
+        energy = descend(march, load, target, course.span, critical, _NEIGHBOUR_ROTATION)
         if energy is not None:
             turned = march.largest_rotation(march.system, critical.system.z)
             march.bypassed.append(BypassedPoint(sentence, GoneOver(_record(march, course, critical, energy), turned)))

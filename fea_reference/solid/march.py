@@ -36,13 +36,13 @@ from fea_reference.solid.system import System, assemble
 _CUTS = 10  # consecutive cuts: the last step is a millionth of the step that led to the equilibrium
 _EASY = 9  # iterations of a step that may be doubled
 _CUT = 0.3  # factor of a cut
-_WHOLE = 1.01  # steps: the remaining distance is joined to the last step
+_WHOLE_STEP = 1.01  # steps: the remaining distance is joined to the last step
 _STIFFER = 4.0
 _STIFFEST = 1e4  # times the initial factor
 _LOOSER = 0.1
 _LOOSEST = 1e-4  # times the requested factors
 _TIGHTER = 10.0
-_GENTLY = 1.2
+_LEAST_FACTOR = 1.2
 _CLOSING = 1e-9  # lengths of the longest beam: gap of a closed contact
 _SAME = 1e-12  # steps: distance of equal values
 _LOOKS = 60
@@ -138,7 +138,7 @@ def reach(march: March, part: int, target: float) -> None:
         remaining = target - here
         if remaining == 0.0:
             break
-        step = remaining if abs(remaining) < _WHOLE * march.step else float(np.copysign(march.step, remaining))
+        step = remaining if abs(remaining) < _WHOLE_STEP * march.step else float(np.copysign(march.step, remaining))
         if cuts > _CUTS or here + step == here:
             name, unit = march.model.stepped[part].name, march.model.stepped[part].unit
             ending = Ending.NOT_A_MINIMUM if why == _NO_MINIMUM else Ending.STEP_TOO_SMALL
@@ -237,7 +237,7 @@ def _with_penalties(
             loose, z = penalties, solved.system.z
             continue
         factor = float(np.sqrt(factor))
-        if factor < _GENTLY:
+        if factor < _LEAST_FACTOR:
             break
     return solved
 
