@@ -65,7 +65,7 @@ def _move_inwards(stepping: Stepping, trial: State, present: Touch, overlap: Ove
     second = NotCoveredError(f"{overlap.contact} touches at a second place or along a length")
     if isinstance(present, Wrap) or present.at is None or overlap.beam != present.beam:
         raise second
-    # a contact that moves inwards starts at the end, so that a smaller step distinguishes it from a second place
+    # a contact moving inwards starts at the end: a smaller step excludes a second place
     otherwise = second if overlap.gap > -_SHALLOW else LostError()
     if abs(overlap.s - present.at) > _NEAR_END * length:
         raise otherwise
@@ -102,7 +102,7 @@ def _clamped_on(stepping: Stepping, overlap: Overlap) -> str | None:
 
 
 def _continue_from_clamp(stepping: Stepping, trial: State, overlap: Overlap, which: str) -> None:
-    """Step to equal curvatures of a clamped end and its circle, then continue along the circle or away from it.
+    """Step to equal curvatures of a clamped end and its circle, then continue on or off the circle.
 
     The contact at once carries the whole shear force of the clamp.
     """

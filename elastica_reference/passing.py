@@ -1,4 +1,4 @@
-"""Check for beams that passed through each other or through a circle between two states.
+"""Check for a beam passing through another beam or a circle between two states.
 
 =======  ==================================================================================
 symbol   meaning

@@ -18,7 +18,7 @@ between: the energy is minimal. After release the energy decreases in as many di
 (E. V. Haynsworth, Determination of the inertia of a partitioned Hermitian matrix, Linear Algebra and its Applications
 1 (1968) 73-81). The least curvature of the energy over Σ w η² is the reciprocal of the largest eigenvalue of √w Φ √w.
 
-Closed contacts count as held along their normals, provided that they press.
+Closed contacts count as held along their normals, which requires compression.
 """
 
 from dataclasses import replace

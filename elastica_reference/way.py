@@ -18,7 +18,7 @@ from elastica_reference.stability import least_curvature
 from elastica_reference.state import Known, Rest, State, start_of
 from elastica_reference.structure import Meeting, Structure, Touch
 
-_SLACK = 1e-8  # times λ: tolerance for a change that seems to lie before its state
+_SLACK = 1e-8  # times λ: tolerance for a change slightly before its state
 _CHANGE = 1.0  # largest change of an unknown in a step, absolute or relative
 
 
@@ -205,7 +205,7 @@ def touches_of(structure: Structure, without: str) -> dict[str, Touch]:
 
 
 def places_of(state: State, without: str) -> dict[tuple[str, str], float]:
-    """Places of contact of a state except those of one contact."""
+    """Places of contact of a state, without the places of one contact."""
     return {key: value for key, value in state.places.items() if key[0] != without}
 
 

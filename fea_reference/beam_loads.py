@@ -43,7 +43,7 @@ the shear angle γ of the element and the sections' rotations θ₁, θ₂ at it
     θ = (1 − ξ)(1 − 3 ξ) θ₁ − ξ (2 − 3 ξ) θ₂ + 6 ξ (1 − ξ)(α − γ),
 
 as in the element's energy. The slope of a cubic through both nodes differs from θ by the third power of the element's
-rotation. The difference depends on the place within the element, so that no refinement would show it.
+rotation. The difference depends on the place within the element, and refinement would not reveal the error.
 
     dα = n·d(x₂ − x₁)/l,    d²α = −2 (n·d(x₂ − x₁)) (t·d(x₂ − x₁))/l²
 

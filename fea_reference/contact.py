@@ -31,8 +31,8 @@ corner ζ_m is fixed and δ²g = side { n·δ²r + p_τ²/d }. At a concave corn
 the moving place then adds −ε g (Δδg)²/Δg' to the second derivatives; this term, of first order in the jump of T_m'
 and in the penetration, is neglected.
 
-Resting pressure: beams that lie on each other are parallel, and both satisfy the transverse equilibrium. Per length
-of the first, p = N₁ κ − EI₁ κ'' and −p = N₂ κ − EI₂ κ'', up to the ratio of thickness to radius in κ''. Hence
+Resting pressure: beams in contact along a length are parallel, and both satisfy the transverse equilibrium. Per
+length of the first, p = N₁ κ − EI₁ κ'' and −p = N₂ κ − EI₂ κ'', up to the ratio of thickness to radius in κ''. Hence
 
     p = κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂),
 
@@ -84,7 +84,7 @@ from fea_reference.zones import (
 )
 
 _AT_END = 1e-6  # elements
-_BESIDE = 2.0  # mean thicknesses: distance of held ends that stand beside each other
+_BESIDE = 2.0  # mean thicknesses: largest distance of neighbouring held ends
 _SLENDER = 0.01  # lengths of the longest beam: substitute for the thickness of beams in contact as lines
 _LYING = 1.0  # elements: least length of a zone at an end with a resting pressure
 _LINE = 7  # unknowns of an element's line
@@ -127,8 +127,8 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
 def with_sides(model: Model, pair: Pair, z: State) -> Pair:
     """The pair with order and sides of the beams as they lie apart in state ``z``.
 
-    Beams next to each other's ends have no side at rest, and an end of the second may approach the first. The side
-    comes from the last state with the beams opposite to each other.
+    A beam beyond the other's end has no side at rest, and an end of the second may approach the first. The side comes
+    from the last state with the beams opposite to each other.
     """
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
     away = end_distance(second, first)
@@ -139,7 +139,7 @@ def with_sides(model: Model, pair: Pair, z: State) -> Pair:
 
 
 def _contact_ends(model: Model, scene: Scene, beam: BeamPart, other: BeamPart) -> tuple[int, ...]:
-    """Ends of ``beam`` (0 start, 1 end), except those on the same body as, and beside, an end of ``other``."""
+    """Ends of ``beam`` (0 start, 1 end), except neighbours of an end of ``other`` on the same body."""
     own_ends, other_ends = (
         [
             (_holder(scene, end), place)

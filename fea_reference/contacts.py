@@ -96,7 +96,7 @@ def with_current_sides(model: Model, pair: Contact, z: State) -> Contact:
 
 
 def open_contact(model: Model, pair: Contact, z: State) -> Contact:
-    """An open contact in state ``z``; for two beams near each other with the sides of that state."""
+    """An open contact in state ``z``; for two neighbouring beams with the sides of this state."""
     if not isinstance(pair, Pair) or pair.roles is not None:
         return with_current_sides(model, pair, z)
     apart = gap_lower_bound(model, pair, z) <= FAR and least_gap(model, pair, z) > _APART * pair.scale

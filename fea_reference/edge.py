@@ -69,7 +69,7 @@ class Edge:
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
-        """Knots and T at them (k,), and ∂T/∂ζ between them (k−1,)."""
+        """Knots and their T (k,), and ∂T/∂ζ between knots (k−1,)."""
         places, half = np.array(self.knots), np.array(self.half)
         return places, half, np.diff(half) / np.diff(places)
 

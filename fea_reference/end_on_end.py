@@ -8,12 +8,12 @@ T       length of v where both ends touch
 α       angle by which v turns between two states in contact
 ======  =====================================================================================
 
-Two ends that face each other have circles about them and no side. An end may come around the other, and only the path
-shows its motion. If v keeps the length T and turns by α, the straight path comes as near as T cos α/2. A nearer path
-leads through the other end, or is too long to decide and has to be cut.
+Two ends face to face are circles and have no side. An end may come around the other, and only the path shows its
+motion. If v keeps the length T and turns by α, the straight path comes as near as T cos α/2. A nearer path leads
+through the other end, or is too long to decide and has to be cut.
 
-A long step may pass the other end on one side and end on the other side of the line behind it. In the frame of the
-other end, the path then crosses the final line.
+A long step may pass the other end on the left, say, and finish on the right of the line behind the other end. In the
+frame of the other end, the path then crosses the final line.
 """
 
 import numpy as np

@@ -87,7 +87,7 @@ class Borders:
     w: Complex
 
     def among(self, nodes: Ints) -> Borders:
-        """Rays at ``nodes`` (k,) of the beam and next to them."""
+        """Rays at ``nodes`` (k,) of the beam and at adjacent places."""
         if nodes.size == int(self.zeta.max()) + 1:
             return self
         wanted = np.zeros(int(self.zeta.max()) + 2, dtype=bool)

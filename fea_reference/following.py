@@ -21,7 +21,7 @@ P is negligible against its value at the start of the following. If the start wa
 stiffness of the rigid contact has to be unchanged. Then P must have fallen to a tenth or, at the initial rate, must
 vanish almost at once.
 
-The moment of a stop is an unknown; it vanishes exactly where the stop opens.
+The moment of a stop is an unknown and vanishes exactly where the stop opens.
 """
 
 from collections.abc import Iterator
@@ -383,7 +383,7 @@ def _extrapolated_end(
 def _end_slip(march: March, load: int, target: float, span: float) -> CriticalPoint | None:
     """Critical point where a pressing end passes the end of the other beam; None if none is near.
 
-    The zone has a finite width, smaller for tighter penalties, and part of it passes earlier. From there on the
+    The zone has a finite width, smaller for tighter penalties, and passes in part earlier. From there on the
     remaining distance is extrapolated, and is the uncertainty.
     """
     sense, saved = float(np.sign(target - march.values[load])), march.saved()

@@ -15,9 +15,9 @@ and contact partners are thus different minima, without any threshold of length 
 tangents turn by about π, or 2π in a coil.
 
 Every pair of places is considered once, from the later or from the earlier place; see :class:`Roles`. A place may
-have several partners; partners that follow each other along the beam form a sequence. An end of a thick beam is a
-circle and a partner, at any angle, of all places with a distance minimum there: f negative at the start, or positive
-at the other end.
+have several partners; consecutive partners along the beam form a sequence. An end of a thick beam is a circle and a
+partner, at any angle, of all places with a distance minimum there: f negative at the start, or positive at the other
+end.
 
 Sides: once lines without thickness overlap, their position does not show the side. The side is that of the last
 accepted state for nearby pairs of places, else the present position. Nearby means less than halfway to the next coil.

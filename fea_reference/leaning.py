@@ -12,7 +12,7 @@ u       unknowns of an element's line: (x₁, y₁, ψ₁, x₂, y₂, ψ₂, N)
 
 A line tangent to the sections' normals would oscillate about the chords by 0.1 γ L in every element. Its slope would
 deviate by γ at the nodes and by γ/2, of opposite sign, between them. A place of contact would then be wrong by γ over
-the curvature, alternately along every element, on any mesh. A single tangent per node, between those of the two
+the curvature, alternately along every element, on any mesh. A single tangent per node, between the tangents of both
 elements, keeps the line smooth. The elements' tangents differ by the change of shear force.
 
 At a welded end the section's rotation is prescribed, and so is the line's tangent. The moment of a pressure beside
@@ -82,7 +82,7 @@ class Chain:
         return total
 
     def hessian(self, local: Array, gradient: Array) -> Array:
-        """Second derivatives (M, M, k) by all unknowns from those by the lines' unknowns.
+        """Second derivatives (M, M, k) by all unknowns, by the chain rule.
 
         ``local`` (m, m, k) and ``gradient`` (m, k) are second and first derivatives by the lines' unknowns.
         """

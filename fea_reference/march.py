@@ -62,7 +62,7 @@ _EFFECT_FACTOR = (
     5.0  # times the requested penetration: largest effect of a penetration on other forces and motions, as a share
 )
 _EXCESSIVE_DEPTH = (
-    200.0  # times the allowed penetration: a deeper contact, which no penalty could be raised for, is lost
+    200.0  # times the allowed penetration: deeper contacts are lost, as their penalties could not be raised
 )
 _SETTLINGS = 8
 _LEAD_TOLERANCE = 1e-5  # relative change of the resting pressure above which the lead is computed again
@@ -390,9 +390,9 @@ class March:
         return LastStep(load, by, second, third, before.acting, frozenset(before.penalties))
 
     def stiffer(self, system: System) -> dict[Contact, Penalty]:
-        """Stiffer penalties for contacts that are too deep; empty if all of them have their stiffest penalty.
+        """Stiffer penalties for contacts that are too deep; empty if all have their stiffest penalty.
 
-        A circle's penalty never exceeds its value at a station, where the penetration in a point determines it.
+        A circle's penalty never exceeds its value at a station, determined by the penetration in a point.
         """
         deep = {contact: self.penalties[contact].stiffness for contact in _too_deep(self.model, system)}
         wide = {
@@ -960,9 +960,7 @@ class March:
         return tries >= _POLISHINGS and enough and stiff
 
     def _penetration_exponents(self, system: System, tighter: Mapping[Contact, Penalty]) -> dict[Contact, float]:
-        """Exponents −Δln ε/Δln depth of the penetration, from the current to the ``tighter`` penalties of
-        ``system``.
-        """
+        """Exponents −Δln ε/Δln depth of the penetration, from current to ``tighter`` penalties of ``system``."""
         before = {contact.pair: contact.penetration for contact in self.system.touches}
         exponents = {}
         for contact in system.touches:

@@ -67,9 +67,9 @@ def equilibrium(
     """Equilibrium near ``z`` under the ``values``, with fixed active constraints ``acting`` of any sign.
 
     ``depths`` are penetrations of contacts closed in the previous equilibrium. A contact far from its depth, or open
-    before it pulls, is held there until it is near or pulls. ``before`` are the previous point forces (k,) of the
-    contacts. A ``drag`` resists the motions. The search stops if small corrections do not decrease: small against the
-    first ones, because the search for a zone may take steps as small as the load.
+    although not in tension, is held at this depth until near the depth or in tension. ``before`` are the previous
+    point forces (k,) of the contacts. A ``drag`` resists the motions. The search stops if small corrections do not
+    decrease: small against the first ones, because the search for a zone may take steps as small as the load.
     """
     moving = model.moving
     correction, last, iteration, far = np.inf, np.inf, 0, 0

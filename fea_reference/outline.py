@@ -10,10 +10,10 @@ P, t    a place where n or b jumps lies on the straight line through P normal to
 ======  =====================================================================================
 
 The free side lies to the left of an edge; an edge with the free side to the right is reversed. At an end of the edge
-the rigid body continues straight back, along two more sides at right angles to the first and last piece. These sides
-are infinite unless they meet each other, at a further corner, or the edge from behind. In front of a convex corner d
-is the distance from the corner and b = 1/d; behind the corner the nearer side counts, and n jumps on the bisector. At
-a concave corner front and back are exchanged.
+the rigid body continues straight back, along two more sides at right angles to the first and last piece. The backward
+sides are infinite unless they intersect, at a further corner, or meet the edge from behind. In front of a convex
+corner d is the distance from the corner and b = 1/d; behind the corner the nearer side counts, and n jumps on the
+bisector. At a concave corner front and back are exchanged.
 
 For a graph b = κ/(1 + κ d), with the curvature κ positive where the body is convex.
 """
@@ -198,9 +198,7 @@ class Broken:
         return np.asarray(np.where(near.corner, round_it, _across(self._normals.take(side, axis=1), y, rest, begins)))
 
     def _foot(self, y: Array) -> tuple[Ints, Array, Array]:
-        """Closest side (k,) of points (2, k), distance (k,) along the side, and vector (2, k) from its
-        closest point.
-        """
+        """Closest side (k,) of points (2, k), distance (k,) along the side, and vector from the closest point."""
         tangents, first, low, high = self._sides
         begins, back = self._complex
         # components along and across every side, from its first point

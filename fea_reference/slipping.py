@@ -1,4 +1,4 @@
-"""Distance of a pressing end from the end of the other beam, where it slips off.
+"""Distance of a pressing end from the end of the other beam, the place of a slip.
 
 ======  =======================================================================
 symbol  meaning

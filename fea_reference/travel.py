@@ -70,9 +70,9 @@ class Course:
 def reach(march: March, course: Course, target: float) -> None:
     """Step the parameter to ``target`` exactly.
 
-    Without a request for critical points, the steps first watch for them and continue to a neighbouring branch. If
-    the target is not reached, stepping ends at the first critical point. Without any critical point the steps are
-    repeated without supervision.
+    Without a request for critical points, the steps first watch for critical points and continue to a neighbouring
+    branch. If the target is not reached, stepping ends at the first critical point. Without any critical point the
+    steps are repeated without supervision.
 
     Raises:
         StoppedError: the target cannot be reached.
@@ -144,7 +144,7 @@ def _reach(march: March, course: Course, target: float) -> bool:
 
 
 def _follow_tight(march: March, course: Course, target: float) -> CriticalPoint | None:
-    """Critical point found by path following with tight penalties as long as it makes progress; None without any."""
+    """Critical point found by path following with tight penalties while there is progress; None without any."""
     for _ in range(_FOLLOWINGS):
         before = march.values[course.load]
         critical = follow_branch(march, course.load, target, course.span)

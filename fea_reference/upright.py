@@ -100,7 +100,7 @@ def _reached(scene: Scene, gap: float, *ends: tuple[str, str]) -> bool:
 
 
 def _welded(scene: Scene, beam: str) -> Iterator[tuple[Which, tuple[float, float], str]]:
-    """A beam's welded ends: which end, its place, and the frame that it moves with."""
+    """A beam's welded ends, with place and frame."""
     record = scene.beams[beam]
     ends: tuple[tuple[Which, BeamEnd], ...] = (("start", record.start), ("end", record.end))
     for which, end in ends:

@@ -37,7 +37,7 @@ POINT = 1.0
 _FALLS = (1.5, 2.0)  # m between sides, and at a tip
 _FAINT = 0.1  # times the largest force: reference for smaller forces
 _STILL = 1e-4  # times the deflection of a beam by the largest force at its length: reference for smaller motions
-_BESIDE = 1e-6  # times the measure: distance from the least gap within which places represent it
+_BESIDE = 1e-6  # times the measure: range above the least gap for the contact's representative places
 _NEAR = 0.1  # lengths of the longest beam: larger gaps do not close under loose penalties
 
 

@@ -10,9 +10,9 @@ h, H    ∂g/∂ξ, the side's normal, and ∂²g/∂ξ² = κ/(1 + κ g) τ τ�
 ======  ========================================================================================
 
 A point behind the edge belongs to the side at the least depth. At an end of the edge the body continues straight
-back, along two more sides. These are infinite unless they meet each other, in a corner, or the edge from behind. No
-side is opposite to a point in front of a convex corner: the corner itself is in contact with the smooth edge of the
-beam, see :mod:`fea_reference.solid.pricking`.
+back, along two more sides. The backward sides are infinite unless they intersect, in a corner, or meet the edge from
+behind. No side is opposite to a point in front of a convex corner: the corner itself is in contact with the smooth
+edge of the beam, see :mod:`fea_reference.solid.pricking`.
 """
 
 from dataclasses import dataclass
