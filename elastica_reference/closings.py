@@ -16,7 +16,7 @@ from elastica_reference.structure import Meeting, Resting, Touch, Wrap
 from elastica_reference.way import Stepping
 
 _NEAR_END = 0.2  # times a beam's length: range in which a contact at an end moves inwards
-_SHALLOW = 1e-4  # units of length: depth at which a second place counts
+_SHALLOW = 1e-4  # units of length: largest depth of an overlap that counts as a second place
 _ON_CIRCLE = 1e-9  # relative tolerance for an end clamped on a circle, tangent to it
 _FIRST_PLACES = (0.02, 0.01, 0.005)  # times a beam's length: first places of a contact that leaves a clamp
 _FIRST_WRAPS = (0.25, 0.1, 0.03)  # shares of the distance to an overlap: first wraps from a clamp

@@ -37,8 +37,8 @@ class Strip:
         name: name of the beam.
         line: stress-free neutral line.
         beam: record of the scene, in metres.
-        knots: inner arc lengths with a kink of thickness, width or stress-free curvature, a point force, or an end of a
-            distributed load.
+        knots: inner arc lengths with a kink of thickness, width or stress-free curvature, a point force, or an end of
+            a distributed load.
         stiffness: Young's modulus over Sℓ, 1/m⁴, so that E·I is dimensionless.
         unit: ℓ, m.
         start, end: ends of the beam.

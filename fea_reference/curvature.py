@@ -63,7 +63,7 @@ def softest(model: Model, system: System) -> Mode:
     """The least μ and its mode, accurate to a tenth.
 
     For a positive least μ a Ritz value; Cholesky's method proves that 0.9 of the value is a lower bound. Without such
-    a proof the largest value with a proof is returned. If even zero has none, the result is negative: a Ritz value
+    a proof a smaller value with a proof is returned. If even zero has none, the result is negative: a Ritz value
     above a proven negative bound. Then a curvature of this size is negative, or round-off hides the sign.
     """
     on, root = _feasible(model, system), np.sqrt(lumped_mass(model))

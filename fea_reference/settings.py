@@ -19,12 +19,12 @@ class Settings:
 
     Attributes:
         elements: number per beam, equal for all or by name.
-        kinematics: ``bending`` (exactly inextensible, no shear), ``stretch`` (with axial flexibility) or
-            ``shear`` (with axial and shear flexibility).
+        kinematics: ``bending`` (exactly inextensible, no shear), ``stretch`` (with axial flexibility) or ``shear``
+            (with axial and shear flexibility).
         penetration: largest penetration of contact penalties, relative to the mean thickness of the two beams (to a
             hundredth of the longest beam for contacts of lines). On a circle or an edge the penalty is the stiffest
-            that the elements resolve, and a penetration above this value fails the certificate. A beam's end or
-            a corner in contact counts as a pair of beams.
+            that the elements resolve; the penetration only limits the penalty on fine meshes. A beam's end or a
+            corner in contact counts as a pair of beams.
         quadrature: Gauss points on every interval of a contact zone.
         residual: unbalanced generalised force of an accepted equilibrium, relative to the largest force.
         correction: last Newton correction of an accepted equilibrium (lengths relative to the longest beam, and

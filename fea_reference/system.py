@@ -43,9 +43,8 @@ class System:
         tangent: derivative of the residual, sparse (size, size).
         scale: the largest generalised force in equilibrium; EI/length² if all forces are round-off.
         floor: round-off of the residual. An element's end force is 12 EI/h² times the angle between tangent and
-            chord, so
-            that its round-off is 12 EI/h² times the spacing of machine numbers at the chord's angle. A penalty ε adds
-            ε times an element's share of the zone times the round-off of the gap.
+            chord, so that its round-off is 12 EI/h² times the spacing of machine numbers at the chord's angle. A
+            penalty ε adds ε times an element's share of the zone times the round-off of the gap.
         significant: True if the forces in equilibrium exceed round-off.
     """
 

@@ -37,22 +37,18 @@ class Pair:
         side_m: side of the first beam on which the second lies.
         distance: T, distance of the neutral lines in contact where the beams are thickest.
         ends, ends_m: ends (0 and 1) of the first and second beam that may touch the other's side. Ends that a body
-            holds
-            beside the other beam are excluded.
+            holds beside the other beam are excluded.
         carried: ends of the second beam whose zones are integrated along the second, if ends of the first press, too.
         free, free_m: range of places ζ of the first and second beam with contact; near a shared end the beams overlap
-            in
-            the reference configuration.
+            in the reference configuration.
         tapers: thickness variation; None for constant thickness.
-        scale: reference length of the requested penetration: the mean thickness, or a hundredth of the longest beam for
-            lines.
+        scale: reference length of the requested penetration: the mean thickness, or a hundredth of the longest beam
+            for lines.
         measure: reference length of the reported penetration: the same, but the longest beam for lines.
         loosest, stiffness, stiffest: penalties to search for a distant zone, to start with, and to end with if the
             penetration allows. All are the softer beam's EI over the fourth power of a layer's width. The widest
-                layer is
-            a share of the beam's length, so that the search does not depend on the mesh. The thinnest is the length
-                of a
-            finer element, so that its error vanishes on refinement.
+            layer is a share of the beam's length, so that the search does not depend on the mesh. The thinnest is the
+            length of a finer element, so that its error vanishes on refinement.
     """
 
     name: str
@@ -131,9 +127,8 @@ class Circle:
         edge: T, distance of the neutral line from the circle in contact.
         scale: reference length of the penetration: the least thickness, or the longest beam for a line.
         loosest: initial penalty, EI over the fourth power of the width of the layer in which the pressure builds up
-            at a
-            zone's end. The width is a share of the beam's length, or the radius if smaller, so that the search does not
-            depend on the mesh.
+            at a zone's end. The width is a share of the beam's length, or the radius if smaller, so that the search
+            does not depend on the mesh.
         stiffest: final penalty, whatever the penetration. Its layer is a fixed share of an element, so that its error
             vanishes smoothly on refinement.
     """
@@ -173,7 +168,8 @@ class Face:
         body: number of the edge's body.
         outline: the edge, in a frame about the body's reference centre.
         own: ends ζ of the beam that joints hold on the edge.
-        within: range of places ζ with pressure of the edge; with shear the joint transmits the pressure beside its end.
+        within: range of places ζ with pressure of the edge; with shear the joint transmits the pressure beside its
+            end.
         edge: T, distance of the neutral line from the edge in contact.
         scale, measure: as for a pair.
         loosest, stiffest: as for a circle.

@@ -130,8 +130,8 @@ class Survey:
 class Zones:
     """Intervals (k, 2) of ζ with a negative gap; no interval has a node of either beam in its interior.
 
-    ``zeta_m`` (k, 2) are the closest points of the interval ends. ``least`` is the minimum of the gap, or a lower
-    bound for distant beams.
+    ``zeta_m`` (k, 2) are the closest points of the interval ends. ``least`` is the minimum of the gap, or a bound of
+    the minimum for distant beams.
     """
 
     intervals: Array

@@ -107,8 +107,7 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
 
     Raises:
         SceneError: the settings do not fit the scene, the scene needs a feature that the solid lacks, or a stop
-            forbids the
-            assembly.
+            forbids the assembly.
     """
     return prepared(scene, settings).answer()
 
