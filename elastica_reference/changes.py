@@ -35,7 +35,7 @@ def open_first_contact(stepping: Stepping, trial: State) -> bool:
     near = stepping.lam + shares[name] * (trial.lam - stepping.lam)
     at = stepping.at(name, 0.0, near, trial.lam) if shares[name] > 0.0 else stepping.state
     stepping.accept(stepping.restructured(touches_of(at.structure, name), places_of(at, name), at, at.lam))
-    stepping.note_side(at.structure.touches[name])
+    stepping.record_side(at.structure.touches[name])
     return True
 
 
@@ -51,7 +51,7 @@ def change_form(stepping: Stepping, trial: State) -> bool:
         strip = stepping.model.strips[touch.beam]
         if isinstance(touch, Wrap):
             _check_wrap(trial, touch)
-            a, b = trial.wrapped(touch)
+            a, b = trial.wrap_range(touch)
             if b < a:
                 del places[name, "begin"], places[name, "end"]
                 touches[name], places[name, touch.beam] = Resting(name, touch.beam, None), 0.5 * (a + b)
@@ -103,7 +103,7 @@ def presses(state: State) -> bool:
         return False
     for touch in state.structure.touches.values():
         if isinstance(touch, Wrap):
-            a, b = state.wrapped(touch)
+            a, b = state.wrap_range(touch)
             if not 0.0 <= a <= b <= state.equations.model.strips[touch.beam].length or _is_pulling(state, touch):
                 return False
     return True
@@ -118,7 +118,7 @@ def sense_of(state: State, touch: Resting | Wrap, s: float) -> float:
 
 def _check_wrap(trial: State, wrap: Wrap) -> None:
     """Check that a wrap presses everywhere, and neither begins nor ends beyond its beam."""
-    a, b = trial.wrapped(wrap)
+    a, b = trial.wrap_range(wrap)
     if wrap.held and b < a:
         raise NotCoveredError(f"{wrap.beam} leaves the circle of {wrap.contact} at its clamp")
     if a < 0.0 or b > trial.equations.model.strips[wrap.beam].length:
@@ -128,7 +128,7 @@ def _check_wrap(trial: State, wrap: Wrap) -> None:
 
 
 def _is_pulling(state: State, wrap: Wrap) -> bool:
-    a, b = state.wrapped(wrap)
+    a, b = state.wrap_range(wrap)
     pressure, begin, end = state.pressures(wrap, np.linspace(a, b, _LOOKED_AT))
     size = float(np.hypot(*state.evaluation.resultants[wrap.contact][:, 0]))
     return min(float(np.min(pressure)) * (b - a), begin, end) < _LEAST_WRAP_FORCE * size

@@ -55,7 +55,7 @@ def close_first(stepping: Stepping, trial: State, overlaps: list[Overlap]) -> No
                 raise LostError
         reached.append((stepping.between(state, trial.lam), overlap))
     state, overlap = min(reached, key=lambda item: abs(item[0].lam - stepping.lam))
-    stepping.note_closed(overlap.contact, state.lam, trial.lam)
+    stepping.record_closing(overlap.contact, state.lam, trial.lam)
     stepping.accept(state)
 
 
@@ -121,7 +121,7 @@ def _continue_from_clamp(stepping: Stepping, trial: State, overlap: Overlap, whi
 
     at = stepping.restructured(trial.structure.touches, trial.places, trial, trial.lam, condition=bent)
     stepping.between(at, trial.lam)
-    stepping.note_closed(name, at.lam, trial.lam)
+    stepping.record_closing(name, at.lam, trial.lam)
     stepping.accept(at)
     state = _wrap_from_clamp(stepping, trial, overlap, which, sense) or _place_beyond_clamp(
         stepping, trial, overlap, which
@@ -145,7 +145,7 @@ def _wrap_from_clamp(stepping: Stepping, trial: State, overlap: Overlap, which: 
             stepping.between(state, trial.lam)
         except LostError:
             continue
-        pressure, begin, end = state.pressures(wrap, np.linspace(*state.wrapped(wrap), 101))
+        pressure, begin, end = state.pressures(wrap, np.linspace(*state.wrap_range(wrap), 101))
         return state if min(float(np.min(pressure)), begin, end) > _PULLS else None
     return None
 

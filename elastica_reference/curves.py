@@ -163,7 +163,7 @@ class Graph:
         x, w = np.polynomial.legendre.leggauss(_NODES)
         self._x, self._w = 0.5 * (x + 1.0), 0.5 * w
         self._sums = np.concatenate(([0.0], np.cumsum(self._arc(self._ends[:-1], self._ends[1:]))))
-        self._found = lru_cache(maxsize=_KEPT)(self._sought)
+        self._remembered_variable = lru_cache(maxsize=_KEPT)(self._computed_variable)
 
     @property
     def length(self) -> float:
@@ -179,9 +179,9 @@ class Graph:
 
     def _variable(self, s: Array) -> Array:
         s = np.asarray(s, dtype=float)
-        return self._found(s.tobytes(), s.shape)
+        return self._remembered_variable(s.tobytes(), s.shape)
 
-    def _sought(self, places: bytes, shape: tuple[int, ...]) -> Array:
+    def _computed_variable(self, places: bytes, shape: tuple[int, ...]) -> Array:
         s = np.frombuffer(places).reshape(shape)
         # the graph continues beyond its ends, for iterates of Newton's method
         panel = np.clip(np.searchsorted(self._sums, s, side="right") - 1, 0, _PANELS - 1)

@@ -31,7 +31,7 @@ from elastica_reference.model import Model, Strip
 from elastica_reference.spectral import piece, rule
 from elastica_reference.structure import Structure
 from elastica_reference.touching import touch_points
-from elastica_reference.wrapping import lie_between, lie_from_clamp
+from elastica_reference.wrapping import wrap_between, wrap_from_clamp
 
 Guess = Callable[[str, Array], Array]
 """θ (n,) of a beam at arc lengths (n,)."""
@@ -187,12 +187,12 @@ class Equations:
         for item in order:
             wrap = wraps.get(item) if isinstance(item, str) else None
             if wrap is not None and wrap.held:
-                lie_from_clamp(out, self.layout, wrap, z)
+                wrap_from_clamp(out, self.layout, wrap, z)
                 continue
             before, after = parts[k], parts[k + 1]
             k += 1
             if wrap is not None:
-                lie_between(out, self.layout, wrap, before, after, z)
+                wrap_between(out, self.layout, wrap, before, after, z)
                 continue
             if not isinstance(item, str):
                 out.turnings[name, item] = (self.layout.pieces[name][k].start + 2, len(out.rows) + 3)

@@ -99,7 +99,7 @@ def _of_circle(
     return [
         Overlap(name, contact.beam, place, at_end, None, 0.0, 1.0, value)
         for place, value, at_end in _minima(gap, s, gap(s), touched.get((name, contact.beam)))
-        if not (at_end and _held_by(model, strip, place) == contact.body)
+        if not (at_end and _holding_body(model, strip, place) == contact.body)
     ]
 
 
@@ -199,7 +199,7 @@ def _least(function: Callable[[Array], Array], low: float, high: float) -> tuple
     return float(s[i]), float(values[i])
 
 
-def _held_by(model: Model, strip: Strip, s: float) -> str | None:
+def _holding_body(model: Model, strip: Strip, s: float) -> str | None:
     """Body that holds the end of a beam at an arc length."""
     end = strip.start if s <= 0.5 * strip.length else strip.end
     return None if end.point is None else model.scene.body_of(end.point)

@@ -219,7 +219,7 @@ def _closed_ranges(state: State) -> dict[tuple[str, str], tuple[float, float]]:
     ranges = {}
     for name, touch in state.structure.touches.items():
         if isinstance(touch, Wrap):
-            ranges[name, touch.beam] = state.wrapped(touch)
+            ranges[name, touch.beam] = state.wrap_range(touch)
             continue
         if touch.at is None:
             s = state.places[name, touch.beam]

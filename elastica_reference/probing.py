@@ -127,7 +127,7 @@ def _centre(state: State, contact: str, beam: str) -> float:
 def _ends(state: State, contact: str, beam: str) -> tuple[float, float]:
     touch = state.structure.touches[contact]
     if isinstance(touch, Wrap):
-        return state.wrapped(touch)
+        return state.wrap_range(touch)
     if touch.at is not None and touch.beam == beam:
         return touch.at, touch.at
     s = float(state.z[state.equations.layout.places[contact, beam]])
@@ -177,7 +177,7 @@ def _energy(model: Model, state: State) -> float:
     energy, gauss = 0.0, rule(state.equations.nodes)
     for beam, parts in state.evaluation.parts.items():
         spans = [(float(part.a[0]), float(part.b[0])) for part in parts]
-        spans += [state.wrapped(wrap) for wrap in state.structure.wraps(beam)]
+        spans += [state.wrap_range(wrap) for wrap in state.structure.wraps(beam)]
         for a, b in spans:
             s = a + (b - a) * gauss.points
             m = state.along(beam, s)[3]

@@ -42,7 +42,7 @@ def least_curvature(state: State) -> float:
     Raises:
         LostError: the equations are singular, or places along a beam are out of order.
     """
-    structure, spacing = _cut(state)
+    structure, spacing = _with_further_knots(state)
     equations = replace(state.equations, structure=structure)
     z = start_of(equations, state, {**state.places, **state.forces})
     evaluation, _, J = linearised(equations, z, state.lam, state)
@@ -65,7 +65,7 @@ def least_curvature(state: State) -> float:
     return 1.0 / least if least < -_NOISE * abs(largest) else 1.0 / largest
 
 
-def _cut(state: State) -> tuple[Structure, dict[tuple[str, float], float]]:
+def _with_further_knots(state: State) -> tuple[Structure, dict[tuple[str, float], float]]:
     """The structure with further knots in every piece, and the length of every knot."""
     order, spacing = {}, {}
     for beam, strip in state.equations.model.strips.items():

@@ -102,18 +102,18 @@ class State:
             here = number == k
             values[:, here] = _within(parts[k], s[here])
         for wrap in self.structure.wraps(beam):
-            a, b = self.wrapped(wrap)
+            a, b = self.wrap_range(wrap)
             here = (s >= a) & ((s < b) | (wrap.to_end & (s >= b)))
             if here.any():
-                values[:, here] = self._wrapped(wrap, s[here])
+                values[:, here] = self._state_in_wrap(wrap, s[here])
         return values
 
-    def wrapped(self, wrap: Wrap) -> tuple[float, float]:
+    def wrap_range(self, wrap: Wrap) -> tuple[float, float]:
         """Arc lengths of the beginning and end of a wrap."""
         zone = self.evaluation.zones[wrap.contact]
         return float(zone.a[0]), float(zone.b[0])
 
-    def _wrapped(self, wrap: Wrap, s: Array) -> Array:
+    def _state_in_wrap(self, wrap: Wrap, s: Array) -> Array:
         """(x, y, θ, m, Fx, Fy) (6, n) within a wrap, by the formulas of :mod:`elastica_reference.wrapping`."""
         zone, g = self.evaluation.zones[wrap.contact], wrap.sense
         strip = self.equations.model.strips[wrap.beam]
@@ -139,7 +139,7 @@ class State:
         """
         zone, g = self.evaluation.zones[wrap.contact], wrap.sense
         strip = self.equations.model.strips[wrap.beam]
-        state = self._wrapped(wrap, np.concatenate([zone.a, s, zone.b]))
+        state = self._state_in_wrap(wrap, np.concatenate([zone.a, s, zone.b]))
         tau = np.stack([np.cos(state[2]), np.sin(state[2])])
         e = g * np.stack([tau[1], -tau[0]])
         rho = float(np.hypot(*(state[:2, 0] - self.evaluation.centres[wrap.contact][:, 0])))

@@ -184,15 +184,15 @@ class Stepping:
         self.before = self.now if same and self.now is not None and self.now.lam != state.lam else None
         self.now, self.lam, self.sides = state, state.lam, {}
         for touch in state.structure.touches.values():
-            self.note_side(touch)
+            self.record_side(touch)
         self.states += 1
 
-    def note_side(self, touch: Touch) -> None:
+    def record_side(self, touch: Touch) -> None:
         """Record the side of a beam in contact with another, or just released."""
         if isinstance(touch, Meeting):
             self.sides[touch.contact, touch.beam, touch.onto] = touch.side
 
-    def note_closed(self, contact: str, lam: float, goal: float) -> None:
+    def record_closing(self, contact: str, lam: float, goal: float) -> None:
         """Record the closing of a contact at λ, on the way to ``goal``; initial contacts close at the present value."""
         value = (lam if (lam - self.lam) * (goal - self.lam) > 0.0 else self.lam) * self.unit
         self.events.append(Event(self.stage, contact, "closed", value))

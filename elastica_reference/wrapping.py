@@ -28,7 +28,7 @@ from elastica_reference.model import Strip
 from elastica_reference.structure import Wrap
 
 
-def lie_between(out: Evaluation, where: Layout, wrap: Wrap, before: Part, after: Part, z: Columns) -> None:
+def wrap_between(out: Evaluation, where: Layout, wrap: Wrap, before: Part, after: Part, z: Columns) -> None:
     """Rows of a wrap between two pieces of a beam."""
     name, g = wrap.contact, wrap.sense
     strip, centre, rho = out.model.strips[wrap.beam], out.centres[name], neutral_radius(out, wrap)
@@ -46,7 +46,7 @@ def lie_between(out: Evaluation, where: Layout, wrap: Wrap, before: Part, after:
     _record(out, wrap, Zone(a, b, place, theta, before.force, after.force, first, last))
 
 
-def lie_from_clamp(out: Evaluation, where: Layout, wrap: Wrap, z: Columns) -> None:
+def wrap_from_clamp(out: Evaluation, where: Layout, wrap: Wrap, z: Columns) -> None:
     """Rows of a wrap from a beam's clamped start, or to its clamped end."""
     name, g = wrap.contact, wrap.sense
     strip, centre, rho = out.model.strips[wrap.beam], out.centres[name], neutral_radius(out, wrap)

@@ -31,10 +31,10 @@ def assemble_ends(scene: Scene, march: March) -> None:
     moments, way = (model.stepped.index(share) for share in (MOMENTS, WAY))
     try:
         reach(march, Course(moments, 1.0), 1.0)
-        ways = np.array([_way(march, i) for i in range(len(model.apart))])
+        ways = np.array([_vector_to_end(march, i) for i in range(len(model.apart))])
         march.constrain(Acting(ways, stopping=False))
         reach(march, Course(way, 1.0), 1.0)
-        forbidden = [mistake for stop in model.stops for mistake in _forbidden(march, stop, scene)]
+        forbidden = [mistake for stop in model.stops for mistake in _limit_mistakes(march, stop, scene)]
         if forbidden:
             raise SceneError(forbidden)
         march.constrain(Acting(ways, stopping=True))
@@ -45,14 +45,14 @@ def assemble_ends(scene: Scene, march: March) -> None:
     march.closing = dict.fromkeys(march.closing, 0.0)
 
 
-def _way(march: March, number: int) -> Array:
+def _vector_to_end(march: March, number: int) -> Array:
     """Vector (2,) from the point of an end to the end."""
     joint = march.model.apart[number].joint
     body = march.model.bodies[joint.body]
     return np.asarray(march.system.z[joint.dofs[:2]] - march.model.carried(body, joint.arm, march.system.z))
 
 
-def _forbidden(march: March, stop: StopPart, scene: Scene) -> list[Mistake]:
+def _limit_mistakes(march: March, stop: StopPart, scene: Scene) -> list[Mistake]:
     """A mistake if an assembled end is beyond a limit of its stop; else an empty list."""
     margin, limit = stop.margin(march.system.z)
     if margin >= -_BEYOND:

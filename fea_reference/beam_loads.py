@@ -111,16 +111,16 @@ def beam_load(model: Model, part: OnBeam, value: float, z: State) -> BeamLoad:
         return _beam_moment(model, part, value, z)
     beam = model.beams[part.beam]
     force = value * part.forces
-    placed = _placed(model, part, z)
+    placed = _load_places(model, part, z)
     place = placed.place
-    start = model.loaded.found(model.start, part.name, lambda: _placed(model, part, model.start).place)
+    start = model.loaded.recall(model.start, part.name, lambda: _load_places(model, part, model.start).place)
     local, twice = placed.projected_gradient(force)
     done = float((force * (place - start)).sum())
     if not part.distributed:
-        bubble = _bubble(placed.line, placed.local, _gives(model, part, placed), force)
+        bubble = _bubble(placed.line, placed.local, _compliances(model, part, placed), force)
         local, twice, place = local + bubble.local, twice + bubble.twice, place + bubble.moved
         done += 0.5 * float((bubble.moved * force).sum())
-    chain = model.chain_apart(beam, placed.e, z)
+    chain = model.separate_chain(beam, placed.e, z)
     return BeamLoad(part, value, force, place, done, chain, chain.gradient(local), chain.hessian(twice, local))
 
 
@@ -129,13 +129,13 @@ def _beam_moment(model: Model, part: BeamMomentPart, value: float, z: State) -> 
     beam, zeta = model.beams[part.beam], np.array([part.zeta])
     sections = model.line_of_sections(beam, z)
     e, xi = sections.locate(zeta)
-    theta, local, twice = _turning(sections, zeta)
+    theta, local, twice = _section_angle(sections, zeta)
     bow = 6.0 * xi * (1.0 - xi)
     gamma, leaning = model.sheared(beam, e, z)
     theta = theta - bow * gamma
     local[:6] -= bow * leaning.by
     twice[:6, :6] -= bow * leaning.by_twice
-    rest, give = model.loaded.found(model.start, part.name, lambda: _moment_at_rest(model, part))
+    rest, give = model.loaded.recall(model.start, part.name, lambda: _moment_at_rest(model, part))
     chain = model.chain_of_sections(beam, e)
     local, twice = value * local, value * twice
     work = value * float(theta[0] - rest) + 0.5 * value**2 * float(give)
@@ -149,18 +149,18 @@ def _moment_at_rest(model: Model, part: BeamMomentPart) -> Array:
     sections = model.line_of_sections(beam, model.start)
     e, xi = sections.locate(zeta)
     gamma, _ = model.sheared(beam, e, model.start)
-    (theta,) = _turning(sections, zeta)[0] - 6.0 * xi * (1.0 - xi) * gamma
-    return np.array((theta, _mutual(model, part, part, sections)))
+    (theta,) = _section_angle(sections, zeta)[0] - 6.0 * xi * (1.0 - xi) * gamma
+    return np.array((theta, _mutual_work(model, part, part, sections)))
 
 
 def shared_work(model: Model, part: BeamMomentPart, other: BeamMomentPart, z: State) -> float:
     """Mutual work of two unit moments within an element; zero for different elements."""
     if part.beam != other.beam:
         return 0.0
-    return _mutual(model, part, other, model.line(model.beams[part.beam], z))
+    return _mutual_work(model, part, other, model.line(model.beams[part.beam], z))
 
 
-def _mutual(model: Model, part: BeamMomentPart, other: BeamMomentPart, line: NeutralLine) -> float:
+def _mutual_work(model: Model, part: BeamMomentPart, other: BeamMomentPart, line: NeutralLine) -> float:
     zeta = np.array([part.zeta, other.zeta])
     e, xi = line.locate(zeta)
     if e[0] != e[1]:
@@ -173,7 +173,7 @@ def _mutual(model: Model, part: BeamMomentPart, other: BeamMomentPart, line: Neu
     return float(line.lengths[e[0]]) * straight * (1.0 - 3.0 * sigma * last * (1.0 - first)) / bending
 
 
-def _turning(line: NeutralLine, zeta: Array) -> tuple[Array, Array, Array]:
+def _section_angle(line: NeutralLine, zeta: Array) -> tuple[Array, Array, Array]:
     """θ + 6 ξ (1 − ξ) γ at places (k,), and its derivatives by the unknowns of the element lines.
 
     The angle is continuous from the nodes.
@@ -192,7 +192,7 @@ def _turning(line: NeutralLine, zeta: Array) -> tuple[Array, Array, Array]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Placed:
+class _LoadPlaces:
     """Places of a load: beam elements ``e``, their numbers ``local`` in ``line``, ξ* and ξ, all (k,).
 
     ``slope`` and ``second`` (k,) are the derivatives of ξ* by the difference of the nodes' ψ.
@@ -251,18 +251,18 @@ def _speed(line: NeutralLine, e: Index) -> tuple[Array, Array]:
     return by_l * l * stretch + by_turned * ends, twice + by_turned_twice * ends[:, None] * ends[None, :]
 
 
-def _placed(model: Model, part: BeamLoadPart, z: State) -> _Placed:
+def _load_places(model: Model, part: BeamLoadPart, z: State) -> _LoadPlaces:
     """Places of a load in state ``z``; for a distributed load ξ* = ξ, as both halves of an element compensate."""
     beam = model.beams[part.beam]
     e, xi = model.line(beam, z).locate(part.zeta)
     local = 2 * np.arange(e.size)
-    line = model.apart_at_nodes(beam, e, z)
+    line = model.separate_elements(beam, e, z)
     g = np.zeros_like(xi) if part.distributed else xi * (1.0 + xi * (2.0 * xi - 3.0)) / 48.0
     turned = line.angles[local + 1] - line.angles[local]
-    return _Placed(line, e, local, xi - g * turned**2, xi, -2.0 * g * turned, -2.0 * g)
+    return _LoadPlaces(line, e, local, xi - g * turned**2, xi, -2.0 * g * turned, -2.0 * g)
 
 
-def _gives(model: Model, part: BeamLoadPart, placed: _Placed) -> tuple[Array, Array]:
+def _compliances(model: Model, part: BeamLoadPart, placed: _LoadPlaces) -> tuple[Array, Array]:
     """c and c_t (k,) at the places of forces."""
     beam, elements, xi = model.beams[part.beam], model.elements, placed.xi
     e = beam.elements.start + placed.e
@@ -310,8 +310,8 @@ def load_forces(model: Model, part: OnBeam, z: State) -> Array:
         f = np.zeros(model.size)
         np.add.at(f, unit_load.dofs, unit_load.gradient)
         return f
-    placed = _placed(model, part, z)
-    chain = model.chain_apart(beam, placed.e, z)
+    placed = _load_places(model, part, z)
+    chain = model.separate_chain(beam, placed.e, z)
     f = np.zeros(model.size)
     np.add.at(f, chain.dofs, chain.gradient(placed.projected_gradient(part.forces)[0]))
     return f

@@ -75,7 +75,7 @@ class Branch:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class BranchPoint:
     """A point of a branch: ``value``, system, softest ``mode``, and the direction ``way`` (t), ``rate`` (τ)."""
 
     value: float
@@ -90,7 +90,7 @@ class Place:
         return self.mode.curvature
 
 
-def place(branch: Branch, value: float, system: System, before: tuple[Array, float]) -> Place | None:
+def branch_point(branch: Branch, value: float, system: System, before: tuple[Array, float]) -> BranchPoint | None:
     """Point of a branch at an equilibrium, with a direction in the sense of ``before``; None without a direction."""
     f = load_direction(branch.model, branch.load, system.z, system.acting)
     solved = _solve(branch, system, f, before, np.zeros(branch.model.size), 1.0)
@@ -100,10 +100,10 @@ def place(branch: Branch, value: float, system: System, before: tuple[Array, flo
     size = np.sqrt(float(way @ (branch.weights * way)) + branch.weight * rate**2)
     if not size > 0.0:
         return None
-    return Place(value, system, softest(branch.model, system), way / size, rate / size)
+    return BranchPoint(value, system, softest(branch.model, system), way / size, rate / size)
 
 
-def place_at(branch: Branch, start: Place, length: float) -> Place | None:
+def point_at(branch: Branch, start: BranchPoint, length: float) -> BranchPoint | None:
     """The point at arc ``length`` beyond ``start``; None if Newton's method fails."""
     model, settings = branch.model, branch.settings
     z, value = advance(model, start.system.z, length * start.way), start.value + length * start.rate
@@ -118,7 +118,7 @@ def place_at(branch: Branch, start: Place, length: float) -> Place | None:
         )
         unbalanced = float(np.abs(system.residual).max())
         if correction <= settings.correction and unbalanced <= max(settings.residual * system.scale, system.floor):
-            return place(branch, value, system, (start.way, start.rate))
+            return branch_point(branch, value, system, (start.way, start.rate))
         f = load_direction(model, branch.load, z, branch.acting)
         displacement = (z.values - start.system.z.values) + (z.rest - start.system.z.rest)
         missing = length - float(start.way @ (branch.weights * displacement))
@@ -138,15 +138,17 @@ def place_at(branch: Branch, start: Place, length: float) -> Place | None:
     return None
 
 
-def sign_change(branch: Branch, start: Place, length: float, size: Callable[[Place], float]) -> Place | None:
+def sign_change(
+    branch: Branch, start: BranchPoint, length: float, size: Callable[[BranchPoint], float]
+) -> BranchPoint | None:
     """The point just behind a sign change of ``size`` from positive to negative, within arc ``length`` of ``start``.
 
     None if Newton's method fails on the way.
     """
-    behind: list[tuple[float, Place]] = []
+    behind: list[tuple[float, BranchPoint]] = []
 
     def sized(distance: float) -> float:
-        there = place_at(branch, start, distance) if distance > 0.0 else start
+        there = point_at(branch, start, distance) if distance > 0.0 else start
         if there is None:
             raise ArithmeticError
         value = size(there)

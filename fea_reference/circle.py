@@ -91,7 +91,7 @@ def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...
 
 def zones_of(model: Model, circle: Circle, z: State) -> Zones:
     """Zones of overlap of the beam with the circle in state ``z``."""
-    return model.leads.found(
+    return model.leads.recall(
         z, (circle, 0.0), lambda: (_zones_below(_relative_line(model, circle, z), circle, 0.0), {})
     )[0]
 
@@ -139,7 +139,7 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
     beam, body = model.beams[circle.first], model.bodies[circle.body]
     relative, c = _relative_line(model, circle, z), centre(model, circle, z)
     line = relative.line
-    ahead, _ = model.leads.found(z, (circle, penalty.lead), lambda: (_zones_below(relative, circle, penalty.lead), {}))
+    ahead, _ = model.leads.recall(z, (circle, penalty.lead), lambda: (_zones_below(relative, circle, penalty.lead), {}))
     zones = replace(ahead, least=ahead.least + penalty.lead)
 
     points, weights = gauss(quadrature)

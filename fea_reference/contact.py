@@ -133,7 +133,7 @@ def with_sides(model: Model, pair: Pair, z: State) -> Pair:
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
     away = end_distance(second, first)
     if away < end_distance(first, second) and away <= node_distance(first, second):
-        pair, first, second = pair.about(), second, first
+        pair, first, second = pair.exchanged(), second, first
     side, side_m = side_of(first, second, pair.side), side_of(second, first, pair.side_m)
     return pair if (side, side_m) == (pair.side, pair.side_m) else replace(pair, side=side, side_m=side_m)
 
@@ -233,7 +233,7 @@ def least_at_ends(model: Model, pair: Pair, z: State) -> float:
     if not pair.ends_m:
         return np.inf
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    about, zeta = pair.about(), second.n * np.array(pair.ends_m, dtype=float)
+    about, zeta = pair.exchanged(), second.n * np.array(pair.ends_m, dtype=float)
     near = nearest(second.nodes[zeta.astype(int)], first.nodes)[1].astype(float)
     there = gap(second, first, one_side(about.side), pair.distance, about.tapers, zeta, near)
     inside = there.found & (there.zeta_m > _AT_END) & (there.zeta_m < first.n - _AT_END)
@@ -261,7 +261,7 @@ def _survey(model: Model, pair: Pair, z: State, T: float) -> Survey:
             return survey_pair(first, second, pair.side, T, pair.tapers, pair.free)
         return survey_self(first, pair.roles, T, pair.tapers)
 
-    return model.surveys.found(z, (pair, T), look)
+    return model.surveys.recall(z, (pair, T), look)
 
 
 def _rays(pair: Pair, second: NeutralLine) -> list[Borders]:
@@ -283,12 +283,12 @@ def touch(
     level = 0.0 if held_depth is None else least + held_depth
     zones, zones_m = _overlap(model, pair, z, distance, level), no_zones(np.inf)
     if pair.carried:
-        along_second = _overlap(model, pair.about(), z, distance, level)
+        along_second = _overlap(model, pair.exchanged(), z, distance, level)
         zones, zones_m = split_zones(zones, along_second, model.line(model.beams[pair.second], z).n, pair.carried)
     here = _gauss_points(model, pair, distance, quadrature, z, zones)
     missing, missing_share = _missing_force(model, pair, penalty, z, zones, here)
     if zones_m.intervals.size:
-        about = pair.about()
+        about = pair.exchanged()
         there = _gauss_points(model, about, distance, quadrature, z, zones_m)
         further_missing, further_share = _missing_force(model, about, penalty, z, zones_m, there)
         missing, missing_share = missing + further_missing, max(missing_share, further_share)
@@ -380,7 +380,7 @@ def _gauss_points(model: Model, pair: Pair, distance: float, quadrature: int, z:
 
     there = line.around(zeta)
     x = line.nodes[there.element] + there.way
-    faced = pair.faced(line, line_m, zeta, guess)
+    faced = pair.places_facing(line, line_m, zeta, guess)
     zeta_m, across, J = faced.zeta_m, faced.across, faced.c
     e_m, xi_m = line_m.locate(zeta_m)
     x_m = line_m.nodes[across.element] + across.way

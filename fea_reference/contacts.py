@@ -35,7 +35,7 @@ def contacts(scene: Scene, model: Model, penetration: float) -> tuple[Contact, .
 
 def zones_of(model: Model, pair: Contact, z: State) -> Zones:
     """Zones of overlap in state ``z``."""
-    return model.overlaps.found(z, pair, lambda: _zones_of(model, pair, z))
+    return model.overlaps.recall(z, pair, lambda: _zones_of(model, pair, z))
 
 
 def least_gap(model: Model, pair: Contact, z: State) -> float:
@@ -64,7 +64,7 @@ def touch(
 ) -> Touch:
     """Contact energy derivatives, see :func:`fea_reference.contact.touch`; only pairs of beams are held."""
     key = pair, penalty, quadrature, held_depth
-    return model.touches.found(z, key, lambda: _touch(model, pair, penalty, quadrature, z, held_depth))
+    return model.touches.recall(z, key, lambda: _touch(model, pair, penalty, quadrature, z, held_depth))
 
 
 def _touch(model: Model, pair: Contact, penalty: Penalty, quadrature: int, z: State, held_depth: float | None) -> Touch:

@@ -124,7 +124,7 @@ def _reaches_minimum(march: March, load: int, drag: float, first: State, farthes
     for _ in range(steps):
         if drag > _STRONGEST or march.largest_rotation(march.system, first) > farthest:
             return False
-        if stiffer := march.stiffer(march.system):
+        if stiffer := march.stiffer_penalties(march.system):
             # on coarse elements the initial penalty may be too soft to prevent passing through
             march.penalties.update(stiffer)
             march.reassemble()

@@ -102,7 +102,7 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
         return None if near.corner.any() else np.asarray(turning * own + near.bend)
     other = model.beams[pair.second]
     line_m = model.line(other, z)
-    faced = pair.faced(line, line_m, zeta, np.full(zeta.shape, facing))
+    faced = pair.places_facing(line, line_m, zeta, np.full(zeta.shape, facing))
     if not faced.found.all():
         return None
     zeta_m = faced.zeta_m

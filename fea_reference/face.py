@@ -122,7 +122,7 @@ def sharpness(outline: Outline) -> float:
     The overlap of a wedge goes with the cube of the sine of half its angle.
     """
     corners = outline.corners
-    before, behind = (normals[:, corners.jutting] for normals in corners.normals)
+    before, behind = (normals[:, corners.convex] for normals in corners.normals)
     # half of the angle between both sides; their normals turn by the supplement
     sine = np.sqrt(np.maximum(0.5 * (1.0 + (before * behind).sum(axis=0)), 0.0))
     return float(np.clip((_BLUNT / max(float(sine.min(initial=1.0)), 1e-9)) ** 3, 1.0, _SHARPEST))
@@ -130,7 +130,7 @@ def sharpness(outline: Outline) -> float:
 
 def zones_of(model: Model, face: Face, z: State) -> Zones:
     """Zones of overlap of the beam with the edge in state ``z``."""
-    return model.leads.found(z, (face, 0.0), lambda: _View(model, face, z).zones())[0]
+    return model.leads.recall(z, (face, 0.0), lambda: _View(model, face, z).zones())[0]
 
 
 def passes_through(model: Model, face: Face, before: State, after: State) -> bool:
@@ -182,7 +182,7 @@ def _swept_over_tip(face: Face, before: _View, after: _View) -> bool:
     first, last, over = swept_over((before.line, tips[0][0]), (after.line, tips[1][0]))
     for end in face.own:
         over &= np.abs(first.zeta - end) > 1.0
-    over &= last.seen_along(tips[1][1]) < 0.0
+    over &= last.distance_along(tips[1][1]) < 0.0
     if not over.any():
         return False
     over &= (first.d * last.d <= 0.0) | before.pressed_at(first, tips[0][1])
@@ -196,7 +196,7 @@ def tip_depth(model: Model, face: Face, z: State) -> float:
     if tips.size == 0:
         return 0.0
     there = swept.closest_places(view.line, tips)
-    depth = face.edge.at(there.zeta) - there.seen_along(out)
+    depth = face.edge.at(there.zeta) - there.distance_along(out)
     deep = there.found & (depth > 0.0)
     for end in face.own:
         deep &= np.abs(there.zeta - end) > 1.0
@@ -223,7 +223,7 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     """Contact energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[face.first], model.bodies[face.body]
     view = _View(model, face, z)
-    ahead, kinks = model.leads.found(z, (face, penalty.lead), lambda: view.zones(penalty.lead))
+    ahead, kinks = model.leads.recall(z, (face, penalty.lead), lambda: view.zones(penalty.lead))
     zones = replace(ahead, least=ahead.least + penalty.lead)
     line = view.line
 
@@ -239,7 +239,7 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     tau = np.array([n[1], -n[0]])
     r = x - view.centre[:, None]
     # the contact force needs the unrounded gap; for the interval ends rounded points suffice
-    g = face.outline.kept(*view.place_and_rest(zeta)) - face.edge.at(zeta) - penalty.lead
+    g = face.outline.exact_distance(*view.place_and_rest(zeta)) - face.edge.at(zeta) - penalty.lead
 
     H = shapes(xi)
     moves = body.dofs is not None
@@ -272,7 +272,7 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
         x=x,
         x_m=x - near.distance * n,
         normal=n,
-        bent=bent,
+        extra_hessian=bent,
         sharp=bool(ends.any()) or bent is not None or bool(near.corner.any()),
     )
 
@@ -296,7 +296,7 @@ def _corner_terms(
         x, x1, _ = view.line.at(np.array([end]))
         steeper = [float((view.turned(n[:, None])[:, 0] * x1[:, 0]).sum()) for n in normals]
         # at a convex corner d is the larger of both distances behind the corner, else the smaller
-        first = int(np.argmin(steeper) if view.face.outline.corners.jutting[corner] else np.argmax(steeper))
+        first = int(np.argmin(steeper) if view.face.outline.corners.convex[corner] else np.argmax(steeper))
         before, behind = normals[first], normals[1 - first]
         difference = view.turned((before - behind)[:, None])
         slope = steeper[first] - steeper[1 - first]
@@ -370,7 +370,7 @@ class _View:
         overlap = np.maximum(self.face.edge.at(zeta) - near.distance, 0.0) * (width * weights).ravel()
         n = self.turned(near.normal)
         pushes = overlap * (n[0] + 1j * n[1])
-        for i, (at, normal) in enumerate(zip(there.zeta, there.along(out), strict=True)):
+        for i, (at, normal) in enumerate(zip(there.zeta, there.normal_along(out), strict=True)):
             pressed[i] = (normal.conjugate() * pushes[np.abs(zeta - at) < 1.0].sum()).real > 0.0
         return pressed
 
@@ -440,12 +440,12 @@ class _View:
             return np.empty(0), {}
         start = even[apart[near].argmin(axis=1)]
         P = corners.points[:, near]
-        across = (corners.halving, *corners.tangents)
+        across = (corners.bisectors, *corners.tangents)
         t = np.concatenate([tangents[:, near] for tangents in across], axis=1)
         every, crosses = self._crossing(np.tile(P, len(across)), t, np.tile(start, len(across)))
         zeta, through = every[: near.size], crosses[: near.size]
         d = self.face.outline.near(self.place(zeta)).distance
-        jumps = through & np.where(corners.jutting[near], d < 0.0, d > 0.0)
+        jumps = through & np.where(corners.convex[near], d < 0.0, d > 0.0)
         return every[crosses], dict(zip(zeta[jumps].tolist(), near[jumps], strict=True))
 
     def _crossing(self, P: Array, t: Array, start: Array) -> tuple[Array, Array]:

@@ -126,7 +126,7 @@ def _between_ends(
     if edge is None or not edge.varies or not zeta.size:
         return foot
     d = ((1j * w).conj() * (points - second.nodes[across.element] - across.way)).real
-    return _leaning(second, edge, points, foot, d, sides(zeta, d))
+    return _with_lean(second, edge, points, foot, d, sides(zeta, d))
 
 
 def _with_ends(second: NeutralLine, points: Complex, faced: Facing, sides: Callable[[Array, Array], Array]) -> Facing:
@@ -179,7 +179,7 @@ def _rays(ahead: Complex, before: Array, behind: Array, side: Array | float) -> 
     return first, last, middle / np.abs(middle)
 
 
-def _leaning(second: NeutralLine, edge: Edge, points: Complex, foot: Facing, d: Array, side: Array) -> Facing:
+def _with_lean(second: NeutralLine, edge: Edge, points: Complex, foot: Facing, d: Array, side: Array) -> Facing:
     """Places faced by points (k,) with closest places ``foot``, at distance ``d`` on a ``side`` (k,)."""
     slope, corner = _piece(second, edge, points, foot, d, side)
     zeta, done = foot.zeta_m, False

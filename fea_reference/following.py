@@ -31,7 +31,7 @@ import numpy as np
 
 from cprbm_scene.answer import Array, Loss
 from fea_reference.advance import advance
-from fea_reference.branch import Branch, Place, place, place_at, sign_change
+from fea_reference.branch import Branch, BranchPoint, branch_point, point_at, sign_change
 from fea_reference.curvature import Mode, softest
 from fea_reference.energy import potential_energy
 from fea_reference.march import March
@@ -135,7 +135,7 @@ def _follow(
         march.tighten()
     sense = float(np.sign(target - march.values[load]))
     branch = _branch(march, load, span)
-    here = place(branch, float(march.values[load]), march.system, (np.zeros(march.model.size), sense))
+    here = branch_point(branch, float(march.values[load]), march.system, (np.zeros(march.model.size), sense))
     if not tight and cut_short(march.model, march.system):
         return CutShort()
     if here is None or not here.curvature > 0.0:
@@ -152,7 +152,7 @@ def _follow(
                 return turn
             known = here.curvature, length
         length = min(length, _MOST / max(float(np.abs(here.way[march.model.moving]).max()), _MOST))
-        there = place_at(branch, here, length)
+        there = point_at(branch, here, length)
         other_branch = there is not None and length > _SHARP and not _same_branch(branch, here, there, length)
         if there is None or other_branch or leaves_corner(march.model, here.system, there.system):
             length *= 0.25
@@ -174,7 +174,7 @@ def _follow(
             if critical is not None:
                 return critical
             branch = _branch(march, load, span)
-            restarted = place(branch, float(march.values[load]), march.system, (event.way, event.rate))
+            restarted = branch_point(branch, float(march.values[load]), march.system, (event.way, event.rate))
             if restarted is None or not restarted.curvature > 0.0:
                 return turn
             here, segments = restarted, []
@@ -209,7 +209,7 @@ def _follow(
             # a state of low curvature is sensitive to the penetration of contacts
             march.tighten()
             branch, tight_curvature = _branch(march, load, span), there.curvature
-            restarted = place(branch, float(march.values[load]), march.system, (there.way, there.rate))
+            restarted = branch_point(branch, float(march.values[load]), march.system, (there.way, there.rate))
             if restarted is None or not restarted.curvature > 0.0:
                 return turn
             here, least, steps_past_minimum = restarted, min(least, restarted.curvature), 0
@@ -236,7 +236,9 @@ def _restore_uncertain_end(march: March, uncertain: tuple[CriticalPoint, March] 
     return uncertain[0]
 
 
-def _corner_slip(march: March, load: int, segments: list[Segment], end: CriticalPoint | Place) -> CriticalPoint | None:
+def _corner_slip(
+    march: March, load: int, segments: list[Segment], end: CriticalPoint | BranchPoint
+) -> CriticalPoint | None:
     """Critical point where an end slips off a corner, after the ``segments``; None if no end does.
 
     Called where the branch is lost to the penalty before the slip, or cannot be continued.
@@ -256,27 +258,27 @@ def _branch(march: March, load: int, span: float) -> Branch:
     return Branch(march.model, march.settings, dict(march.penalties), march.acting, march.values.copy(), load, span)
 
 
-def _cosine(branch: Branch, here: Place, there: Place) -> float:
+def _cosine(branch: Branch, here: BranchPoint, there: BranchPoint) -> float:
     return float(here.way @ (branch.weights * there.way)) + branch.weight * here.rate * there.rate
 
 
-def _same_branch(branch: Branch, here: Place, there: Place, length: float) -> bool:
+def _same_branch(branch: Branch, here: BranchPoint, there: BranchPoint, length: float) -> bool:
     """True if both points are on the same branch, a ``length`` of arc apart."""
     return _cosine(branch, here, there) >= _STRAIGHT and _distance(branch, here, there) <= _LONGER * length
 
 
-def _distance(branch: Branch, here: Place, there: Place) -> float:
+def _distance(branch: Branch, here: BranchPoint, there: BranchPoint) -> float:
     """Distance of two points in the metric of the arc length."""
     difference = (there.system.z.values - here.system.z.values) + (there.system.z.rest - here.system.z.rest)
     return float(np.sqrt(difference @ (branch.weights * difference) + branch.weight * (there.value - here.value) ** 2))
 
 
-def _next_change(march: March, branch: Branch, here: Place, length: float) -> Place | None:
+def _next_change(march: March, branch: Branch, here: BranchPoint, length: float) -> BranchPoint | None:
     """Point just behind the first change of a contact or stop within ``length``."""
     return sign_change(branch, here, length, lambda there: march.least_gap(there.system))
 
 
-def _apply_change(march: March, load: int, event: Place) -> CriticalPoint | None:
+def _apply_change(march: March, load: int, event: BranchPoint) -> CriticalPoint | None:
     """Close contacts and switch stops at ``event``; the critical point if an opening stop leaves an unstable state."""
     changing = [stop for stop in march.model.stops if march.stop_margin(stop, event.system) < 0.0]
     march.values[load], march.system = event.value, event.system
@@ -475,7 +477,7 @@ def _zones(contact: Touch) -> list[Touch]:
 
 
 def _force_vanished(
-    march: March, branch: Branch, first: Place, initial_contact: Touch, contact: Touch, curvature: float
+    march: March, branch: Branch, first: BranchPoint, initial_contact: Touch, contact: Touch, curvature: float
 ) -> bool:
     """True if the force of a contact has vanished, where the rigid contact would give the ``curvature``."""
     if contact.push < _NOTHING * initial_contact.push:
@@ -518,7 +520,7 @@ def _without(march: March, contact: Touch) -> System:
 
 
 def _critical_between(
-    march: March, branch: Branch, first: Place, here: Place, there: Place, length: float
+    march: March, branch: Branch, first: BranchPoint, here: BranchPoint, there: BranchPoint, length: float
 ) -> CriticalPoint | None:
     """Critical point between two points with positive and non-positive curvature.
 
@@ -535,7 +537,7 @@ def _critical_between(
         above, below = weights[0] * before.curvature, weights[1] * behind.curvature
         share = min(max(above / (above - below), 0.02), 0.98)
         # near a singular tangent there may be no solution
-        tried = ((part, place_at(branch, here, s + part * (t - s))) for part in (share, 0.5 * share, 0.5 + 0.5 * share))
+        tried = ((part, point_at(branch, here, s + part * (t - s))) for part in (share, 0.5 * share, 0.5 + 0.5 * share))
         share, middle = next(
             ((part, place_found) for part, place_found in tried if place_found is not None), (share, None)
         )

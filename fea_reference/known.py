@@ -16,7 +16,7 @@ class Memory(Generic[K, V]):
     def __init__(self) -> None:
         self._in: WeakKeyDictionary[State, dict[K, V]] = WeakKeyDictionary()
 
-    def found(self, z: State, key: K, find: Callable[[], V]) -> V:
+    def recall(self, z: State, key: K, find: Callable[[], V]) -> V:
         """The value for state ``z`` and ``key``, computed by ``find`` if unknown."""
         here = self._in.get(z)
         if here is None:

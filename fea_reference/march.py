@@ -189,7 +189,7 @@ class March:
         return self.known_curvature[1]
 
     @property
-    def minimum(self) -> bool:
+    def is_minimum(self) -> bool:
         """True if the smallest curvature is positive."""
         if self.known_curvature is None or self.known_curvature[0] is not self.system:
             return all_positive(self.model, self.system)
@@ -298,7 +298,7 @@ class March:
         predicted, starting_contacts = self._with_point_forces(tangent, penalties, predicted, value - start)
         system = self.solve(load, value, predicted, starting_contacts)
         for _ in range(_STIFFENINGS):
-            stiffer = self.stiffer(system) if system is not None else {}
+            stiffer = self.stiffer_penalties(system) if system is not None else {}
             if not stiffer:
                 break
             self.penalties.update(stiffer)
@@ -389,7 +389,7 @@ class March:
         second, third = path_terms(self.model, before.system.z, self.system.z, (rate, ahead), by)
         return LastStep(load, by, second, third, before.acting, frozenset(before.penalties))
 
-    def stiffer(self, system: System) -> dict[Contact, Penalty]:
+    def stiffer_penalties(self, system: System) -> dict[Contact, Penalty]:
         """Stiffer penalties for contacts that are too deep; empty if all have their stiffest penalty.
 
         A circle's penalty never exceeds its value at a station, determined by the penetration in a point.
@@ -633,7 +633,7 @@ class March:
             self.open.remove(pair)
             # an end that touches has to belong to the first beam
             unseen = zones_of(self.model, pair, z).least > CLOSED * pair.scale
-            closed = pair.about() if unseen and isinstance(pair, Pair) else pair
+            closed = pair.exchanged() if unseen and isinstance(pair, Pair) else pair
             self.penalties[closed] = Penalty(pair.stiffness)
             remainder = self._increment_to_zero_gap(load, pair, increment) * self.model.stepped[load].unit
             self.closing.setdefault(pair.name, self.value(load) + remainder)
@@ -699,7 +699,7 @@ class March:
                 if solved is not None and all(renewed.missing_share <= LACKING for renewed in solved[0].touches):
                     self.system, self.penalties = solved
                 continue
-            about = pair.about()
+            about = pair.exchanged()
             for other in (about, replace(pair, carried=pair.ends_m), replace(about, carried=about.ends_m)):
                 if missing_share <= LACKING:
                     break
@@ -725,7 +725,7 @@ class March:
             if at_ends(contact.zones.zeta_m, last_m) or least_at_ends(self.model, pair, z) >= -CLOSED * pair.scale:
                 continue
             extended[pair] = (
-                replace(pair, carried=pair.ends_m) if at_ends(contact.zones.intervals, last) else pair.about()
+                replace(pair, carried=pair.ends_m) if at_ends(contact.zones.intervals, last) else pair.exchanged()
             )
         self.penalties = {extended.get(pair, pair): penalty for pair, penalty in self.penalties.items()}
         return bool(extended)
@@ -734,7 +734,7 @@ class March:
         """The pair as integrated along the only beam with pressing ends; None if ends of both beams press."""
         last, last_m = (self.model.line(self.model.beams[i], self.system.z).n for i in (pair.first, pair.second))
         if not at_ends(contact.zones.intervals, last):
-            return pair.about()
+            return pair.exchanged()
         return None if at_ends(contact.zones.zeta_m, last_m) else replace(pair, carried=())
 
     def _with_replaced_pair(self, pair: Pair, other: Pair) -> tuple[System, dict[Contact, Penalty]] | None:
@@ -1046,5 +1046,5 @@ def _straight(before: float, beyond: float) -> float:
 def begin(model: Model, settings: Settings, contacts: tuple[Contact, ...]) -> March:
     """Initial state of load stepping: undeformed and unloaded."""
     values = np.zeros(len(model.stepped))
-    system = assemble(model, {}, settings.quadrature, values, model.start, model.drawn)
-    return March(model, settings, list(contacts), values, system, model.drawn)
+    system = assemble(model, {}, settings.quadrature, values, model.start, model.initial_constraints)
+    return March(model, settings, list(contacts), values, system, model.initial_constraints)

@@ -301,7 +301,7 @@ class Model:
         return np.concatenate([self.node_dofs[2], *bodies])
 
     @property
-    def drawn(self) -> Acting:
+    def initial_constraints(self) -> Acting:
         """Active constraints before the assembly."""
         return Acting(None if self.apart else np.zeros((0, 2)), stopping=not self.apart)
 
@@ -315,11 +315,11 @@ class Model:
 
     def bend(self, z: State) -> ElementForces:
         """Forces, stiffness and energy of all elements in state ``z``."""
-        return self.bends.found(z, None, lambda: forces(self.elements, self.element_dofs, z))
+        return self.bends.recall(z, None, lambda: forces(self.elements, self.element_dofs, z))
 
     def line(self, beam: BeamPart, z: State) -> NeutralLine:
         """A beam's neutral line in state ``z``."""
-        return self.lines.found(z, beam.name, lambda: self._line(beam, z))
+        return self.lines.recall(z, beam.name, lambda: self._line(beam, z))
 
     def _line(self, beam: BeamPart, z: State) -> NeutralLine:
         return self._through(beam, tangent_angles(self.elements, self._span(beam), z), z)
@@ -339,15 +339,15 @@ class Model:
             z[self.element_dofs[6, beam.elements]],
         )
 
-    def apart_at_nodes(self, beam: BeamPart, e: Index, z: State) -> NeutralLine:
+    def separate_elements(self, beam: BeamPart, e: Index, z: State) -> NeutralLine:
         """Separate cubics of elements (k,) of a beam, tangent at both ends by the element's own shear angle.
 
         The result is a line of 2 k − 1 elements, of which only 0, 2, … 2 k − 2 have a meaning. The speed l (1 + (ψ₂ −
         ψ₁)²/16) of the chord replaces the speed from the axial force.
         """
-        return self.lines.found(z, (beam.name, e.tobytes()), lambda: self._apart(beam, e, z))
+        return self.lines.recall(z, (beam.name, e.tobytes()), lambda: self._separate_line(beam, e, z))
 
-    def _apart(self, beam: BeamPart, e: Index, z: State) -> NeutralLine:
+    def _separate_line(self, beam: BeamPart, e: Index, z: State) -> NeutralLine:
         nodes = np.stack([e, e + 1], axis=1).ravel()
         dofs = self.node_dofs[:, beam.nodes][:, nodes]
         gamma = shear_angle(self.elements, beam.elements, self.element_dofs[:, beam.elements], z)[e]
@@ -356,7 +356,7 @@ class Model:
         excess, *_ = chord_speed_excess(np.hypot(dx, dy), lengths, np.diff(angles))
         return NeutralLine.through(z[dofs[:2]], angles, lengths, z.rest[dofs[:2]], 1.0 / lengths, excess)
 
-    def chain_apart(self, beam: BeamPart, e: Index, z: State) -> Chain:
+    def separate_chain(self, beam: BeamPart, e: Index, z: State) -> Chain:
         """Chain rule from the elements (k,) of :meth:`apart_at_nodes` to the unknowns."""
         return sheared_chain(self.elements, self._span(beam), e, z)
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea_reference.advance import advance
-from fea_reference.branch import Branch, Place, place_at
+from fea_reference.branch import Branch, BranchPoint, point_at
 from fea_reference.face import corners_of
 from fea_reference.model import Model
 from fea_reference.slipping import arc_length_at
@@ -41,7 +41,7 @@ class Segment:
     """A segment of a branch: its first point and its arc ``length``."""
 
     branch: Branch
-    begin: Place
+    begin: BranchPoint
     length: float
 
 
@@ -51,7 +51,7 @@ class Slip:
 
     value: float
     contact: Touch
-    place: Place
+    place: BranchPoint
 
 
 def distance_to_end(model: Model, contact: Touch, z: State) -> float | None:
@@ -105,7 +105,7 @@ def find_slip(model: Model, segments: Sequence[Segment], end: System) -> Slip | 
     return None
 
 
-def _extrapolated_slip(model: Model, name: str, place: Place) -> Slip | None:
+def _extrapolated_slip(model: Model, name: str, place: BranchPoint) -> Slip | None:
     """The slip extrapolated from a ``place`` with a complete zone of the named contact; None if ℓ does not decrease."""
     contact, z = _closed_contact(place.system, name), place.system.z
     corner_and_end = None if contact is None else _corner(model, contact, z)
@@ -118,12 +118,12 @@ def _extrapolated_slip(model: Model, name: str, place: Place) -> Slip | None:
     return Slip(float(place.value + place.rate * _DIFFERENCE * here / nearer), contact, place)
 
 
-def _last_complete(model: Model, name: str, stretch: Segment) -> Place:
+def _last_complete(model: Model, name: str, stretch: Segment) -> BranchPoint:
     """The last point of a segment with a complete zone; the zone is complete at its beginning."""
     complete, low, high = stretch.begin, 0.0, stretch.length
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        there = place_at(stretch.branch, stretch.begin, middle)
+        there = point_at(stretch.branch, stretch.begin, middle)
         contact = None if there is None else _closed_contact(there.system, name)
         if there is None or contact is None or not there.curvature > 0.0 or _cut_short(model, contact):
             high = middle

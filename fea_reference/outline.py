@@ -56,13 +56,13 @@ class Corners:
     normals: tuple[Array, Array]
 
     @property
-    def halving(self) -> Array:
+    def bisectors(self) -> Array:
         """Tangents t (2, c) normal to the bisectors' lines."""
         both = self.tangents[0] + self.tangents[1]
         return np.asarray(both / np.hypot(both[0], both[1]))
 
     @property
-    def jutting(self) -> NDArray[np.bool_]:
+    def convex(self) -> NDArray[np.bool_]:
         """True (c,) for convex corners."""
         a, b = self.tangents
         return np.asarray(a[0] * b[1] - a[1] * b[0] < 0.0)
@@ -111,7 +111,7 @@ class HalfPlane:
             np.zeros(k, dtype=bool),
         )
 
-    def kept(self, y: Array, rest: Array) -> Array:
+    def exact_distance(self, y: Array, rest: Array) -> Array:
         """d (k,) of points ``y`` + ``rest`` (2, k), without cancellation."""
         return _across(self.normal[:, None], y, rest, self.point[:, None])
 
@@ -134,7 +134,7 @@ class Broken:
             return Corners(self.points[:, :-1], (before, tau), (_left(before), _left(tau)))
         first, last = _left(tau[:, :1]), -_left(tau[:, -1:])
         points, before, behind = self.points, np.column_stack([first, tau]), np.column_stack([tau, last])
-        if self._round_behind:
+        if self._closed_behind:
             corner = self.points[:, -1:] + self._back[1] * last
             points, before = np.column_stack([points, corner]), np.column_stack([before, last])
             behind = np.column_stack([behind, first])
@@ -162,7 +162,7 @@ class Broken:
 
     def near(self, y: Array) -> Near:
         """Distance data of points (2, k)."""
-        nearest, t, away = self._foot(y)
+        nearest, t, away = self._closest_side(y)
         _, _, low, high = self._sides
         normals = self._normals
         side = normals.take(nearest, axis=1)
@@ -173,7 +173,7 @@ class Broken:
             return Near(d, side, np.zeros(d.size), corner)
         # at a corner the sum of both normals gives the sign of the distance
         neighbour = np.where(before, nearest - 1, nearest + 1)
-        round_it = self.closed or self._round_behind
+        round_it = self.closed or self._closed_behind
         neighbour = neighbour % low.size if round_it else np.minimum(np.maximum(neighbour, 0), low.size - 1)
         both = side + np.where(corner, normals.take(neighbour, axis=1), 0.0)
         r_corner = np.hypot(away[0], away[1])
@@ -187,9 +187,9 @@ class Broken:
             corner,
         )
 
-    def kept(self, y: Array, rest: Array) -> Array:
+    def exact_distance(self, y: Array, rest: Array) -> Array:
         """d (k,) of points ``y`` + ``rest`` (2, k), without cancellation."""
-        near, (side, t, _) = self.near(y), self._foot(y)
+        near, (side, t, _) = self.near(y), self._closest_side(y)
         tangents, first, _, _ = self._sides
         begins = first.take(side, axis=1)
         away, more = summed(y, -(begins + t * tangents.take(side, axis=1)))
@@ -197,7 +197,7 @@ class Broken:
         round_it = np.sign(near.distance) * np.hypot(away[0], away[1])
         return np.asarray(np.where(near.corner, round_it, _across(self._normals.take(side, axis=1), y, rest, begins)))
 
-    def _foot(self, y: Array) -> tuple[Ints, Array, Array]:
+    def _closest_side(self, y: Array) -> tuple[Ints, Array, Array]:
         """Closest side (k,) of points (2, k), distance (k,) along the side, and vector from the closest point."""
         tangents, first, low, high = self._sides
         begins, back = self._complex
@@ -241,7 +241,7 @@ class Broken:
     @cached_property
     def _back(self) -> Array:
         """Lengths (2,) of the backward sides at both ends of the edge."""
-        common = self._met_each_other
+        common = self._common_point
         tau, ends = -_left(self._tangents[:, [0, -1]]), self.points[:, [0, -1]]
         length = np.hypot(*np.diff(self.points, axis=1))
         lengths = []
@@ -252,7 +252,7 @@ class Broken:
         return np.array(lengths)
 
     @property
-    def _met_each_other(self) -> Array:
+    def _common_point(self) -> Array:
         """Lengths (2,) of the backward sides up to their common point; infinite without a common point."""
         tau, ends = -_left(self._tangents[:, [0, -1]]), self.points[:, [0, -1]]
         far, along = _crossing(ends[:, 0], tau[:, 0], ends[:, 1:], tau[:, 1:])
@@ -260,9 +260,9 @@ class Broken:
         return apart if (apart > _SAME).all() else np.full(2, np.inf)
 
     @cached_property
-    def _round_behind(self) -> bool:
+    def _closed_behind(self) -> bool:
         """True if the body ends where its two backward sides meet."""
-        return not self.closed and bool(np.isfinite(self._back).all() and (self._back == self._met_each_other).all())
+        return not self.closed and bool(np.isfinite(self._back).all() and (self._back == self._common_point).all())
 
     @cached_property
     def closed(self) -> bool:
@@ -346,7 +346,7 @@ class Graph:
                 bend = np.where(nearer, 0.0, bend)
         return Near(distance, normal, bend, past & ~behind)
 
-    def kept(self, y: Array, rest: Array) -> Array:
+    def exact_distance(self, y: Array, rest: Array) -> Array:
         """d (k,) of points ``y`` + ``rest`` (2, k), up to round-off of the points of the edge."""
         near = self.near(y)
         return np.asarray(near.distance + (near.normal * rest).sum(axis=0))
@@ -381,7 +381,7 @@ class Graph:
         """f and its first two derivatives at ``v`` (k,), (k,) all, by Horner's scheme."""
         f = slope = half = np.zeros_like(v)
         u = v - self._middle
-        for coefficient in self._falling:
+        for coefficient in self._descending_coefficients:
             half = half * u + slope
             slope = slope * u + f
             f = f * u + coefficient
@@ -392,7 +392,7 @@ class Graph:
         return 0.5 * (self.span[0] + self.span[1])
 
     @cached_property
-    def _falling(self) -> list[float]:
+    def _descending_coefficients(self) -> list[float]:
         """Coefficients of f, the highest first."""
         return [float(coefficient) for coefficient in self.f.coef[::-1]]
 
@@ -458,7 +458,7 @@ def ends_at(outline: Outline, place: Array, near: float) -> tuple[Array | None, 
 
 def _tips(corners: Corners) -> tuple[Array, Array]:
     """Convex corners (2, t) and the sums of their sides' normals (2, t)."""
-    some = corners.jutting
+    some = corners.convex
     return corners.points[:, some], (corners.normals[0] + corners.normals[1])[:, some]
 
 

@@ -28,10 +28,10 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
             body = next(body for body in model.bodies if body.name == probe.of)
             return frozen_array(model.body_state(body, z)[2])
         case "reaction":
-            forces = [force for force, _ in _holding(scene, march, probe.of)]
+            forces = [force for force, _ in _reactions(scene, march, probe.of)]
             return frozen_array(sum(forces, np.zeros(2)) * units.force)
         case "reaction_moment":
-            return frozen_array(sum(moment for _, moment in _holding(scene, march, probe.of)) * units.moment)
+            return frozen_array(sum(moment for _, moment in _reactions(scene, march, probe.of)) * units.moment)
         case "bending_stress":
             u, beam = np.linspace(0.0, 1.0, probe.points), scene.beams[probe.of]
             moment = bending_moment(model, march.system, model.beam(probe.of), u)
@@ -46,7 +46,7 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
         case "potential_energy":
             return frozen_array(potential_energy(model, march.system, march.values) * units.moment)
         case "closing_load":
-            closed = _touch(march, probe.of) is not None or _holding_ends(march, probe.of)
+            closed = _touch(march, probe.of) is not None or _ends_held_by_moment(march, probe.of)
             return frozen_array(march.closing[probe.of] if closed else [])
         case "angle":
             return frozen_array(_stop(model, probe.of).angle(z))
@@ -59,7 +59,7 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
             touch = _touch(march, probe.of)
             return frozen_array([] if touch is None else _centre(march, touch) * units.length)
         case "ends":
-            touch, pinned_ends = _touch(march, probe.of), _holding_ends(march, probe.of)
+            touch, pinned_ends = _touch(march, probe.of), _ends_held_by_moment(march, probe.of)
             places = [*pinned_ends, *([] if touch is None else _ends(march, touch))]
             return frozen_array(np.array([min(places), max(places)]) * units.length if places else [])
 
@@ -113,7 +113,7 @@ def _moment(march: March, name: str) -> float:
     return moment
 
 
-def _holding_ends(march: March, name: str) -> list[float]:
+def _ends_held_by_moment(march: March, name: str) -> list[float]:
     """Arc lengths of the pinned ends that the named contact holds by a moment."""
     model, ends_held = march.model, []
     for stop, _ in acting_stops(model.stops, march.acting):
@@ -122,7 +122,7 @@ def _holding_ends(march: March, name: str) -> list[float]:
     return ends_held
 
 
-def _holding(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]:
+def _reactions(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]:
     """Reaction forces and moments at a fixed point, or of guides and drives of a point or body.
 
     A fixed point includes its pivots and stops.
@@ -136,11 +136,11 @@ def _holding(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]
         *((force, 0.0) for point, force in hinges if point == name),
         *(row_reaction(part, z) for part in model.guides if part.name in turning or part.name == name),
         *((np.zeros(2), stop.moment(z)) for stop in model.stops if stop.phi is None and stop.point == name),
-        *(row_reaction(part, z) for part in model.drives if _driven(scene, part.name) == name),
+        *(row_reaction(part, z) for part in model.drives if _driven_name(scene, part.name) == name),
     ]
 
 
-def _driven(scene: Scene, drive: str) -> str:
+def _driven_name(scene: Scene, drive: str) -> str:
     """Name of the point or body that a drive moves."""
     part = scene.drives[drive]
     return part.point if isinstance(part, DisplacementDrive) else part.body
@@ -161,7 +161,7 @@ def _touch(march: March, name: str) -> Touch | None:
 def _centre(march: March, touch: Touch) -> float:
     """Arc length of the pressure's centre on the beam that the scene names first."""
     weight = np.hypot(*touch.force)
-    zeta = touch.zeta_m if _turned(touch) else touch.zeta
+    zeta = touch.zeta_m if _is_exchanged(touch) else touch.zeta
     return float(weight @ _arc_lengths(march, touch, zeta) / weight.sum())
 
 
@@ -172,11 +172,11 @@ def _ends(march: March, touch: Touch) -> Array:
     if isinstance(pair, Pair) and pair.turned:
         first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
         nearest = np.argmin(np.abs(touch.zeta[:, None] - zeta), axis=0)
-        zeta = pair.faced(first, second, zeta, touch.zeta_m[nearest]).zeta_m
+        zeta = pair.places_facing(first, second, zeta, touch.zeta_m[nearest]).zeta_m
     return np.sort(_arc_lengths(march, touch, zeta))
 
 
-def _turned(touch: Touch) -> bool:
+def _is_exchanged(touch: Touch) -> bool:
     """True if the beam that the scene names first is the pair's second."""
     return isinstance(touch.pair, Pair) and touch.pair.turned
 

@@ -30,7 +30,7 @@ def normal_force(model: Model, system: System, beam: BeamPart, fractions: Array)
 def section_force(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
     """Force (2, k) of the part beyond ``fractions`` (k,) of the arc length on the part before, dimensionless."""
     line, zeta = model.line(beam, system.z), fractions * (beam.elements.stop - beam.elements.start)
-    ends, place, _, force = _cut(model, system, beam)
+    ends, place, _, force = _end_forces(model, system, beam)
     e, _ = line.locate(zeta)
     owner, _ = line.locate(place)
     before = (owner[None, :] == e[:, None]) & (place[None, :] < zeta[:, None])
@@ -44,7 +44,7 @@ def section_force(model: Model, system: System, beam: BeamPart, fractions: Array
 def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
     """EI (κ − κ⁰) at ``fractions`` (k,) of the arc length, in units of EI/length."""
     line = model.line(beam, system.z)
-    ends, place, point, force = _cut(model, system, beam)
+    ends, place, point, force = _end_forces(model, system, beam)
     owner, _ = line.locate(place)
     zeta = fractions * line.n
     e, _ = line.locate(zeta)
@@ -60,7 +60,7 @@ def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Arra
     return np.asarray(moment)
 
 
-def _cut(model: Model, system: System, beam: BeamPart) -> tuple[Array, Array, Array, Array]:
+def _end_forces(model: Model, system: System, beam: BeamPart) -> tuple[Array, Array, Array, Array]:
     """Forces and moments at first nodes without contacts and loads, and contacts' places, points and forces.
 
     Force and moment (3, n) act on the first node of every element; places are (k,), points and forces (2, k).

@@ -81,11 +81,11 @@ def compliance(beam: Beam, material: Material, length: float, n: int, upright: t
     shear = axial * 2.0 * (1.0 + material.poisson_ratio) / SHEAR_FACTOR
     for layer, away in zip(upright, (u, 1.0 - u), strict=True):
         if layer:
-            shear = shear * leaning(away * length / layer)
+            shear = shear * shear_reduction(away * length / layer)
     return Compliance(bending, summed(axial), summed(shear))
 
 
-def leaning(x: Array) -> Array:
+def shear_reduction(x: Array) -> Array:
     """f at ``x`` (k,) layers a from a held section: tanh²(x/√2)."""
     return np.asarray(np.tanh(x / np.sqrt(2.0)) ** 2)
 

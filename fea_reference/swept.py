@@ -36,11 +36,11 @@ class ClosestPlaces:
     d: Array
     n: Complex
 
-    def along(self, out: Complex) -> Complex:
+    def normal_along(self, out: Complex) -> Complex:
         """±n in the direction of ``out`` (k,): the normal of a beam on a tip lies between those of the tip's sides."""
         return np.asarray(self.n * np.where((self.n.conj() * out).real < 0.0, -1.0, 1.0))
 
-    def seen_along(self, out: Complex) -> Array:
+    def distance_along(self, out: Complex) -> Array:
         """±d (k,) with the same sign."""
         return np.asarray(self.d * np.where((self.n.conj() * out).real < 0.0, -1.0, 1.0))
 

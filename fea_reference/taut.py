@@ -22,7 +22,7 @@ import numpy as np
 from scipy.sparse.linalg import splu
 
 from cprbm_scene.answer import Array
-from fea_reference.branch import Branch, Place, bordered, sign_change
+from fea_reference.branch import Branch, BranchPoint, bordered, sign_change
 from fea_reference.march import March
 from fea_reference.system import load_direction
 
@@ -38,7 +38,7 @@ class TurningPoint:
     """
 
     branch: Branch
-    before: Place
+    before: BranchPoint
     length: float
 
 
@@ -54,7 +54,7 @@ def continue_beyond(march: March, turn: TurningPoint, target: float) -> bool:
     size = min(abs(remaining), _PREDICTED / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
     for _ in range(_CUTS):
         value = target if size >= abs(remaining) else float(there.value + np.copysign(size, remaining))
-        if march.step(load, value, march.path_tangent(load, rate, target)) is None and march.minimum:
+        if march.step(load, value, march.path_tangent(load, rate, target)) is None and march.is_minimum:
             return True
         march.restore(saved)
         march.values, march.system = branch.at(there.value), there.system
@@ -63,13 +63,13 @@ def continue_beyond(march: March, turn: TurningPoint, target: float) -> bool:
     return False
 
 
-def _turning_place(turn: TurningPoint) -> Place | None:
+def _turning_place(turn: TurningPoint) -> BranchPoint | None:
     """The point with τ = 0."""
     sense = np.sign(turn.before.rate)
     return sign_change(turn.branch, turn.before, turn.length, lambda there: float(sense * there.rate))
 
 
-def _tangent_beyond(branch: Branch, there: Place) -> Array | None:
+def _tangent_beyond(branch: Branch, there: BranchPoint) -> Array | None:
     """r without component along φ; None if a motion other than φ is free."""
     f = load_direction(branch.model, branch.load, there.system.z, there.system.acting)
     along = branch.weights * there.way

@@ -75,7 +75,7 @@ class Pair:
         """Sides (k,) at places ``zeta`` (k,) and ``zeta_m`` (k,), with ``d`` (k,) = n·(x − x_m)."""
         return np.full(zeta.shape, self.side) if self.roles is None else self.roles.sides(zeta, zeta_m, d)
 
-    def faced(self, first: NeutralLine, second: NeutralLine, zeta: Array, guess: Array) -> Facing:
+    def places_facing(self, first: NeutralLine, second: NeutralLine, zeta: Array, guess: Array) -> Facing:
         """Places of the second beam facing ``zeta`` (k,) of the first, with initial guesses ``guess`` (k,)."""
         there = first.around(zeta)
         points = first.nodes[there.element] + there.way
@@ -88,7 +88,7 @@ class Pair:
         thinner = np.zeros(zeta.shape) if self.tapers is None else self.tapers.thinner(zeta, zeta_m)
         return np.asarray(self.distance - thinner)
 
-    def about(self) -> Pair:
+    def exchanged(self) -> Pair:
         """The pair with exchanged beams."""
         return replace(
             self,
@@ -227,8 +227,8 @@ class Touch:
     points to the first beam.
 
     ``missing`` is the force left out at ends of the second beam, and ``missing_share`` its largest share of a zone's
-    force. ``bent`` (m, m, k) are further second derivatives of the energy at some points. ``sharp`` is True for a
-    contact at a tip or end.
+    force. ``extra_hessian`` (m, m, k) are further second derivatives of the energy at some points. ``sharp`` is True
+    for a contact at a tip or end.
     """
 
     pair: Contact
@@ -246,7 +246,7 @@ class Touch:
     normal: Array
     missing: float = 0.0
     missing_share: float = 0.0
-    bent: Array | None = None
+    extra_hessian: Array | None = None
     sharp: bool = False
 
     @property
@@ -277,8 +277,8 @@ class Touch:
     def hessian(self, pushes: Array) -> Array:
         """Second derivative (M, M, c) of the contact energy by the unknowns, for point forces ``pushes`` (k,)."""
         local = self.stiffness * self.gap_by[:, None] * self.gap_by[None, :] - pushes * self.gap_by_twice
-        if self.bent is not None:
-            local += self.bent
+        if self.extra_hessian is not None:
+            local += self.extra_hessian
         return self.chain.hessian(self._summed(local), self._summed(-pushes * self.gap_by))
 
     def predicted_forces(self, step: Array) -> Array:

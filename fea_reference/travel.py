@@ -83,7 +83,7 @@ def reach(march: March, course: Course, target: float) -> None:
     origin = march.saved()
     try:
         _reach(march, replace(course, beyond="beside"), target)
-        if len(march.bypassed) == len(origin.bypassed) or march.minimum:
+        if len(march.bypassed) == len(origin.bypassed) or march.is_minimum:
             return
         stopped = StoppedError(Ending.NOT_A_MINIMUM, "")
     except StoppedError as error:
@@ -116,7 +116,7 @@ def _reach(march: March, course: Course, target: float) -> bool:
     released_energy = _step_to(march, course, target, watched=course.beyond is not None)
     march.settle(load)
     same = len(march.critical) == len(origin.critical) and march.values[load] != origin.values[load]
-    if same and not (march.minimum and march.penetrations_bounded):
+    if same and not (march.is_minimum and march.penetrations_bounded):
         # a minimum under the penalties of load stepping only: the critical point lies before, under the initial
         # penalties
         unstable, bounded = march.saved(), march.penetrations_bounded

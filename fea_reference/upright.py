@@ -75,10 +75,10 @@ def _thickness(scene: Scene, beam: str, which: str) -> float:
 def _held_ends(scene: Scene, beam: str, contact: Contact) -> Iterator[Which]:
     """Ends of a beam held on the surface of a contact; none for straight edges."""
     if isinstance(contact, CircleContact) and contact.beam == beam:
-        for which, place, holder in _welded(scene, beam):
+        for which, place, holder in _welded_ends(scene, beam):
             half = 0.5 * _thickness(scene, beam, which) if contact.thick else 0.0
             gap = math.dist(place, contact.center) - contact.radius - half
-            if holder == frame_of(scene, contact.body) and _reached(scene, gap, (beam, which)):
+            if holder == frame_of(scene, contact.body) and _within_reach(scene, gap, (beam, which)):
                 yield which
     elif isinstance(contact, EdgeContact) and contact.beam == beam:
         outline, own = ends_on_edge(scene, contact, *beam_frame(scene.beams[beam]))
@@ -86,20 +86,20 @@ def _held_ends(scene: Scene, beam: str, contact: Contact) -> Iterator[Which]:
             yield from own
     elif isinstance(contact, BeamContact) and beam in contact.between:
         (other,) = (name for name in contact.between if name != beam)
-        for which, place, holder in _welded(scene, beam):
-            for other_end, at, its_holder in _welded(scene, other):
+        for which, place, holder in _welded_ends(scene, beam):
+            for other_end, at, its_holder in _welded_ends(scene, other):
                 ends = (beam, which), (other, other_end)
                 halves = 0.5 * sum(_thickness(scene, *end) for end in ends) if contact.thick else 0.0
-                if holder == its_holder and _reached(scene, math.dist(place, at) - halves, *ends):
+                if holder == its_holder and _within_reach(scene, math.dist(place, at) - halves, *ends):
                     yield which
 
 
-def _reached(scene: Scene, gap: float, *ends: tuple[str, str]) -> bool:
+def _within_reach(scene: Scene, gap: float, *ends: tuple[str, str]) -> bool:
     """True if the gap (m) beside held ends is small enough for their beams to lean over."""
     return abs(gap) <= _REACHED * sum(_layer(scene, *end) for end in ends)
 
 
-def _welded(scene: Scene, beam: str) -> Iterator[tuple[Which, tuple[float, float], str]]:
+def _welded_ends(scene: Scene, beam: str) -> Iterator[tuple[Which, tuple[float, float], str]]:
     """A beam's welded ends, with place and frame."""
     record = scene.beams[beam]
     ends: tuple[tuple[Which, BeamEnd], ...] = (("start", record.start), ("end", record.end))

@@ -39,7 +39,7 @@ def assemble_ends(scene: Scene, march: March) -> None:
         unheld = np.concatenate([march.system.z, np.zeros(len(whole.apart))])
         _continue_with(march, replace(caught, stops=()), np.append(march.values, 1.0), unheld)
         reach(march, way, 0.0)
-        forbidden = [mistake for stop in whole.stops for mistake in _forbidden(march, stop, scene)]
+        forbidden = [mistake for stop in whole.stops for mistake in _limit_mistakes(march, stop, scene)]
         if forbidden:
             raise SceneError(forbidden)
         _continue_with(march, caught, march.values, march.system.z)
@@ -69,7 +69,7 @@ def _with_held_ends(model: Model, z: Array) -> Model:
     return replace(model, rows=rows)
 
 
-def _forbidden(march: March, stop: StopPart, scene: Scene) -> list[Mistake]:
+def _limit_mistakes(march: March, stop: StopPart, scene: Scene) -> list[Mistake]:
     """A mistake if an assembled end is beyond a limit of its stop; else an empty list."""
     angle = stop.angle(march.system.z)
     for key, limit, beyond in (("least", stop.least, stop.least - angle), ("most", stop.most, angle - stop.most)):

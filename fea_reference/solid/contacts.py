@@ -156,7 +156,7 @@ def _corner_on_edge(
     own = skin.nodes[skin.shapes(zeta)[0]]
     moved = 2 * len(places) + 3 * pair.body + np.arange(3)
     dofs = np.concatenate([np.stack([2 * own, 2 * own + 1], axis=2).reshape(1, -1), moved[None]], axis=1)
-    penalty = factor * _in_a_point(skin, zeta)
+    penalty = factor * _point_stiffness(skin, zeta)
     gradient = (penalty * g)[:, None] * first
     hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
     push = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
@@ -170,7 +170,7 @@ def _end_corner_on_edge(
 ) -> Touch:
     """Evaluation of an end's corner against an edge, with the nodes at ``places`` (N, 2)."""
     pointed, pressed = tip.roles(pair)
-    g_least, zeta = _tip_gap(pair, tip, places)
+    g_least, zeta = _end_corner_gap(pair, tip, places)
     own, y = _place_of(tip, pointed), places[pressed.nodes]
     at = np.array([own if tip.own else zeta])
     zones_found = _in_one_place(g_least, float(at[0]))
@@ -183,7 +183,7 @@ def _end_corner_on_edge(
     bent = g if predicted is None else np.array([predicted[1].min(initial=0.0)])
     both = np.concatenate([pointed.nodes[numbers], pressed.nodes[pressed.shapes(there)[0]]], axis=1)
     dofs = np.stack([2 * both, 2 * both + 1], axis=2).reshape(1, -1)
-    penalty = factor * np.minimum(_in_a_point(pressed, there), _in_a_point(pointed, np.array([own])))
+    penalty = factor * np.minimum(_point_stiffness(pressed, there), _point_stiffness(pointed, np.array([own])))
     gradient = (penalty * g)[:, None] * first
     hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
     on_corner = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
@@ -204,7 +204,7 @@ def _end_corner_on_shape(
 ) -> Touch:
     """Evaluation of an end's corner against a rigid shape, with the nodes at ``places`` (N, 2)."""
     skin, body = pair.skin, model.bodies[pair.body]
-    g_least, at = _butt_gap(model, pair, butt, places, z)
+    g_least, at = _end_corner_gap_to_shape(model, pair, butt, places, z)
     zones_found = _in_one_place(g_least, at)
     if not _is_active(g_least, predicted):
         return _no_contact(pair, zones_found)
@@ -216,7 +216,7 @@ def _end_corner_on_shape(
     bent = g if predicted is None else np.array([predicted[1].min(initial=0.0)])
     moved = 2 * len(places) + 3 * pair.body + np.arange(3)
     dofs = np.concatenate([np.stack([2 * own, 2 * own + 1], axis=2).reshape(1, -1), moved[None]], axis=1)
-    penalty = factor * _in_a_point(skin, there)
+    penalty = factor * _point_stiffness(skin, there)
     gradient = (penalty * g)[:, None] * first
     hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
     push = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
@@ -236,7 +236,7 @@ def _no_contact(pair: Pair, zones_found: Zones) -> Touch:
     return Touch(pair, zones_found, none, none, points, points, dofs, rows, np.empty((0, n, n)), none, rows, 0.0)
 
 
-def _in_a_point(skin: Skin, zeta: Array) -> Array:
+def _point_stiffness(skin: Skin, zeta: Array) -> Array:
     """ε w times an element's length, (k,)."""
     element = 2.0 * np.hypot(*skin.curve(skin.places, zeta)[1].T)
     return np.asarray(skin.at(skin.stiffness, zeta) * skin.at(skin.width, zeta) * element)
@@ -262,14 +262,16 @@ def _own_places(pair: Pair, zeta: Array) -> facing.Own | None:
     return None if pair.way == 0 else facing.Own(pair.skin.at(pair.skin.u, zeta), pair.way)
 
 
-def _butt_gap(model: Model, pair: Pair, butt: CornerOnShape, places: Array, z: Array) -> tuple[float, float]:
+def _end_corner_gap_to_shape(
+    model: Model, pair: Pair, butt: CornerOnShape, places: Array, z: Array
+) -> tuple[float, float]:
     """g of an end's corner, infinite if no side is opposite, and its ζ."""
     at = pair.skin.nodes.size - 1 if butt.last else 0
     there = rigid.in_body_frame(model.bodies[pair.body], places[pair.skin.nodes[[at]]], z)
     return float(butt.shape.measured(there)[0][0]), float(at)
 
 
-def _tip_gap(pair: Pair, tip: CornerOnEdge, places: Array) -> tuple[float, float]:
+def _end_corner_gap(pair: Pair, tip: CornerOnEdge, places: Array) -> tuple[float, float]:
     """g of an end's corner, infinite if no place is opposite, and ζ of the other edge."""
     pointed, pressed = tip.roles(pair)
     at = np.array([_place_of(tip, pointed)])
@@ -295,9 +297,9 @@ def least_gap(model: Model, pair: Pair, places: Array, z: Array) -> float:
     if isinstance(pair.other, Corner):
         return _corner_gap(model, pair, pair.other, places, z)[0]
     if isinstance(pair.other, CornerOnEdge):
-        return _tip_gap(pair, pair.other, places)[0]
+        return _end_corner_gap(pair, pair.other, places)[0]
     if isinstance(pair.other, CornerOnShape):
-        return _butt_gap(model, pair, pair.other, places, z)[0]
+        return _end_corner_gap_to_shape(model, pair, pair.other, places, z)[0]
     gap = _gap(model, pair, pair.other, places, z)
     return np.inf if gap is None else least(gap, pair.skin.nodes.size)
 

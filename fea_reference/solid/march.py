@@ -156,7 +156,7 @@ def reach(march: March, part: int, target: float) -> None:
         aside = solved.system is not None and has_odd_negative_count(march.model, solved.system)
         if solved.system is None or through or aside:
             blocked = f"a beam passes through the opposite body in contact {through}" if through else blocked
-            why = blocked if through else _NO_MINIMUM if aside else solved.why
+            why = blocked if through else _NO_MINIMUM if aside else solved.reason
             march.step, cuts = _CUT * abs(step), cuts + 1
             if solved.system is None:
                 march.loosen()
@@ -206,7 +206,9 @@ def _tighten(march: March) -> None:
             return  # the certificate reports the penetration
         solved = march.search(march.values, march.system.z, penalties)
         if solved.system is None:
-            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact penalty cannot be raised as requested: {solved.why}")
+            raise StoppedError(
+                Ending.STEP_TOO_SMALL, f"a contact penalty cannot be raised as requested: {solved.reason}"
+            )
         march.penalties, march.system = penalties, solved.system
         march.requested = {pair: max(rho, penalties[pair]) for pair, rho in march.requested.items()}
 
@@ -220,7 +222,9 @@ def _restore_penalties(march: March) -> None:
     if march.penalties != march.requested:
         solved = _with_penalties(march, march.values, march.system.z, march.penalties, march.requested)
         if solved.system is None:
-            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact penalty cannot be raised as requested: {solved.why}")
+            raise StoppedError(
+                Ending.STEP_TOO_SMALL, f"a contact penalty cannot be raised as requested: {solved.reason}"
+            )
         march.system = solved.system
     march.penalties = march.requested
 

@@ -25,7 +25,7 @@ class Solved:
 
     system: System | None
     iterations: int
-    why: str = ""
+    reason: str = ""
 
 
 def equilibrium(model: Model, penalties: Mapping[Pair, float], settings: Settings, values: Array, z: Array) -> Solved:

@@ -29,10 +29,10 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
             body = next(body for body in model.bodies if body.name == probe.of)
             return frozen_array(body.state(z)[2])
         case "reaction":
-            forces = [force for force, _ in _holding(scene, march, probe.of)]
+            forces = [force for force, _ in _reactions(scene, march, probe.of)]
             return frozen_array(sum(forces, np.zeros(2)) * units.force)
         case "reaction_moment":
-            return frozen_array(sum(moment for _, moment in _holding(scene, march, probe.of)) * units.moment)
+            return frozen_array(sum(moment for _, moment in _reactions(scene, march, probe.of)) * units.moment)
         case "bending_stress" | "combined_stress":
             E = scene.materials[scene.beams[probe.of].material].youngs_modulus
             u = np.linspace(0.0, 1.0, probe.points)
@@ -52,7 +52,7 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
             return frozen_array(next(stop for stop in model.stops if stop.name == probe.of).angle(z))
         case "moment":
             if probe.of in scene.contacts:
-                return frozen_array(abs(_about_its_pin(scene, march, probe.of)) * units.moment)
+                return frozen_array(abs(_moment_about_pin(scene, march, probe.of)) * units.moment)
             return frozen_array(next(stop for stop in model.stops if stop.name == probe.of).moment(z) * units.moment)
 
 
@@ -111,19 +111,19 @@ def _resultant(march: March, name: str) -> float:
     return float(np.hypot(*sum((push.sum(axis=0) for push in pushes), np.zeros(2))))
 
 
-def _about_its_pin(scene: Scene, march: March, name: str) -> float:
+def _moment_about_pin(scene: Scene, march: March, name: str) -> float:
     """Moment of a contact's forces on the beam about the first of its pins on the opposite body."""
     model, moment = march.model, 0.0
     for contact in _touches(march, name):
         body = model.bodies[contact.pair.body].name
-        pins = (tie for tie in model.ties if tie.beam == contact.pair.skin.beam and _goes_with(scene, tie.point, body))
+        pins = (tie for tie in model.ties if tie.beam == contact.pair.skin.beam and _moves_with(scene, tie.point, body))
         tie = next(pins, None)
         if tie is not None:
             moment += float(cross(contact.points - place(model, march.system, tie), contact.push).sum())
     return moment
 
 
-def _goes_with(scene: Scene, point: str, body: str) -> bool:
+def _moves_with(scene: Scene, point: str, body: str) -> bool:
     """True if a point belongs to the body or is pinned to a point of it; all fixed bodies count as one."""
     points = {point}.union(*(pin.points for pin in scene.pins.values() if point in pin.points))
     fixed = {name for name, record in scene.bodies.items() if record.motion == "fixed"}
@@ -154,7 +154,7 @@ def _potential_energy(march: March) -> float:
         if isinstance(part, SharePart):
             continue  # zero whenever a probe is evaluated
         if isinstance(part, CouplePart):
-            moved = _turned(march, part)
+            moved = _section_rotation(march, part)
         elif isinstance(part, AreaLoad):
             moved = float((part.forces * system.q.reshape(-1, 2)[part.nodes]).sum())
         elif part.direction is None:
@@ -165,7 +165,7 @@ def _potential_energy(march: March) -> float:
     return energy
 
 
-def _turned(march: March, part: CouplePart) -> float:
+def _section_rotation(march: March, part: CouplePart) -> float:
     """Rotation of a moment's section, full turns included."""
     model, z = march.model, march.system.z
     beam = int(model.mesh.beams[part.nodes[0]])
@@ -175,7 +175,7 @@ def _turned(march: March, part: CouplePart) -> float:
     return part.turned(drawn, drawn + march.system.q.reshape(-1, 2), start)
 
 
-def _holding(scene: Scene, march: March, name: str) -> list[Wrench]:
+def _reactions(scene: Scene, march: March, name: str) -> list[Wrench]:
     """Reaction forces and moments at a fixed point, with pivots, or of guides and drives of a point or body."""
     model, system = march.model, march.system
     turning = {key for key, body in scene.bodies.items() if isinstance(body, TurningBody) and body.about == name}

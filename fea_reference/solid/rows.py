@@ -86,7 +86,7 @@ def rows_of(scene: Scene, bodies: tuple[BodyPart, ...], first: int) -> tuple[Row
     number = {body.name: i for i, body in enumerate(bodies)}
     parts: list[tuple[str, tuple[Share, ...], str | None]] = []
     for name, both in scene.pins.items():
-        parts += _pinned(name, both, scene, bodies, number)
+        parts += _pin_rows(name, both, scene, bodies, number)
     for name, body in scene.bodies.items():
         i = number[name]
         if isinstance(body, SlidingBody):
@@ -97,11 +97,11 @@ def rows_of(scene: Scene, bodies: tuple[BodyPart, ...], first: int) -> tuple[Row
                 parts.append((name, (Share(i, None, pin),), None))
         elif isinstance(body, TurningBody):
             parts += [(name, (Share(i, direction, bodies[i].arm(body.about)),), None) for direction in np.eye(2)]
-    parts += [(name, (_driven(drive, scene, bodies, number),), name) for name, drive in scene.drives.items()]
+    parts += [(name, (_drive_share(drive, scene, bodies, number),), name) for name, drive in scene.drives.items()]
     return tuple(Row(name, shares, first + i, drive) for i, (name, shares, drive) in enumerate(parts))
 
 
-def _pinned(
+def _pin_rows(
     name: str, both: BodyPin, scene: Scene, bodies: tuple[BodyPart, ...], number: dict[str, int]
 ) -> list[tuple[str, tuple[Share, ...], str | None]]:
     first, second = (number[scene.body_of(point)] for point in both.points)
@@ -109,7 +109,7 @@ def _pinned(
     return [(name, (Share(first, e, arms[0]), Share(second, -e, arms[1])), None) for e in np.eye(2)]
 
 
-def _driven(drive: Drive, scene: Scene, bodies: tuple[BodyPart, ...], number: dict[str, int]) -> Share:
+def _drive_share(drive: Drive, scene: Scene, bodies: tuple[BodyPart, ...], number: dict[str, int]) -> Share:
     if isinstance(drive, DisplacementDrive):
         i = number[scene.body_of(drive.point)]
         return Share(i, np.array(drive.direction) / np.hypot(*drive.direction), bodies[i].arm(drive.point))

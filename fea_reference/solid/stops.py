@@ -37,13 +37,13 @@ class StopPart:
     psi: int
     body: int
     phi: int | None
-    drawn: float
+    reference_angle: float
     least: float
     most: float
 
     def angle(self, z: Array) -> float:
         """β, rad."""
-        return self.drawn + float(z[self.psi]) - (0.0 if self.phi is None else float(z[self.phi]))
+        return self.reference_angle + float(z[self.psi]) - (0.0 if self.phi is None else float(z[self.phi]))
 
     def moment(self, z: Array) -> float:
         """m, dimensionless."""

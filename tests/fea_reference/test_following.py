@@ -13,7 +13,7 @@ import fea_reference
 from cprbm_scene import Loss, scene_from
 from fea_reference import Settings, following, prepared
 from fea_reference.assembly import assemble_ends
-from fea_reference.branch import Place
+from fea_reference.branch import BranchPoint
 from fea_reference.curvature import Mode
 from fea_reference.following import follow_branch
 from fea_reference.travel import Course, reach
@@ -110,7 +110,7 @@ class Sharp:
 
     @staticmethod
     def place(value, curvature, way, rate, s):
-        return Place(
+        return BranchPoint(
             float(value), SimpleNamespace(z=None, s=s, touches=()), Mode(curvature, np.ones(1)), np.array([way]), rate
         )
 
@@ -127,8 +127,8 @@ def test_a_turn_sharper_than_a_step_is_not_stepped_over(monkeypatch):
     monkeypatch.setattr(following, "_vanishing_contact", lambda march, load, target, span: None)
     monkeypatch.setattr(following, "_end_slip", lambda march, load, target, span: None)
     monkeypatch.setattr(following, "_branch", lambda march, load, span: unit)
-    monkeypatch.setattr(following, "place", lambda branch, value, system, before: sharp.at(0.0))
-    monkeypatch.setattr(following, "place_at", sharp.onwards)
+    monkeypatch.setattr(following, "branch_point", lambda branch, value, system, before: sharp.at(0.0))
+    monkeypatch.setattr(following, "point_at", sharp.onwards)
     monkeypatch.setattr(following, "_distance", lambda branch, one, other: 0.0)
 
     def lost(march, branch, first, here, there, length):
@@ -163,10 +163,10 @@ def test_places_on_two_branches_are_told_apart_at_once():
         values = np.array([s if s < 0.37 else s + 0.2])
         z = SimpleNamespace(values=values, rest=np.zeros(1))
         curvature = 1.0 if s < 0.37 else -3.0
-        return Place(values[0], SimpleNamespace(z=z), Mode(curvature, np.ones(1)), np.ones(1), 1.0)
+        return BranchPoint(values[0], SimpleNamespace(z=z), Mode(curvature, np.ones(1)), np.ones(1), 1.0)
 
     branch = SimpleNamespace(weights=np.full(1, 0.5), weight=0.5, span=1.0)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(following, "place_at", lambda branch, here, length: at(length))
+        patched.setattr(following, "point_at", lambda branch, here, length: at(length))
         assert following._critical_between(None, branch, at(0.0), at(0.0), at(0.5), 0.5) is None
     assert len(seen) < 15
