@@ -20,8 +20,8 @@ the body, δu = δx − δX − δφ k × r,
 
 and by ζ alone g' = n·x' − T', g'' = n·x'' + b (τ·x')². The integral runs over the exact intervals with g < δ.
 Intervals also end where n jumps, at a corner. There g is continuous, so that the gradient has no additional term. The
-place moves with the beam, however, and adds −ε g (Δδg)²/Δg' to the second derivative, Δ being the jump from behind to
-before.
+place moves with the beam, however, and adds −ε g (Δδg)²/Δg' to the second derivative, Δ being the value before minus
+the value behind.
 
 Point contacts: a corner on a beam's side, or a beam's end on the edge, penetrates with the root of its force over ε,
 however few the elements. Its penalty follows from the requested penetration, as for pairs of beams. The neutral line

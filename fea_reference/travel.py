@@ -236,14 +236,14 @@ def _step_to(march: March, course: Course, target: float, *, watched: bool) -> b
         if (unstable or give_up_stepping) and (taut_ending := _taut_ending(saved, load, pulls)) is not None:
             raise taut_ending
         if minimum and follow and (close or unstable or give_up_stepping):
-            critical, progressed, restored = None, False, True
+            critical, progressed, retry_from_saved = None, False, True
             if tight is not None:
                 # under loose penalties the state may lie beyond the critical point under tight ones
-                restored = saved.values[load] != tight.values[load]
+                retry_from_saved = saved.values[load] != tight.values[load]
                 march.restore(tight)
                 tight, critical = None, follow_branch(march, load, target, course.span)
                 progressed = critical is None and abs(target - march.values[load]) < abs(target - value)
-            if critical is None and not progressed and restored:
+            if critical is None and not progressed and retry_from_saved:
                 march.restore(saved)
                 critical = follow_branch(march, load, target, course.span) if march.curvature > 0.0 else None
                 progressed = critical is None and abs(target - march.values[load]) < abs(target - value)
