@@ -218,8 +218,8 @@ class Touch:
     """A contact in a state, evaluated at its k Gauss points.
 
     ``stiffness`` (k,) is the penalty times the length of a point, and ``gap`` (k,) the gap minus the lead. ``gap_by``
-    (m, k) and ``gap_by_twice`` (m, m, k) are the gap's derivatives by the element unknowns of the first line, then of
-    the second or a moving body. ``chain`` continues to all unknowns, at c = k/points_per_place places, as
+    (m, k) and ``gap_by_twice`` (m, m, k) are the gap's derivatives by the unknowns of the first line, then of the
+    second or a moving body. ``chain`` continues to all unknowns, at c = k/points_per_place places, as
     ``points_per_place`` consecutive points lie in the same elements.
 
     ``zeta`` (k,) and ``zeta_m`` (k,) are places on the first and second beam, the latter empty for a rigid body.

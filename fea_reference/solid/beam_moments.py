@@ -10,8 +10,8 @@ d       Σ w_j x_j, half of the section, from its line to its left, as a least-s
 M       moment, counter-clockwise
 ======  ====================================================================================
 
-The work is M θ. Its forces f_j = M w_j S d/|d|² are the traction M η across d, without resultant, and with the moment
-Σ x_j × f_j = M at any orientation. The second derivative is
+The work is M θ. Its forces f_j = M w_j S d/|d|² are the traction M η across d. Their resultant is zero, and their
+moment is Σ x_j × f_j = M at any orientation. The second derivative is
 
     ∂²θ/∂d² = −(n τᵀ + τ nᵀ)/|d|²,    n = d/|d|,  τ = S n.
 """
